@@ -1,0 +1,8 @@
+"""Fleet Supervisor, a QGIS plugin. QGIS loads this folder as the package ``fleet_supervisor``."""
+
+
+def classFactory(iface):  # noqa: N802 - the name that QGIS calls
+    """Return the plugin; ``iface`` is QGIS's QgisInterface, or None under qgis_process."""
+    from .plugin.supervisor import FleetSupervisor
+
+    return FleetSupervisor(iface)

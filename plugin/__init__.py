@@ -1,0 +1,1 @@
+"""The part of Fleet Supervisor that runs inside QGIS."""

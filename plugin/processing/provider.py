@@ -1,0 +1,26 @@
+"""The Processing provider ``fleet``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from qgis.core import QgsProcessingProvider
+from qgis.PyQt.QtGui import QIcon
+
+ICON = Path(__file__).parents[2] / "resources" / "icons" / "fleet.svg"
+
+
+class FleetProvider(QgsProcessingProvider):
+    """Groups the plugin's algorithms in the Processing toolbox and in ``qgis_process``."""
+
+    def id(self):
+        return "fleet"
+
+    def name(self):
+        return "Fleet"
+
+    def icon(self):
+        return QIcon(str(ICON))
+
+    def loadAlgorithms(self):
+        pass

@@ -1,0 +1,41 @@
+"""What all tests share: the plugin's package name and where the real data lies."""
+
+from __future__ import annotations
+
+import importlib.util
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+DATA = ROOT.parent / "shared" / "data"
+
+
+def register_plugin_package():
+    """Make the repository's root importable under the name that QGIS gives it."""
+    if "fleet_supervisor" in sys.modules:
+        return
+    spec = importlib.util.spec_from_file_location(
+        "fleet_supervisor", ROOT / "__init__.py", submodule_search_locations=[str(ROOT)]
+    )
+    module = importlib.util.module_from_spec(spec)
+    sys.modules["fleet_supervisor"] = module
+    spec.loader.exec_module(module)
+
+
+register_plugin_package()
+
+
+@pytest.fixture(scope="session")
+def root() -> Path:
+    """The repository's root, which is the plugin's folder."""
+    return ROOT
+
+
+@pytest.fixture(scope="session")
+def data() -> Path:
+    """The folder of real data beside the project (see its README)."""
+    if not DATA.is_dir():
+        pytest.skip(f"the real data is not on this machine: {DATA} does not exist")
+    return DATA
