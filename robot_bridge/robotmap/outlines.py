@@ -1,0 +1,70 @@
+"""Obstacle outlines as plain arrays: what every source of geometry is turned into before a map is built."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from .model import ShapeType
+
+
+@dataclass(frozen=True)
+class Outlines:
+    """K outlines (rings, walls, flights of stairs) of one site, in the site frame, metres.
+
+    One row is one ring or one line; a polygon with two courtyards is three rows. Rings repeat their first
+    point at the end. The direction of the points does not matter for rings: the builder turns solid
+    rings counter-clockwise and courtyards clockwise, so that free space lies to the right of a→b.
+    Rows of kind stairs hold one riser after another, bottom first, two points each.
+    """
+
+    coordinates: np.ndarray
+    """(N, 2) float64, x and y of all outlines one after the other."""
+    offsets: np.ndarray
+    """(K + 1,) int64, outline k is ``coordinates[offsets[k]:offsets[k + 1]]``."""
+    shape_type: np.ndarray
+    """(K,) int8, a :class:`ShapeType` each, as the outline is before any clipping."""
+    courtyard: np.ndarray
+    """(K,) bool, true where the free space is inside the ring."""
+    height: np.ndarray
+    """(K,) float64, metres above the ground; 0 where the obstacle has none (ramps)."""
+    outdoor: np.ndarray
+    """(K,) bool."""
+    semantics: Sequence[str]
+    """K labels, such as ``building,A5``."""
+    source: Sequence[str]
+    """K names of where the outline comes from, such as ``buildings:12``; used in warnings and in ``ext``."""
+
+    def __len__(self) -> int:
+        return len(self.shape_type)
+
+    @classmethod
+    def from_rows(cls, rows: Sequence[OutlineRow]) -> Outlines:
+        """Return the outlines of ``rows`` in their order."""
+        points = [np.asarray(row.points, dtype=np.float64).reshape(-1, 2) for row in rows]
+        lengths = np.array([len(p) for p in points], dtype=np.int64)
+        return cls(
+            coordinates=np.concatenate(points) if points else np.empty((0, 2)),
+            offsets=np.concatenate([np.zeros(1, dtype=np.int64), np.cumsum(lengths, dtype=np.int64)]),
+            shape_type=np.array([int(row.shape_type) for row in rows], dtype=np.int8),
+            courtyard=np.array([row.courtyard for row in rows], dtype=bool),
+            height=np.array([row.height for row in rows], dtype=np.float64),
+            outdoor=np.array([row.outdoor for row in rows], dtype=bool),
+            semantics=[row.semantics for row in rows],
+            source=[row.source for row in rows],
+        )
+
+
+@dataclass(frozen=True)
+class OutlineRow:
+    """One outline on its way into :class:`Outlines`; ``points`` is (n, 2), metres, site frame."""
+
+    points: np.ndarray
+    shape_type: ShapeType
+    height: float
+    semantics: str
+    source: str
+    courtyard: bool = False
+    outdoor: bool = True
