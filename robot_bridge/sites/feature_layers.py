@@ -1,0 +1,91 @@
+"""Centrelines, road surfaces and keepouts as features of their layers, and back."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from .errors import LayerError
+from .features import Area, Centreline
+from .frame import SiteFrame
+from .geopackage import Layer, layer_of
+from .layers import CENTRELINES, LayerSpec
+
+
+def centreline_layer(centrelines: Sequence[Centreline], frame: SiteFrame) -> Layer:
+    """Return ``centrelines`` as line strings in the site CRS.
+
+    :raises LayerError: naming the first centreline with fewer than two points.
+    """
+    import shapely
+
+    for k, line in enumerate(centrelines, start=1):
+        if len(line.points) < 2:
+            raise LayerError(f"Centreline {k} has {len(line.points)} point(s): a road needs two or more.")
+    return layer_of(
+        CENTRELINES,
+        [shapely.LineString(frame.to_crs(line.points)) for line in centrelines],
+        {
+            "width_m": [line.width_m for line in centrelines],
+            "surface": [line.surface for line in centrelines],
+        },
+    )
+
+
+def centrelines_of(layer: Layer, frame: SiteFrame, place: str) -> tuple[Centreline, ...]:
+    """Return the centrelines in ``layer``; ``place`` is its file, for messages.
+
+    :raises LayerError: naming a road whose width is not above 0 or that is not a line.
+    """
+    _require(layer, "LineString", place)
+    widths = np.asarray(layer.values["width_m"], dtype=np.float64)
+    if (widths <= 0).any():
+        k = int(np.argmax(widths <= 0))
+        raise LayerError(
+            f"{place}, layer {layer.spec.name}, feature {layer.ids[k]}: width_m is {widths[k]:g}; "
+            "a road is wider than 0 m. Correct it in the source layer and publish the site again."
+        )
+    return tuple(
+        Centreline(frame.to_site(np.asarray(geometry.coords)[:, :2]), float(width), surface or "")
+        for geometry, width, surface in zip(layer.geometries, widths, layer.values["surface"], strict=True)
+    )
+
+
+def area_layer(spec: LayerSpec, areas: Sequence[Area], frame: SiteFrame) -> Layer:
+    """Return ``areas`` as polygons in the site CRS, each label in the one field of ``spec``."""
+    import shapely
+
+    (label,) = spec.fields
+    polygons = []
+    for area in areas:
+        outer, *holes = [frame.to_crs(ring) for ring in area.rings]
+        polygons.append(shapely.Polygon(outer, holes))
+    return layer_of(spec, polygons, {label: [area.label for area in areas]})
+
+
+def areas_of(layer: Layer, frame: SiteFrame, place: str) -> tuple[Area, ...]:
+    """Return the polygons in ``layer``; ``place`` is its file, for messages.
+
+    :raises LayerError: naming a feature that is not a polygon.
+    """
+    _require(layer, "Polygon", place)
+    (label,) = layer.spec.fields
+    return tuple(
+        Area(tuple(frame.to_site(ring) for ring in _rings(geometry)), text or "")
+        for geometry, text in zip(layer.geometries, layer.values[label], strict=True)
+    )
+
+
+def _rings(polygon: Any) -> list[Any]:
+    return [np.asarray(ring.coords)[:, :2] for ring in (polygon.exterior, *polygon.interiors)]
+
+
+def _require(layer: Layer, kind: str, place: str) -> None:
+    for feature, geometry in zip(layer.ids, layer.geometries, strict=True):
+        if geometry.geom_type != kind:
+            raise LayerError(
+                f"{place}, layer {layer.spec.name}, feature {feature}: it is a {geometry.geom_type}, "
+                f"not a {kind}. Split or redraw it in the source layer and publish the site again."
+            )

@@ -1,0 +1,174 @@
+"""``site.gpkg`` on disk: layers of geometries and fields, read and written with every defect named."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .errors import LayerError
+from .layers import LayerSpec
+
+GEOPACKAGE_FILE = "site.gpkg"
+_STAMP = "FLEET_SITE"
+_REPAIR = "Publish the site again."
+
+
+@dataclass(frozen=True)
+class Layer:
+    """The features of one layer: K shapely geometries in the site CRS, and K values of each field."""
+
+    spec: LayerSpec
+    ids: np.ndarray[Any, Any]
+    geometries: np.ndarray[Any, Any]
+    values: Mapping[str, np.ndarray[Any, Any]]
+
+    def __len__(self) -> int:
+        return len(self.geometries)
+
+
+def layer_of(spec: LayerSpec, geometries: Sequence[Any], values: Mapping[str, Sequence[Any]]) -> Layer:
+    """Return a layer ready to be written; ids are given by the file."""
+    column = np.empty(len(geometries), dtype=object)
+    column[:] = geometries
+    kinds = {name: object if kind is str else kind for name, kind in spec.fields.items()}
+    arrays: dict[str, np.ndarray[Any, Any]] = {
+        name: np.array(values[name], dtype=kind) for name, kind in kinds.items()
+    }
+    return Layer(spec, np.arange(1, len(column) + 1), column, arrays)
+
+
+def write_layers(file: Path, layers: Sequence[Layer], crs: str, stamp: str) -> None:
+    """Write ``layers`` to the new GeoPackage ``file`` in ``crs``.
+
+    Version 1.3 of the format, which GDAL 3.6 and older read. ``stamp`` names the publication this file
+    belongs to. The environment variable OGR_CURRENT_DATE, where set, stands for the time of writing.
+
+    :raises LayerError: when the file cannot be written.
+    """
+    pyogrio, shapely = _pyogrio(), _shapely()
+    try:
+        for layer in layers:
+            pyogrio.raw.write(
+                str(file),
+                geometry=shapely.to_wkb(layer.geometries),
+                field_data=list(layer.values.values()),
+                fields=list(layer.spec.fields),
+                layer=layer.spec.name,
+                driver="GPKG",
+                geometry_type=layer.spec.geometry,
+                crs=crs,
+                append=file.exists(),
+                dataset_options={"VERSION": "1.3"},
+                dataset_metadata=None if file.exists() else {_STAMP: stamp},
+            )
+    except (pyogrio.errors.DataSourceError, pyogrio.errors.DataLayerError, OSError) as error:
+        raise LayerError(
+            f"{file} cannot be written: {error}. Check the folder's rights and free space."
+        ) from error
+
+
+def read_layers(file: Path, specs: Sequence[LayerSpec], crs: str, stamp: str) -> list[Layer]:
+    """Return the layers ``specs`` of the GeoPackage ``file``, each checked whole.
+
+    :raises LayerError: when the file is missing or damaged, belongs to another publication than ``stamp``,
+        or a layer is missing, lacks a field, is in another CRS than ``crs`` or has a defective feature.
+    """
+    pyogrio = _pyogrio()
+    if not file.is_file():
+        raise LayerError(f"{file} is missing: the site is half there. {_REPAIR}")
+    try:
+        present = {str(name) for name in pyogrio.list_layers(str(file))[:, 0]}
+        _check_stamp(file, specs, present, stamp)
+        return [_read(file, spec, crs) for spec in specs]
+    except (pyogrio.errors.DataSourceError, pyogrio.errors.DataLayerError) as error:
+        raise LayerError(f"{file} is not a readable GeoPackage: {error}. {_REPAIR}") from error
+
+
+def _check_stamp(file: Path, specs: Sequence[LayerSpec], present: set[str], stamp: str) -> None:
+    for spec in specs:
+        if spec.name not in present:
+            raise LayerError(
+                f"{file} has no layer {spec.name!r}; it has {', '.join(sorted(present)) or 'none'}. {_REPAIR}"
+            )
+    found = (_pyogrio().read_info(str(file), layer=specs[0].name)["dataset_metadata"] or {}).get(_STAMP)
+    if found != stamp:
+        raise LayerError(
+            f"{file} belongs to {found or 'no publication'} and the settings beside it to {stamp}: "
+            f"publishing was interrupted or files were mixed. {_REPAIR}"
+        )
+
+
+def _read(file: Path, spec: LayerSpec, crs: str) -> Layer:
+    meta, ids, wkb, columns = _pyogrio().raw.read(str(file), layer=spec.name, return_fids=True)
+    values = dict(zip((str(name) for name in meta["fields"]), columns, strict=True))
+    for name in spec.fields:
+        if name not in values:
+            raise LayerError(f"{file}, layer {spec.name}: the field {name!r} is missing. {_REPAIR}")
+    _check_crs(file, spec, meta["crs"], crs)
+    # A GeoPackage holds NaN and broken rings as they are, so nothing here may rely on valid geometry.
+    layer = Layer(spec, ids, _shapely().from_wkb(wkb), {name: values[name] for name in spec.fields})
+    check_features(layer, str(file))
+    return layer
+
+
+def _check_crs(file: Path, spec: LayerSpec, found: str | None, wanted: str) -> None:
+    from .projections import crs_of
+
+    if found is None or crs_of(found) != crs_of(wanted):
+        raise LayerError(
+            f"{file}, layer {spec.name}: its CRS is {found or 'not stated'}, and site.crs is {wanted}. "
+            f"{_REPAIR}"
+        )
+
+
+def check_features(layer: Layer, place: str) -> None:
+    """Raise :class:`LayerError` for the first feature with no usable geometry or number.
+
+    ``place`` is the file, for messages.
+    """
+    shapely = _shapely()
+    geometries = layer.geometries
+    finite = np.ones(len(layer), dtype=bool)
+    points, owner = shapely.get_coordinates(geometries, return_index=True)
+    finite[owner[~np.isfinite(points).all(axis=1)]] = False
+    defects = [
+        (shapely.is_missing(geometries) | shapely.is_empty(geometries), "has no geometry"),
+        (~finite, "has a coordinate that is NaN or infinite"),
+    ]
+    for name, kind in layer.spec.fields.items():
+        if kind is float:
+            defects.append((~np.isfinite(layer.values[name]), f"has no finite number in {name}"))
+    for wrong, what in defects:
+        if wrong.any():
+            feature = layer.ids[np.argmax(wrong)]
+            raise LayerError(
+                f"{place}, layer {layer.spec.name}, feature {feature}: it {what}. "
+                "Correct or delete it in the source layer and publish the site again."
+            )
+
+
+def _pyogrio() -> Any:
+    try:
+        import pyogrio
+        import pyogrio.raw
+    except ImportError as error:
+        raise LayerError(
+            "The Python package pyogrio is missing, which reads and writes site.gpkg: install it with "
+            "'python3 -m pip install pyogrio'."
+        ) from error
+    return pyogrio
+
+
+def _shapely() -> Any:
+    try:
+        import shapely
+    except ImportError as error:
+        raise LayerError(
+            "The Python package shapely 2 is missing, which reads and writes site.gpkg: install it with "
+            "'python3 -m pip install shapely'."
+        ) from error
+    return shapely

@@ -1,0 +1,125 @@
+"""Obstacle outlines as features of the layer ``obstacles``, and back."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from ..robotmap.model import ShapeType
+from ..robotmap.outlines import OutlineRow, Outlines
+from .errors import LayerError
+from .frame import Points, SiteFrame
+from .geopackage import Layer, layer_of
+from .layers import OBSTACLES
+
+_RINGS = (ShapeType.CLOSED_POLYGON, ShapeType.CLOSED_CURVE, ShapeType.RAMP)
+
+
+def obstacle_layer(outlines: Outlines, frame: SiteFrame) -> Layer:
+    """Return ``outlines`` as features in the site CRS.
+
+    A courtyard becomes a hole of the ring before it; a flight of stairs one multi line string of risers.
+
+    :raises LayerError: naming the source of an outline that is no ring where it must be one, or whose
+        risers are not pairs of points.
+    """
+    geometries: list[Any] = []
+    columns: dict[str, list[Any]] = {name: [] for name in OBSTACLES.fields}
+    for first, last in _groups(outlines):
+        geometries.append(_geometry(outlines, first, last, frame))
+        columns["source"].append(outlines.source[first])
+        columns["semantics"].append(outlines.semantics[first])
+        columns["height_m"].append(outlines.height[first])
+        columns["outdoor"].append(outlines.outdoor[first])
+        columns["shape_type"].append(outlines.shape_type[first])
+    return layer_of(OBSTACLES, geometries, columns)
+
+
+def outlines_of(layer: Layer, frame: SiteFrame, place: str) -> Outlines:
+    """Return the outlines in ``layer``; ``place`` is its file, for messages.
+
+    :raises LayerError: naming the feature whose geometry or shape type is not one of an obstacle.
+    """
+    rows: list[OutlineRow] = []
+    for k in range(len(layer)):
+        shape_type = int(layer.values["shape_type"][k])
+        where = f"{place}, layer {OBSTACLES.name}, feature {layer.ids[k]}"
+        if shape_type not in {int(member) for member in ShapeType}:
+            raise LayerError(f"{where}: shape_type is {shape_type}; write 1 to 6 (paper 1, section II).")
+        for points, courtyard in _lines(layer.geometries[k], ShapeType(shape_type), where):
+            rows.append(
+                OutlineRow(
+                    points=frame.to_site(points),
+                    shape_type=ShapeType(shape_type),
+                    height=float(layer.values["height_m"][k]),
+                    semantics=layer.values["semantics"][k] or "",
+                    source=layer.values["source"][k] or "",
+                    courtyard=courtyard,
+                    outdoor=bool(layer.values["outdoor"][k]),
+                )
+            )
+    return Outlines.from_rows(rows)
+
+
+def _groups(outlines: Outlines) -> Iterator[tuple[int, int]]:
+    """Yield (first, last + 1) of each outline with the courtyards that follow it."""
+    first = 0
+    for k in range(1, len(outlines) + 1):
+        if k == len(outlines) or not (outlines.courtyard[k] and outlines.source[k] == outlines.source[first]):
+            yield first, k
+            first = k
+
+
+def _geometry(outlines: Outlines, first: int, last: int, frame: SiteFrame) -> Any:
+    import shapely
+
+    rings = [frame.to_crs(_points(outlines, k)) for k in range(first, last)]
+    shape_type, source = ShapeType(int(outlines.shape_type[first])), outlines.source[first]
+    try:
+        if shape_type is ShapeType.STAIRS:
+            return shapely.MultiLineString(list(rings[0].reshape(-1, 2, 2)))
+        if shape_type in _RINGS:
+            return shapely.Polygon(rings[0], rings[1:])
+        return shapely.LineString(rings[0])
+    except (ValueError, shapely.errors.GEOSException) as error:
+        raise LayerError(
+            f"The obstacle {source} cannot be published as {shape_type.name.lower()}: {error}. "
+            "Correct its geometry in the source layer."
+        ) from error
+
+
+def _points(outlines: Outlines, k: int) -> Points:
+    points: Points = outlines.coordinates[outlines.offsets[k] : outlines.offsets[k + 1]]
+    return points
+
+
+def _lines(geometry: Any, shape_type: ShapeType, where: str) -> Iterator[tuple[Points, bool]]:
+    """Yield each ring or line of ``geometry`` as (points, courtyard)."""
+    if shape_type is ShapeType.STAIRS and geometry.geom_type in ("LineString", "MultiLineString"):
+        yield _risers(geometry, where), False
+    elif geometry.geom_type in ("Polygon", "MultiPolygon"):
+        for polygon in _parts(geometry):
+            yield np.asarray(polygon.exterior.coords)[:, :2], False
+            for hole in polygon.interiors:
+                yield np.asarray(hole.coords)[:, :2], True
+    elif geometry.geom_type in ("LineString", "MultiLineString"):
+        for line in _parts(geometry):
+            yield np.asarray(line.coords)[:, :2], False
+    else:
+        raise LayerError(
+            f"{where}: a {geometry.geom_type} cannot be an obstacle. Use lines or polygons in the source layer "
+            "and publish the site again."
+        )
+
+
+def _risers(geometry: Any, where: str) -> Points:
+    risers = [np.asarray(line.coords)[:, :2] for line in _parts(geometry)]
+    if any(len(riser) != 2 for riser in risers):
+        raise LayerError(f"{where}: a riser of these stairs has more than two points. Draw one line a riser.")
+    return np.concatenate(risers)
+
+
+def _parts(geometry: Any) -> Any:
+    return getattr(geometry, "geoms", [geometry])

@@ -1,0 +1,89 @@
+"""A site as the gateway serves it: what is on it, and the robot maps cut from it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from ..robotmap.outlines import Outlines
+from .features import Area, Centreline
+from .frame import SiteFrame
+from .settings import Bounds, SiteSettings
+
+if TYPE_CHECKING:
+    from ..robotmap.builder import Window
+    from ..robotmap.model import RobotMap
+
+
+@dataclass(frozen=True)
+class Site:
+    """One published site; every geometry is in the site frame, in metres."""
+
+    settings: SiteSettings
+    outlines: Outlines
+    centrelines: tuple[Centreline, ...]
+    surfaces: tuple[Area, ...]
+    keepouts: tuple[Area, ...]
+
+    @property
+    def id(self) -> str:
+        """The site's id, unique among the sites of one gateway."""
+        return self.settings.id
+
+    @property
+    def name(self) -> str:
+        """The site's name for people."""
+        return self.settings.name
+
+    @property
+    def version(self) -> int:
+        """How often the site was published."""
+        return self.settings.version
+
+    @property
+    def frame(self) -> SiteFrame:
+        """The frame that robots speak."""
+        return self.settings.frame
+
+    @property
+    def bounds(self) -> Bounds:
+        """The rectangle (x_min, y_min, x_max, y_max) in the site frame that robots may be sent into."""
+        return self.settings.bounds
+
+    def contains(self, x: float, y: float) -> bool:
+        """Tell whether (x, y), metres in the site frame, lies in the site's bounds."""
+        return self.bounds.contains(x, y)
+
+    def whole_map(self) -> RobotMap:
+        """Return the map that a robot gets after Ready: everything within the bounds (paper 1, III.A)."""
+        from ..robotmap.builder import Window
+
+        b = self.bounds
+        return self._map(
+            Window((b.x_min + b.x_max) / 2, (b.y_min + b.y_max) / 2, b.x_max - b.x_min, b.y_max - b.y_min)
+        )
+
+    def map_around(self, x: float, y: float, area: float) -> RobotMap:
+        """Return the answer to GetMap(x, y, A): a square of ``area`` m² centred on (x, y), site frame.
+
+        :raises MapError: when the three are no window (negative area, NaN).
+        """
+        from ..robotmap.builder import Window
+
+        return self._map(Window.square(x, y, area))
+
+    def _map(self, window: Window) -> RobotMap:
+        from ..robotmap.builder import build_map
+
+        return build_map(self.outlines, window, meta=self.map_meta())
+
+    def map_meta(self) -> dict[str, str]:
+        """Return the leading lines of every map of this site (design, section 6)."""
+        frame = self.frame
+        return {
+            "version": str(self.version),
+            "crs": frame.crs,
+            "origin": f"{frame.origin[0]:.3f},{frame.origin[1]:.3f}",
+            "rotation": f"{frame.rotation:.9f}",
+            "id": self.id,
+        }
