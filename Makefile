@@ -1,0 +1,50 @@
+# Fleet Supervisor. `make help` lists what there is; `make demo` and `make test` need nothing but this file.
+.DEFAULT_GOAL := help
+.DELETE_ON_ERROR:
+
+READY := .venv/.fleet-setup
+RUN := .venv/bin/python
+HEADLESS := env QT_QPA_PLATFORM=offscreen XDG_RUNTIME_DIR=$(CURDIR)/build/run
+
+# Given on the command line: make test ARGS="-k robotmap", make install PROFILE=work LINK=1
+ARGS ?=
+PROFILE ?= default
+LINK ?=
+export PYTHON
+
+.PHONY: help setup demo test lint desktop screenshots install package clean
+
+help: ## list the targets
+	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+
+setup: $(READY) ## install what is missing (QGIS, Xvfb, .venv); quick when nothing is
+
+$(READY): pyproject.toml scripts/setup.sh
+	@scripts/setup.sh
+
+build/run:
+	@mkdir -p -m 700 $@
+
+demo: $(READY) build/run ## run the main job once, headless, on the sample site; see build/demo/
+	@$(HEADLESS) $(RUN) scripts/demo.py
+
+test: $(READY) build/run ## run every test, style and import rules included, headless
+	@$(HEADLESS) $(RUN) -m pytest -q --durations=5 --durations-min=1 $(ARGS)
+
+lint: $(READY) ## check style, types and import rules only
+	@$(RUN) -m pytest -q tests/packaging/test_style.py
+
+desktop: $(READY) ## open QGIS Desktop with the plugin, the sample site and three driving robots
+	@$(RUN) scripts/desktop.py
+
+screenshots: $(READY) ## make docs/images/desktop.png: the same window, under Xvfb
+	@$(RUN) scripts/desktop.py --screenshot docs/images/desktop.png
+
+install: $(READY) ## put the plugin into your QGIS profile (PROFILE=name, LINK=1 links this folder)
+	@$(RUN) scripts/install_plugin.py --profile "$(PROFILE)" $(if $(LINK),--link)
+
+package: $(READY) ## build the zip for plugins.qgis.org
+	@$(RUN) scripts/package.py
+
+clean: ## remove build/ (what was built, not the environment)
+	rm -rf build

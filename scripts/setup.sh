@@ -1,0 +1,120 @@
+#!/bin/sh
+# Makes this machine ready: QGIS with its Python bindings, Xvfb, and the virtual environment .venv.
+# Uses what is there; installs what is missing with apt; says what to do where there is no apt.
+#
+#   PYTHON=/path/to/python3   the Python that can import qgis.core (default: the first one found)
+set -eu
+cd "$(dirname "$0")/.."
+
+VENV=.venv
+STAMP=$VENV/.fleet-setup
+OLDEST_QGIS=32200
+
+say() { printf 'setup: %s\n' "$*"; }
+
+stop() {
+    printf 'setup: error: %s\n' "$1" >&2
+    shift
+    for line in "$@"; do printf '       %s\n' "$line" >&2; done
+    exit 1
+}
+
+has() { command -v "$1" >/dev/null 2>&1; }
+
+# The first Python that can import PyQGIS. A python3 on PATH (pyenv, conda) often cannot while the system's can.
+find_pyqgis() {
+    for candidate in ${PYTHON:-python3 /usr/bin/python3 /usr/local/bin/python3}; do
+        if has "$candidate" && "$candidate" -c 'import qgis.core' >/dev/null 2>&1; then
+            command -v "$candidate"
+            return
+        fi
+    done
+}
+
+missing_packages() {
+    found=$(find_pyqgis)
+    [ -n "$found" ] || echo python3-qgis
+    has qgis.bin || has qgis || echo qgis
+    has qgis_process.bin || has qgis_process || echo qgis
+    "${found:-/usr/bin/python3}" -c 'import ensurepip' >/dev/null 2>&1 || echo python3-venv
+    has Xvfb || echo xvfb
+}
+
+as_root() {
+    if [ "$(id -u)" -eq 0 ]; then
+        "$@"
+    else
+        sudo "$@"
+    fi
+}
+
+may_become_root() {
+    [ "$(id -u)" -eq 0 ] || { has sudo && { [ -t 0 ] || sudo -n true 2>/dev/null; }; }
+}
+
+apt_install() {
+    as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends "$@"
+}
+
+install_packages() {
+    if ! has apt-get; then
+        stop "missing: $*. This machine has no apt, so nothing was installed." \
+            "Install QGIS 3.22 or newer with its Python bindings, and Xvfb, for example:" \
+            "  Fedora:  dnf install qgis python3-qgis xorg-x11-server-Xvfb" \
+            "  Arch:    pacman -S qgis python-gdal xorg-server-xvfb" \
+            "then run: make setup PYTHON=/path/to/the/python3/that/imports/qgis.core"
+    fi
+    if ! may_become_root; then
+        stop "missing: $*. Installing needs root, and sudo is not usable here." \
+            "Run as root: apt-get install --no-install-recommends $*" \
+            "then again:  make setup"
+    fi
+    log=$(mktemp)
+    say "installing $* (log: $log)"
+    if ! apt_install "$@" >"$log" 2>&1; then
+        say "the package lists are missing or old: apt-get update"
+        as_root apt-get update -q >>"$log" 2>&1 || tail -n 5 "$log" >&2
+        apt_install "$@" >>"$log" 2>&1 || {
+            tail -n 15 "$log" >&2
+            stop "apt-get could not install $*: see the lines above and $log." "Mend that, then run: make setup"
+        }
+    fi
+    rm -f "$log"
+}
+
+check_versions() {
+    "$1" - "$OLDEST_QGIS" <<'PYTHON' || stop "$1 cannot be used: see the line above." \
+        "Choose another one: make setup PYTHON=/path/to/python3"
+import sys
+from qgis.core import Qgis
+
+if sys.version_info < (3, 11):
+    sys.exit(f"the gateway needs Python 3.11 or newer, this one is {sys.version.split()[0]}")
+if Qgis.QGIS_VERSION_INT < int(sys.argv[1]):
+    sys.exit(f"QGIS 3.22 or newer is needed, this one is {Qgis.QGIS_VERSION}")
+PYTHON
+}
+
+make_venv() {
+    if [ -x $VENV/bin/python ] && ! $VENV/bin/python -c 'import qgis.core' >/dev/null 2>&1; then
+        say "$VENV was made by a Python without PyQGIS (or by one that is gone): making it anew"
+        rm -rf $VENV
+    fi
+    [ -x $VENV/bin/python ] || "$1" -m venv --system-site-packages $VENV
+    say "installing the Python packages of pyproject.toml into $VENV"
+    $VENV/bin/python -m pip install -q --disable-pip-version-check -e '.[test,lint]' || stop \
+        "pip could not install the Python packages: see the lines above." \
+        "Is the package index reachable from here? Then run: make setup"
+}
+
+packages=$(missing_packages | sort -u | tr '\n' ' ')
+# shellcheck disable=SC2086 - one word for each package
+[ -z "$packages" ] || install_packages $packages
+
+python=$(find_pyqgis)
+[ -n "$python" ] || stop "no Python can import qgis.core (tried: ${PYTHON:-python3 /usr/bin/python3 /usr/local/bin/python3})." \
+    "Tell which one QGIS uses: make setup PYTHON=/path/to/python3"
+check_versions "$python"
+make_venv "$python"
+touch $STAMP
+say "ready: QGIS $($VENV/bin/python -c 'from qgis.core import Qgis; print(Qgis.QGIS_VERSION)'), $($VENV/bin/python --version), $VENV"
