@@ -63,7 +63,8 @@ def write_layers(file: Path, layers: Sequence[Layer], crs: str, stamp: str) -> N
                 crs=crs,
                 append=file.exists(),
                 dataset_options={"VERSION": "1.3"},
-                dataset_metadata=None if file.exists() else {_STAMP: stamp},
+                # Not on the dataset: GDAL writes that into an .aux.xml file beside the site on every reading.
+                layer_metadata={_STAMP: stamp},
             )
     except (pyogrio.errors.DataSourceError, pyogrio.errors.DataLayerError, OSError) as error:
         raise LayerError(
@@ -94,7 +95,7 @@ def _check_stamp(file: Path, specs: Sequence[LayerSpec], present: set[str], stam
             raise LayerError(
                 f"{file} has no layer {spec.name!r}; it has {', '.join(sorted(present)) or 'none'}. {_REPAIR}"
             )
-    found = (_pyogrio().read_info(str(file), layer=specs[0].name)["dataset_metadata"] or {}).get(_STAMP)
+    found = (_pyogrio().read_info(str(file), layer=specs[0].name)["layer_metadata"] or {}).get(_STAMP)
     if found != stamp:
         raise LayerError(
             f"{file} belongs to {found or 'no publication'} and the settings beside it to {stamp}: "

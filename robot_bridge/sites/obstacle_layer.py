@@ -109,8 +109,8 @@ def _lines(geometry: Any, shape_type: ShapeType, where: str) -> Iterator[tuple[P
             yield np.asarray(line.coords)[:, :2], False
     else:
         raise LayerError(
-            f"{where}: a {geometry.geom_type} cannot be an obstacle. Use lines or polygons in the source layer "
-            "and publish the site again."
+            f"{where}: a {geometry.geom_type} cannot be an obstacle. Use lines or polygons in the source "
+            "layer and publish the site again."
         )
 
 
