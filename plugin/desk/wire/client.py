@@ -1,0 +1,124 @@
+"""Keeps a link to the gateway up: connects, converses, and tries again when it breaks."""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from types import ModuleType
+from typing import Any
+
+from ...errors import LinkError
+from .addresses import explain
+from .backoff import Backoff
+from .mailbox import Mailbox
+from .outbox import Order
+from .protocol import DeskProtocol
+from .status import LinkStatus, Phase
+
+ANSWER_WITHIN = 5.0
+PING_EVERY = 2.0
+PONG_WITHIN = 2.5
+"""Together under 5 s: a cable that is pulled out shows before the operator wonders."""
+CLOSE_WITHIN = 0.2
+LARGEST_MESSAGE = 64 * 2**20
+
+
+class DeskClient:
+    """The link to one gateway, for as long as :meth:`run` runs. All methods belong to its event loop."""
+
+    def __init__(self, url: str, operator: str, mailbox: Mailbox, library: ModuleType, rate: float = 10.0):
+        self._url = url
+        self._mailbox = mailbox
+        self._library = library
+        self._protocol = DeskProtocol(operator, rate, url, mailbox, time.monotonic)
+        self._backoff = Backoff()
+        self._outgoing: asyncio.Queue[str] = asyncio.Queue()
+
+    async def run(self) -> None:
+        """Connect and stay connected until cancelled, or until trying again cannot help."""
+        reason = ""
+        try:
+            while True:
+                self._mailbox.put_link(LinkStatus(Phase.CONNECTING, reason))
+                failure = await self._attempt()
+                reason = str(failure)
+                if failure.final:
+                    self._mailbox.put_link(LinkStatus(Phase.FAILED, reason))
+                    return
+                wait = self._backoff.next_wait()
+                due = time.monotonic() + wait
+                self._mailbox.put_link(LinkStatus(Phase.RETRYING, reason, next_try=due))
+                await asyncio.sleep(wait)
+        finally:
+            self._protocol.end()
+
+    def submit(self, order: Order) -> None:
+        """Send ``order`` now, or as soon as there is a link again."""
+        self._send_all(self._protocol.submit(order))
+
+    async def _attempt(self) -> LinkError:
+        """Hold one link and return why it ended."""
+        try:
+            async with self._connect() as socket:
+                await self._converse(socket)
+        except LinkError as error:
+            return error
+        except Exception as error:
+            explained = explain(error, self._url, self._library.exceptions)
+            if explained is None:
+                raise
+            return explained
+        finally:
+            self._protocol.ready = False
+        return LinkError(f"The gateway at {self._url} closed the link. It is tried again.")
+
+    def _connect(self) -> Any:
+        options: dict[str, Any] = {
+            "open_timeout": ANSWER_WITHIN,
+            "ping_interval": PING_EVERY,
+            "ping_timeout": PONG_WITHIN,
+            "close_timeout": CLOSE_WITHIN,
+            "max_size": LARGEST_MESSAGE,
+            "compression": None,
+        }
+        version = self._library.version.version
+        if int(version.split(".")[0]) >= 15:
+            # A gateway stands in the site's own network, where a proxy for the web does not lead.
+            options["proxy"] = None
+        return self._library.connect(self._url, **options)
+
+    async def _converse(self, socket: Any) -> None:
+        self._outgoing = asyncio.Queue()
+        self._send_all(self._protocol.begin())
+        tasks = [asyncio.ensure_future(self._read(socket)), asyncio.ensure_future(self._write(socket))]
+        try:
+            done, _ = await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+            for task in done:
+                task.result()
+        finally:
+            for task in tasks:
+                task.cancel()
+            await asyncio.gather(*tasks, return_exceptions=True)
+
+    async def _read(self, socket: Any) -> None:
+        try:
+            while not self._protocol.ready:
+                text = await asyncio.wait_for(socket.recv(), ANSWER_WITHIN)
+                self._send_all(self._protocol.receive(text))
+        except asyncio.TimeoutError as error:
+            raise LinkError(
+                f"What answers at {self._url} opens a WebSocket but did not answer the desk's greeting "
+                f"within {ANSWER_WITHIN:g} s. Check that the URL leads to a Fleet Supervisor gateway."
+            ) from error
+        self._backoff.reset()
+        self._mailbox.put_link(LinkStatus(Phase.CONNECTED))
+        async for text in socket:
+            self._send_all(self._protocol.receive(text))
+
+    async def _write(self, socket: Any) -> None:
+        while True:
+            await socket.send(await self._outgoing.get())
+
+    def _send_all(self, texts: list[str]) -> None:
+        for text in texts:
+            self._outgoing.put_nowait(text)

@@ -1,0 +1,29 @@
+"""How the link to the gateway stands."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+
+class Phase(str, Enum):
+    """The stages of the link."""
+
+    CLOSED = "closed"
+    CONNECTING = "connecting"
+    CONNECTED = "connected"
+    RETRYING = "retrying"
+    FAILED = "failed"
+
+
+@dataclass(frozen=True)
+class LinkStatus:
+    """The link's stage, why it is not connected, and when the next attempt is due (monotonic clock)."""
+
+    phase: Phase
+    reason: str = ""
+    next_try: float | None = None
+
+    def wait(self, now: float) -> float:
+        """Return the seconds until the next attempt, 0 when it is due."""
+        return max(0.0, self.next_try - now) if self.next_try is not None else 0.0

@@ -1,0 +1,34 @@
+"""What can go wrong in the plugin; every message names what, where and what to do."""
+
+from __future__ import annotations
+
+
+class FleetError(Exception):
+    """Something that the operator has to know, in words that can be shown as they are."""
+
+
+class LibraryMissingError(FleetError):
+    """A Python package that the plugin needs is not there, or too old."""
+
+
+class AddressError(FleetError):
+    """The gateway's URL cannot be used."""
+
+
+class LinkError(FleetError):
+    """The gateway could not be reached, or what answered is no gateway.
+
+    ``final`` is true when trying again cannot help before somebody changes something.
+    """
+
+    def __init__(self, message: str, *, final: bool = False):
+        super().__init__(message)
+        self.final = final
+
+
+class NotSentError(FleetError):
+    """What the operator asked for was not sent."""
+
+
+class PlacementError(FleetError):
+    """Positions of the site cannot be placed on this canvas."""

@@ -1,0 +1,52 @@
+"""Where the plugin takes the package ``websockets`` from.
+
+A release carries its own copy in ``plugin/vendor/websockets``, as pure Python, so that a stock QGIS needs
+nothing more. It is imported under its full name inside the plugin: ``sys.path`` stays as it is, and a
+copy that is installed for other programs is neither hidden nor replaced.
+"""
+
+from __future__ import annotations
+
+import importlib
+import importlib.util
+from types import ModuleType
+
+from .errors import LibraryMissingError
+
+OLDEST = 14
+"""The first version whose ``asyncio`` client has the interface that the connection uses."""
+
+
+def websocket_library() -> ModuleType:
+    """Return the package ``websockets``: the plugin's own copy if it has one, else the installed one.
+
+    ``connect`` and ``exceptions`` can be used on what is returned.
+
+    :raises LibraryMissingError: when there is none, or the installed one is older than :data:`OLDEST`.
+    """
+    library = _package(f"{__package__}.vendor.websockets") or _package("websockets")
+    if library is None:
+        raise LibraryMissingError(
+            "The Python package websockets is missing, which the connection to the gateway needs. Install "
+            "the plugin from its release zip, which contains it, or run 'python3 -m pip install websockets' "
+            "with the Python that QGIS uses, and restart QGIS."
+        )
+    version = importlib.import_module(".version", library.__name__).version
+    if int(version.split(".")[0]) < OLDEST:
+        raise LibraryMissingError(
+            f"The Python package websockets {version} in {library.__path__[0]} is too old for the connection "
+            f"to the gateway. Install the plugin from its release zip, which contains a newer one, or run "
+            f"'python3 -m pip install \"websockets>={OLDEST}\"' with the Python that QGIS uses, and restart "
+            "QGIS."
+        )
+    importlib.import_module(".exceptions", library.__name__)
+    return library
+
+
+def _package(name: str) -> ModuleType | None:
+    try:
+        found = importlib.util.find_spec(name)
+    except ModuleNotFoundError:
+        return None
+    # A folder without __init__.py is found too, as a namespace, and is no library.
+    return importlib.import_module(name) if found is not None and found.origin else None
