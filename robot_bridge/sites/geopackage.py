@@ -11,6 +11,7 @@ import numpy as np
 
 from .errors import LayerError
 from .layers import LayerSpec
+from .projections import crs_of, projections
 
 GEOPACKAGE_FILE = "site.gpkg"
 _STAMP = "FLEET_SITE"
@@ -117,8 +118,6 @@ def _read(file: Path, spec: LayerSpec, crs: str) -> Layer:
 
 
 def _check_crs(file: Path, spec: LayerSpec, found: str | None, wanted: str) -> None:
-    from .projections import crs_of
-
     if found is None or crs_of(found) != crs_of(wanted):
         raise LayerError(
             f"{file}, layer {spec.name}: its CRS is {found or 'not stated'}, and site.crs is {wanted}. "
@@ -153,6 +152,7 @@ def check_features(layer: Layer, place: str) -> None:
 
 
 def _pyogrio() -> Any:
+    projections()  # pyogrio imports pyproj, which warns about a database that is found only here
     try:
         import pyogrio
         import pyogrio.raw
