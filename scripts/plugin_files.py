@@ -1,0 +1,79 @@
+"""What of the repository makes up the plugin, and the copy of websockets that goes with it."""
+
+from __future__ import annotations
+
+import importlib.metadata
+from collections.abc import Iterator
+from configparser import ConfigParser
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+PACKAGE = "fleet_supervisor"
+PARTS = ("__init__.py", "metadata.txt", "LICENSE", "CHANGELOG.md", "plugin", "robot_bridge", "resources")
+VENDORED = "websockets"
+VENDOR = Path("plugin") / "vendor"
+VENDOR_NOTE = '"""Packages that come with the release, unchanged; each holds its own licence."""\n'
+
+LEFT_OUT_FOLDERS = {"__pycache__", "vendor"}
+LEFT_OUT_SUFFIXES = {".pyc", ".pyo", ".so", ".pyd", ".gpkg-wal", ".gpkg-shm", ".qgz~", ".aux.xml"}
+
+
+class PackageError(Exception):
+    """The plugin cannot be packed; the text says what is missing and what to do."""
+
+
+def version(root: Path = ROOT) -> str:
+    """Return the version of ``metadata.txt``."""
+    metadata = ConfigParser(interpolation=None)
+    metadata.read(root / "metadata.txt", encoding="utf-8")
+    return metadata["general"]["version"]
+
+
+def plugin_files(root: Path = ROOT) -> dict[str, bytes]:
+    """Return every file of the plugin, by its path below the plugin's folder, in a fixed order.
+
+    :raises PackageError: when a part is missing or there is no pure Python copy of websockets to take along.
+    """
+    files = {path.relative_to(root).as_posix(): path.read_bytes() for path in _own_files(root)}
+    files |= {f"{VENDOR.as_posix()}/{name}": content for name, content in _vendored_files()}
+    return dict(sorted(files.items()))
+
+
+def _own_files(root: Path) -> Iterator[Path]:
+    for part in PARTS:
+        path = root / part
+        if path.is_file():
+            yield path
+        elif path.is_dir():
+            yield from (file for file in path.rglob("*") if file.is_file() and _belongs(file, root))
+        else:
+            raise PackageError(f"{path} is missing and belongs to the plugin; restore it from git")
+
+
+def _belongs(file: Path, root: Path) -> bool:
+    path = file.relative_to(root)
+    hidden = any(part.startswith(".") for part in path.parts)
+    maker = path.parts[0] == "resources" and path.suffix == ".py"
+    left_out = LEFT_OUT_FOLDERS & set(path.parts) or any(path.name.endswith(end) for end in LEFT_OUT_SUFFIXES)
+    return not (hidden or maker or left_out)
+
+
+def _vendored_files() -> Iterator[tuple[str, bytes]]:
+    try:
+        distribution = importlib.metadata.distribution(VENDORED)
+    except importlib.metadata.PackageNotFoundError:
+        raise PackageError(f"{VENDORED} is not installed beside {__file__}; run: make setup") from None
+    yield "__init__.py", VENDOR_NOTE.encode()
+    licences = 0
+    for entry in distribution.files or ():
+        source = Path(str(distribution.locate_file(entry)))
+        if entry.parts[0] == VENDORED and (entry.suffix == ".py" or entry.name == "py.typed"):
+            yield entry.as_posix(), source.read_bytes()
+        elif entry.name.upper().startswith("LICEN"):
+            licences += 1
+            yield f"{VENDORED}/LICENSE", source.read_bytes()
+    if licences != 1:
+        raise PackageError(
+            f"{VENDORED} {distribution.version} has {licences} licence files where one is expected; "
+            f"install it from its wheel: .venv/bin/python -m pip install --force-reinstall {VENDORED}"
+        )
