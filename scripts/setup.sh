@@ -2,7 +2,7 @@
 # Makes this machine ready: QGIS with its Python bindings, Xvfb, and the virtual environment .venv.
 # Uses what is there; installs what is missing with apt; says what to do where there is no apt.
 #
-#   PYTHON=/path/to/python3   the Python that can import qgis.core (default: the first one found)
+#   PYTHON=/path/to/python3   the Python that can import qgis.core (default: the first such one on PATH)
 set -eu
 cd "$(dirname "$0")/.."
 
@@ -21,22 +21,27 @@ stop() {
 
 has() { command -v "$1" >/dev/null 2>&1; }
 
-# The first Python that can import PyQGIS. A python3 on PATH (pyenv, conda) often cannot while the system's can.
+# The first Python that can import PyQGIS. The first python3 on PATH (pyenv, conda) often cannot while the
+# system's, further back on PATH, can.
 find_pyqgis() {
-    for candidate in ${PYTHON:-python3 /usr/bin/python3 /usr/local/bin/python3}; do
-        if has "$candidate" && "$candidate" -c 'import qgis.core' >/dev/null 2>&1; then
-            command -v "$candidate"
-            return
+    printf '%s\n' "$PATH" | tr ':' '\n' | while read -r folder; do
+        [ -x "$folder/python3" ] || continue
+        if "$folder/python3" -c 'import qgis.core' >/dev/null 2>&1; then
+            echo "$folder/python3"
+            break
         fi
     done
 }
 
 missing_packages() {
-    found=$(find_pyqgis)
-    [ -n "$found" ] || echo python3-qgis
+    if [ -z "$python" ]; then
+        echo python3-qgis
+        echo python3-venv
+    elif ! "$python" -c 'import ensurepip' >/dev/null 2>&1; then
+        echo python3-venv
+    fi
     has qgis.bin || has qgis || echo qgis
     has qgis_process.bin || has qgis_process || echo qgis
-    "${found:-/usr/bin/python3}" -c 'import ensurepip' >/dev/null 2>&1 || echo python3-venv
     has Xvfb || echo xvfb
 }
 
@@ -107,14 +112,19 @@ make_venv() {
         "Is the package index reachable from here? Then run: make setup"
 }
 
+if [ -n "${PYTHON:-}" ]; then
+    "$PYTHON" -c 'import qgis.core' >/dev/null || stop "PYTHON=$PYTHON cannot import qgis.core: see the line above." \
+        "Give the Python that QGIS uses, or leave PYTHON out to have it found or installed."
+fi
+python=${PYTHON:-$(find_pyqgis)}
 packages=$(missing_packages | sort -u | tr '\n' ' ')
 # shellcheck disable=SC2086 - one word for each package
 [ -z "$packages" ] || install_packages $packages
 
-python=$(find_pyqgis)
-[ -n "$python" ] || stop "no Python can import qgis.core (tried: ${PYTHON:-python3 /usr/bin/python3 /usr/local/bin/python3})." \
-    "Tell which one QGIS uses: make setup PYTHON=/path/to/python3"
+python=${python:-$(find_pyqgis)}
+[ -n "$python" ] || stop "QGIS is installed, but no python3 on PATH can import qgis.core." \
+    "Tell which Python QGIS uses: make setup PYTHON=/path/to/python3"
 check_versions "$python"
 make_venv "$python"
 touch $STAMP
-say "ready: QGIS $($VENV/bin/python -c 'from qgis.core import Qgis; print(Qgis.QGIS_VERSION)'), $($VENV/bin/python --version), $VENV"
+say "ready: $($VENV/bin/python -c 'from qgis.core import Qgis; print("QGIS", Qgis.QGIS_VERSION)'), $VENV"

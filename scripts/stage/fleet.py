@@ -1,0 +1,49 @@
+"""A real gateway on the sample site, with SQLite, and three simulated robots."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+from plugin_files import ROOT
+
+from .processes import Processes
+
+SITE = ROOT / "resources" / "sample_site"
+PROJECT = SITE / "sample_site.qgz"
+
+
+@dataclass(frozen=True)
+class Start:
+    """Where a robot stands at first (metres, radians, site frame) and whether it connects by SQL."""
+
+    name: str
+    pose: tuple[float, float, float]
+    over_sql: bool = False
+
+
+STARTS = (
+    Start("r1", (0.0, 0.0, 0.0)),
+    Start("r2", (0.0, 0.0, 0.0), over_sql=True),
+    Start("r3", (0.0, 0.0, 0.0)),
+)
+
+
+def start_gateway(processes: Processes, database: Path) -> str:
+    """Start a gateway on any free port and return its address, ``ws://127.0.0.1:PORT``.
+
+    :raises StageError: when it does not come up.
+    """
+    serve = ["serve", "--site", SITE, "--port", "0", "--database", f"sqlite:///{database}"]
+    processes.start("gateway", [sys.executable, "-m", "robot_bridge", *serve])
+    return processes.wait_for_line("gateway", r"listening on (ws://[\w.]+:\d+)", 30).group(1)
+
+
+def start_robots(processes: Processes, address: str, database: Path) -> None:
+    """Start the three robots: two over WebSocket, one over SQL."""
+    for start in STARTS:
+        way = ["--database", f"sqlite:///{database}"] if start.over_sql else ["--url", f"{address}/robot"]
+        pose = ",".join(str(number) for number in start.pose)
+        robot = ["robot", *way, "--name", start.name, f"--pose={pose}"]
+        processes.start(start.name, [sys.executable, "-m", "robot_bridge", *robot])

@@ -1,0 +1,35 @@
+"""What the packaging tests share: the scripts, the built zip, and a Python with PyQGIS but without the venv."""
+
+from __future__ import annotations
+
+import sys
+import zipfile
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "scripts"))
+
+
+@pytest.fixture(scope="session")
+def release(tmp_path_factory) -> Path:
+    """The plugin's zip, built now."""
+    from package import build
+
+    return build(tmp_path_factory.mktemp("release"))
+
+
+@pytest.fixture(scope="session")
+def unpacked(release, tmp_path_factory) -> Path:
+    """A plugins folder that holds what is in the zip and nothing else."""
+    folder = tmp_path_factory.mktemp("plugins")
+    with zipfile.ZipFile(release) as archive:
+        archive.extractall(folder)
+    return folder
+
+
+@pytest.fixture(scope="session")
+def stock_python() -> str:
+    """The Python under the virtual environment: it has PyQGIS and none of the environment's packages."""
+    return str(Path(sys.base_exec_prefix) / "bin" / "python3")

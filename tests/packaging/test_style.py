@@ -1,0 +1,59 @@
+"""The code keeps its own rules: style, types, and who may import whom."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from import_rules import check
+
+
+def run(root: Path, *command: str) -> subprocess.CompletedProcess[str]:
+    program = Path(sys.executable).with_name(command[0])
+    return subprocess.run([program, *command[1:]], cwd=root, capture_output=True, text=True, check=False)
+
+
+def test_ruff_finds_nothing(root):
+    done = run(root, "ruff", "check", "--quiet", "--output-format=concise", ".")
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_mypy_finds_nothing_in_the_bridge(root):
+    done = run(root, "mypy", "robot_bridge")
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_everyone_imports_only_what_they_may(root):
+    done = check(root, quiet=True)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+FORBIDDEN = [
+    ("robot_bridge/messages.py", "import qgis.core", "The bridge runs without QGIS"),
+    ("robot_bridge/messages.py", "from . import store", "The floors of the bridge"),
+    ("robot_bridge/robotmap/model.py", "from ..sites import frame", "The floors of the bridge"),
+    ("robot_bridge/fleet.py", "from robot_bridge import messages", "Inside a package imports are relative"),
+    ("plugin/supervisor.py", "from ..robot_bridge import store", "The plugin uses of the bridge only"),
+    ("plugin/supervisor.py", "from PyQt5 import QtCore", "The plugin uses Qt through qgis.PyQt"),
+    ("plugin/processing/provider.py", "from ..desk import colours", "The algorithms know nothing of the desk"),
+]
+
+
+@pytest.mark.parametrize(("module", "line", "rule"), FORBIDDEN)
+def test_a_forbidden_import_is_caught(root, tmp_path, module, line, rule):
+    tree = tmp_path / "tree"
+    for part in ("plugin", "robot_bridge"):
+        shutil.copytree(root / part, tree / part, ignore=shutil.ignore_patterns("__pycache__"))
+    for name in ("__init__.py", "pyproject.toml"):
+        shutil.copy(root / name, tree / name)
+    path = tree / module
+    path.write_text(f"{path.read_text(encoding='utf-8')}\n{line}\n", encoding="utf-8")
+
+    done = check(tree, quiet=True)
+
+    assert done.returncode == 1
+    broken = [text for text in done.stdout.splitlines() if text.endswith(" BROKEN")]
+    assert any(text.startswith(rule) for text in broken), done.stdout

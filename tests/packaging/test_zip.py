@@ -1,0 +1,98 @@
+"""The zip is what plugins.qgis.org accepts (its rules: docs.qgis.org, "Releasing your plugin")."""
+
+from __future__ import annotations
+
+import re
+import zipfile
+from configparser import ConfigParser
+from pathlib import PurePosixPath
+
+import pytest
+from package import LIMIT, build
+from plugin_files import PackageError, plugin_files, version
+
+REQUIRED_KEYS = (
+    "name",
+    "qgisMinimumVersion",
+    "description",
+    "about",
+    "version",
+    "author",
+    "email",
+    "repository",
+    "tracker",
+)
+BINARIES = (".so", ".pyd", ".dll", ".dylib", ".exe", ".pyc", ".pyo", ".a", ".o", ".whl", ".c")
+
+
+@pytest.fixture(scope="module")
+def names(release):
+    with zipfile.ZipFile(release) as archive:
+        return archive.namelist()
+
+
+@pytest.fixture(scope="module")
+def metadata(release):
+    parser = ConfigParser(interpolation=None)
+    parser.optionxform = str
+    with zipfile.ZipFile(release) as archive:
+        parser.read_string(archive.read("fleet_supervisor/metadata.txt").decode("utf-8"))
+    return parser["general"]
+
+
+def test_one_folder_holds_everything(names):
+    assert {PurePosixPath(name).parts[0] for name in names} == {"fleet_supervisor"}
+    assert {"metadata.txt", "__init__.py", "LICENSE"} <= {name.split("/", 1)[1] for name in names}
+
+
+def test_no_binary_no_test_no_hidden_file_is_in_it(names):
+    assert not [name for name in names if name.endswith(BINARIES)]
+    parts = {part for name in names for part in PurePosixPath(name).parts}
+    assert not parts & {"__pycache__", "__MACOSX", "tests", "scripts", ".git"}
+    assert not [part for part in parts if part.startswith(".")]
+
+
+def test_nothing_in_it_is_a_link_or_executable(release):
+    with zipfile.ZipFile(release) as archive:
+        assert {entry.external_attr >> 16 for entry in archive.infolist()} == {0o100644}
+
+
+def test_it_is_small_enough(release):
+    assert release.stat().st_size < LIMIT
+
+
+@pytest.mark.parametrize("key", REQUIRED_KEYS)
+def test_the_metadata_has_every_required_key(metadata, key):
+    assert metadata.get(key, "").strip()
+
+
+def test_the_metadata_agrees_with_the_rest(metadata, root, names):
+    project = (root / "pyproject.toml").read_text(encoding="utf-8")
+    assert f'\nversion = "{metadata["version"]}"\n' in project
+    assert re.fullmatch(r"\d+\.\d+\.\d+", metadata["version"])
+    assert f"fleet_supervisor/{metadata['icon']}" in names
+    assert metadata["hasProcessingProvider"] == "yes"
+
+
+def test_the_sample_site_comes_along(names):
+    site = "fleet_supervisor/resources/sample_site/"
+    assert {f"{site}{name}" for name in ("site.toml", "site.gpkg", "sample_site.qgz")} <= set(names)
+
+
+def test_websockets_comes_along_as_pure_python_with_its_licence(names):
+    vendor = "fleet_supervisor/plugin/vendor/websockets/"
+    assert {f"{vendor}{name}" for name in ("__init__.py", "asyncio/client.py", "LICENSE")} <= set(names)
+    assert {PurePosixPath(name).suffix for name in names if name.startswith(vendor)} <= {".py", ".typed", ""}
+
+
+def test_the_same_input_gives_the_same_bytes(release, tmp_path):
+    assert build(tmp_path).read_bytes() == release.read_bytes()
+
+
+def test_a_missing_part_is_named(tmp_path):
+    with pytest.raises(PackageError, match=r"__init__\.py is missing .* restore it from git"):
+        plugin_files(tmp_path)
+
+
+def test_the_file_name_carries_the_version(release):
+    assert release.name == f"fleet_supervisor-{version()}.zip"
