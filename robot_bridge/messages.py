@@ -255,7 +255,7 @@ class SiteReport:
 
     id: str
     name: str
-    version: str
+    version: int
     crs: str
     origin: tuple[float, float]
     rotation: float

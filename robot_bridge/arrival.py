@@ -1,0 +1,105 @@
+"""Has a robot done what it was told? Judged from its poses, not from its word."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from .messages import Abort, SendPos, SetPath, SetPosEnd
+
+STANDING_SPEED = 0.05
+"""m/s below which a robot counts as standing."""
+HEADING_TOLERANCE = 0.15
+"""radians; only where the target gives a heading."""
+CORRIDOR = 2.0
+"""metres a robot may be off its path and still be seen to advance along it."""
+LOOK_AHEAD = 5.0
+"""metres of path searched ahead of the place reached last, so that a loop is not cut short."""
+LOOK_AHEAD_TIME = 2.0
+"""seconds of driving added to it: a fast robot is far ahead by its next pose."""
+
+
+def standing(pose: SendPos) -> bool:
+    """Tell whether the robot stands."""
+    return abs(pose.v) <= STANDING_SPEED
+
+
+@dataclass
+class TargetArrival:
+    """Judges SetPosEnd: the robot stands within ``tolerance`` metres of the target."""
+
+    target: SetPosEnd
+    tolerance: float
+
+    def deviation(self, pose: SendPos) -> float | None:
+        """Return metres between robot and target once it has arrived, else None."""
+        distance = math.hypot(pose.x - self.target.x, pose.y - self.target.y)
+        if distance > self.tolerance or not standing(pose):
+            return None
+        if self.target.theta is not None and _turn(pose.theta, self.target.theta) > HEADING_TOLERANCE:
+            return None
+        return distance
+
+
+class PathArrival:
+    """Judges SetPath: the robot followed the path and stands within ``tolerance`` metres of its end.
+
+    A path may end where it began, so standing at the end counts only after the whole of it was driven.
+    With ``under_way`` the first pose may be anywhere along the path.
+    """
+
+    def __init__(self, path: SetPath, tolerance: float, *, under_way: bool = False) -> None:
+        self._points = np.asarray(path.points, dtype=np.float64)
+        steps = np.hypot(*np.diff(self._points, axis=0).T)
+        self._stations = np.concatenate([[0.0], np.cumsum(steps)])
+        self._tolerance = tolerance
+        self._seek = under_way
+        self.driven = 0.0
+
+    def deviation(self, pose: SendPos) -> float | None:
+        """Return metres between robot and end of path once it has arrived, else None."""
+        self._follow(pose)
+        distance = math.hypot(pose.x - self._points[-1, 0], pose.y - self._points[-1, 1])
+        at_end = self.driven >= self._stations[-1] - self._tolerance
+        return distance if at_end and distance <= self._tolerance and standing(pose) else None
+
+    def _follow(self, pose: SendPos) -> None:
+        start, step = self._points[:-1], np.diff(self._points, axis=0)
+        length2 = np.maximum((step**2).sum(axis=1), 1e-12)
+        along = ((np.array([pose.x, pose.y]) - start) * step).sum(axis=1) / length2
+        along = np.clip(along, 0.0, 1.0)
+        foot = start + along[:, None] * step
+        off = np.hypot(foot[:, 0] - pose.x, foot[:, 1] - pose.y)
+        station = self._stations[:-1] + along * np.sqrt(length2)
+        reach = LOOK_AHEAD + LOOK_AHEAD_TIME * abs(pose.v)
+        ahead = (station > self.driven) & (station <= self.driven + reach)
+        near = (off <= CORRIDOR) & (ahead | self._seek)
+        if near.any():
+            self._seek = False
+            self.driven = float(station[near][np.argmin(off[near])])
+
+
+class AbortArrival:
+    """Judges Abort: the robot stands."""
+
+    def deviation(self, pose: SendPos) -> float | None:
+        """Return 0.0 once the robot stands, else None."""
+        return 0.0 if standing(pose) else None
+
+
+Arrival = TargetArrival | PathArrival | AbortArrival
+
+
+def judge(command: SetPosEnd | SetPath | Abort, tolerance: float, *, under_way: bool = False) -> Arrival:
+    """Return the judge of a command; ``tolerance`` is metres, ``under_way`` if the robot may be driving."""
+    if isinstance(command, SetPosEnd):
+        return TargetArrival(command, tolerance)
+    if isinstance(command, SetPath):
+        return PathArrival(command, tolerance, under_way=under_way)
+    return AbortArrival()
+
+
+def _turn(a: float, b: float) -> float:
+    return abs(math.remainder(a - b, math.tau))

@@ -1,0 +1,19 @@
+"""The exception family of the gateway and the reference robot."""
+
+from __future__ import annotations
+
+
+class BridgeError(Exception):
+    """Something the bridge cannot do; the text names what was wrong, where, and what to do."""
+
+
+class StoreError(BridgeError):
+    """The database cannot be opened, read or written."""
+
+
+class RefusedError(BridgeError):
+    """A request that was understood and is not done: unknown robot, target outside the site, ..."""
+
+
+class NotReadyError(BridgeError):
+    """A robot speaks that has not said Ready to this database."""

@@ -1,0 +1,326 @@
+"""The fleet: what robots say and ask goes in here, and so does what operators want of them.
+
+Links and the desk server call it; it knows neither. Everything that must outlive the process is committed
+before it is answered.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import time
+import uuid
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+from sqlalchemy import Connection
+
+from .command_book import CommandBook, Order
+from .errors import RefusedError
+from .messages import (
+    COMMANDS,
+    Abort,
+    Alive,
+    Answer,
+    CommandReport,
+    GetMap,
+    MessageError,
+    OpAck,
+    Ready,
+    Request,
+    RobotReport,
+    Send,
+    SendPos,
+    SetMap,
+    SetPath,
+    SetPosEnd,
+    SiteReport,
+    Start,
+    Stopped,
+    TargetPosition,
+    check_robot_name,
+    to_json,
+)
+from .robots import Robot, Robots
+from .store import answers, commands, requests
+from .store import robots as stored_robots
+from .store.answers import AnswerRow
+from .store.database import Database
+from .wire import decode_answer
+
+log = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What comes of a robot's request: its OpAck, an answer, and the kinds of older answers that are void."""
+
+    robot: str
+    ack: OpAck | None = None
+    answer: SetMap | Start | None = None
+    void: tuple[str, ...] = ()
+
+    def rows(self, *, acks: bool) -> list[tuple[str, Answer]]:
+        """Return what is to be written into SA, the OpAck first."""
+        messages: list[Answer | None] = [self.ack if acks else None, self.answer]
+        return [(self.robot, message) for message in messages if message is not None]
+
+
+class MapSource(Protocol):
+    """What the fleet needs of a site: its facts and its maps in the binary format."""
+
+    report: SiteReport
+
+    def contains(self, x: float, y: float) -> bool:
+        """Tell whether (x, y), metres in the site frame, lies on the site."""
+
+    def whole_map(self) -> bytes:
+        """Return the map of the whole site."""
+
+    def map_around(self, x: float, y: float, area: float) -> bytes:
+        """Return the map of a square of ``area`` square metres centred on (x, y)."""
+
+
+class Listener(Protocol):
+    """An operator's session, told of every step of every command."""
+
+    def command_changed(self, command: CommandReport) -> None:
+        """Take note of a command's newest report; must not block."""
+
+
+class Fleet:
+    """The robots of one site and their commands, on one database."""
+
+    def __init__(
+        self,
+        site: MapSource,
+        database: Database,
+        clock: Callable[[], float] = time.time,
+        expire_after: float = 300.0,
+    ) -> None:
+        self.site = site
+        self._database = database
+        self._clock = clock
+        self._expire_after = expire_after
+        self.robots = Robots(site.report.stale_after, site.report.lost_after)
+        self._book = CommandBook(
+            database, site.report.reached_tolerance, clock, self._command_changed, self._outbox_changed
+        )
+        self._fixes: list[stored_robots.Fix] = []
+        self._unsaved: set[str] = set()
+        self._outboxes: dict[str, asyncio.Event] = {}
+        self._listeners: set[Listener] = set()
+
+    async def start(self) -> None:
+        """Go on where the last gateway on this database stopped, and tell its robots Start."""
+        known = await self._database.run(stored_robots.load)
+        for robot in known:
+            self.robots.restore(robot, self._clock())
+        await self._book.restore()
+        for robot in known:
+            self.robots.assign(robot.name, self._book.busy_with(robot.name))
+        greetings = [Outcome(robot.name, answer=Start()) for robot in known if robot.link == "sql"]
+        await self.finish(greetings, [], acks=False)
+
+    # --- robots ---------------------------------------------------------------------------------------
+
+    async def receive(self, robot: str, link: str, request: Request, id: int | None) -> Outcome:
+        """Deal with request ``id`` of a robot; its link sends what comes of it, through :meth:`finish`.
+
+        :raises NotReadyError: from a robot that never said Ready.
+        """
+        now = self._clock()
+        if isinstance(request, Ready):
+            return await self._receive_ready(robot, link, request, id)
+        if isinstance(request, SendPos):
+            await self._receive_pose(robot, link, request, now)
+            return Outcome(robot)
+        known = self.robots.heard(robot, link, now, stopped=self._stops(robot, request))
+        self._unsaved.add(known.name)
+        if isinstance(request, OpAck):
+            await self._book.acknowledged(robot, request)
+        elif isinstance(request, GetMap):
+            content = await asyncio.to_thread(self.site.map_around, request.x, request.y, request.area)
+            return Outcome(robot, OpAck(id=id), SetMap(content))
+        return Outcome(robot, OpAck(id=id) if request.acknowledged else None)
+
+    async def finish(self, outcomes: list[Outcome], request_ids: list[int], *, acks: bool) -> None:
+        """Write the answers of requests into SA, with their OpAcks if ``acks``, and delete them from RR.
+
+        One transaction: a request is either answered and gone, or will be dealt with again.
+        """
+        if outcomes or request_ids:
+            rows = [row for outcome in outcomes for row in outcome.rows(acks=acks)]
+            await self._database.run(_finish, outcomes, rows, request_ids)
+        for outcome in outcomes:
+            if outcome.answer is not None:
+                self._outbox_changed(outcome.robot)
+
+    def closed(self, robot: str) -> None:
+        """Note that the robot closed its link in good order."""
+        self.robots.closed(robot)
+        self._unsaved.add(robot)
+
+    async def outbox(self, robot: str, after: int) -> list[AnswerRow]:
+        """Return the robot's messages with an id above ``after``, oldest first."""
+        return await self._database.run(answers.read, robot, after)
+
+    def outbox_event(self, robot: str) -> asyncio.Event:
+        """Return the event that is set whenever the robot's outbox holds something new."""
+        return self._outboxes.setdefault(robot, asyncio.Event())
+
+    async def delivered(self, ids: Iterable[int]) -> None:
+        """Note that messages of SA have reached their robots."""
+        await self._book.delivered(ids)
+
+    async def delivered_by_deletion(self, link: str) -> None:
+        """Note the messages that the robots of ``link`` have read and deleted from SA themselves."""
+        waiting = {
+            id
+            for id, robot in self._book.undelivered().items()
+            if robot in self.robots and self.robots.get(robot).link == link
+        }
+        if waiting:
+            await self._book.delivered(waiting - await self._database.run(answers.waiting, sorted(waiting)))
+
+    async def take_requests(self) -> list[requests.RequestRow]:
+        """Return the oldest requests in RR; they stay there until they are dealt with."""
+        return await self._database.run(requests.read)
+
+    # --- operators ------------------------------------------------------------------------------------
+
+    def reports(self, since: int = -1) -> list[RobotReport]:
+        """Return the robots that changed after revision ``since`` of :attr:`robots`."""
+        return self.robots.reports(self._clock(), since)
+
+    async def send(self, send: Send, operator: str) -> CommandReport:
+        """Issue one command; returns when it is stored. Raises RefusedError, MessageError, StoreError."""
+        order = self._order(send.command, send.robot, send.op, send.params, operator)
+        return (await self._book.issue([order]))[0]
+
+    async def set_positions(self, positions: list[TargetPosition], operator: str) -> list[CommandReport]:
+        """Issue a target for each robot, all of them or none."""
+        names = [position.robot for position in positions]
+        twice = sorted({name for name in names if names.count(name) > 1})
+        if twice:
+            raise RefusedError(
+                f"positions: {', '.join(twice)} is named more than once; give each robot one target"
+            )
+        orders = []
+        for position in positions:
+            target = {name: value for name, value in to_json(position).items() if name != "robot"}
+            orders.append(self._order(str(uuid.uuid4()), position.robot, "SetPosEnd", target, operator))
+        return await self._book.issue(orders)
+
+    async def abort_all(self, operator: str) -> list[CommandReport]:
+        """Tell every robot to abort its task."""
+        names = self.robots.names()
+        return await self._book.issue([Order(str(uuid.uuid4()), name, Abort(), operator) for name in names])
+
+    async def commands(self, robot: str | None, limit: int) -> list[CommandReport]:
+        """Return the newest commands first, of one robot or of all."""
+        return await self._database.run(commands.newest, robot, limit)
+
+    def listen(self, listener: Listener) -> None:
+        """Tell ``listener`` of every step of every command from now on."""
+        self._listeners.add(listener)
+
+    def unlisten(self, listener: Listener) -> None:
+        """Tell ``listener`` nothing more."""
+        self._listeners.discard(listener)
+
+    # --- time -----------------------------------------------------------------------------------------
+
+    def age(self) -> None:
+        """Bring the liveness of every robot up to now."""
+        self.robots.age(self._clock())
+
+    async def save(self) -> None:
+        """Store where robots are and have been since the last call, and let old commands expire."""
+        fixes, self._fixes = self._fixes, []
+        unsaved, self._unsaved = self._unsaved, set()
+        try:
+            await self._database.run(_save, [self.robots.get(n) for n in unsaved if n in self.robots], fixes)
+        except Exception:
+            self._fixes = fixes + self._fixes
+            self._unsaved |= unsaved
+            raise
+        await self._book.expire(self._clock() - self._expire_after)
+
+    # ---------------------------------------------------------------------------------------------------
+
+    async def _receive_ready(self, robot: str, link: str, request: Ready, id: int | None) -> Outcome:
+        started = self.robots.ready(robot, request.magic, link, self._clock())
+        await self._database.run(stored_robots.save, [self.robots.get(robot)])
+        if started:
+            await self.delivered_by_deletion(link)
+            await self._book.deliver_again(robot, f"robot {robot} started anew; sent once more")
+        content = await asyncio.to_thread(self.site.whole_map)
+        ack = OpAck(id=id, magic=request.magic, robot=robot)
+        return Outcome(robot, ack, SetMap(content), void=("Start", "OpAck"))
+
+    async def _receive_pose(self, robot: str, link: str, pose: SendPos, now: float) -> None:
+        if not self.robots.observe(robot, pose, link, now):
+            return
+        self._unsaved.add(robot)
+        self._fixes.append(stored_robots.Fix(robot, now, pose))
+        await self._book.observe(robot, pose)
+
+    def _stops(self, robot: str, request: Request) -> bool:
+        if isinstance(request, Stopped):
+            return True
+        # Alive and acknowledgements of a standing robot do not set it in motion.
+        return isinstance(request, (Alive, OpAck, GetMap)) and self.robots.get(robot).ended_in_order
+
+    def _order(self, id: str, robot: str, op: str, params: dict[str, object], operator: str) -> Order:
+        check_robot_name(robot)
+        if robot not in self.robots:
+            known = ", ".join(self.robots.names()) or "none yet"
+            raise RefusedError(f"robot {robot!r} is not known to this gateway; known are: {known}")
+        if op not in COMMANDS:
+            raise MessageError(f"op {op!r} cannot be sent to a robot; choose one of {', '.join(COMMANDS)}")
+        message = decode_answer(op, params)
+        assert isinstance(message, (SetPosEnd, SetPath, Abort))
+        self._check_on_site(message)
+        return Order(id, robot, message, operator)
+
+    def _check_on_site(self, message: SetPosEnd | SetPath | Abort) -> None:
+        if isinstance(message, SetPosEnd):
+            points = [(message.x, message.y)]
+        else:
+            points = message.points if isinstance(message, SetPath) else []
+        for x, y in points:
+            if not self.site.contains(x, y):
+                x_min, y_min, x_max, y_max = self.site.report.bounds
+                raise RefusedError(
+                    f"({x:.2f}, {y:.2f}) lies outside site {self.site.report.name!r}, which reaches from "
+                    f"({x_min:.2f}, {y_min:.2f}) to ({x_max:.2f}, {y_max:.2f}); choose a place inside"
+                )
+
+    def _command_changed(self, command: CommandReport) -> None:
+        self.robots.assign(command.robot, self._book.busy_with(command.robot))
+        for listener in self._listeners:
+            listener.command_changed(command)
+
+    def _outbox_changed(self, robot: str) -> None:
+        self.outbox_event(robot).set()
+
+
+def _finish(
+    connection: Connection,
+    outcomes: Sequence[Outcome],
+    rows: Sequence[tuple[str, Answer]],
+    request_ids: Sequence[int],
+) -> None:
+    for outcome in outcomes:
+        kinds = outcome.void if outcome.answer is None else (*outcome.void, type(outcome.answer).__name__)
+        answers.remove_kinds(connection, outcome.robot, kinds)
+    for robot, answer in rows:
+        answers.add(connection, robot, answer)
+    requests.remove(connection, request_ids)
+
+
+def _save(connection: Connection, robots: Sequence[Robot], fixes: Sequence[stored_robots.Fix]) -> None:
+    stored_robots.save(connection, robots)
+    stored_robots.add_fixes(connection, fixes)

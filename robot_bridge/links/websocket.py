@@ -1,0 +1,163 @@
+"""Robots on WebSocket: JSON-RPC 2.0 with the operation codes of the paper as methods.
+
+A robot's requests are calls (SendPos and Alive may be notifications), and the gateway's OpAck is the
+result. The gateway's messages are calls whose id is that of the message; the robot's OpAck is the result,
+or an error where it will not do it.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from typing import Any
+
+from websockets.asyncio.server import ServerConnection
+from websockets.exceptions import ConnectionClosed, ConnectionClosedOK
+
+from .. import jsonrpc
+from ..errors import NotReadyError, StoreError
+from ..fleet import Fleet, Outcome
+from ..messages import MessageError, OpAck, Ready, Start, to_json
+from ..store.answers import AnswerRow
+from ..wire import UnknownOperationError, decode_request, encode_map, parse_params
+
+log = logging.getLogger(__name__)
+
+NAME = "websocket"
+REPLACED = 4001
+"""Close code for a connection whose robot has connected anew."""
+
+
+class WebSocketLink:
+    """Serves the connections of robots; the newest connection of a robot is the one that counts."""
+
+    def __init__(self, fleet: Fleet) -> None:
+        self._fleet = fleet
+        self._sessions: dict[str, RobotSession] = {}
+
+    async def serve(self, connection: ServerConnection, robot: str | None) -> None:
+        """Serve one connection to its end; without a name the robot is given one."""
+        name = robot or self._free_name()
+        session = RobotSession(self._fleet, connection, name)
+        former = self._sessions.get(name)
+        self._sessions[name] = session
+        if former is not None:
+            await former.replace()
+        try:
+            in_order = await session.run()
+        finally:
+            if self._sessions.get(name) is session:
+                del self._sessions[name]
+        if in_order and name not in self._sessions:
+            self._fleet.closed(name)
+
+    def _free_name(self) -> str:
+        taken = {*self._fleet.robots.names(), *self._sessions}
+        return next(name for n in range(1, len(taken) + 2) if (name := f"robot-{n}") not in taken)
+
+
+class RobotSession:
+    """One connection of one robot."""
+
+    def __init__(self, fleet: Fleet, connection: ServerConnection, robot: str) -> None:
+        self._fleet = fleet
+        self._connection = connection
+        self._robot = robot
+        self._delivery: asyncio.Task[None] | None = None
+
+    async def replace(self) -> None:
+        """End this connection because the robot has connected anew."""
+        if self._delivery is not None:
+            self._delivery.cancel()
+        await self._connection.close(REPLACED, "the robot has connected anew")
+
+    async def run(self) -> bool:
+        """Serve the connection to its end; return true if the robot closed it in good order."""
+        try:
+            await self._connection.send(jsonrpc.call("Start", to_json(Start())))
+            async for frame in self._connection:
+                await self._receive(frame)
+        except ConnectionClosedOK:
+            return True
+        except ConnectionClosed:
+            return False
+        finally:
+            if self._delivery is not None:
+                self._delivery.cancel()
+        return self._connection.close_code in (1000, 1001)
+
+    async def _receive(self, frame: str | bytes) -> None:
+        try:
+            message = jsonrpc.decode(frame)
+        except jsonrpc.FrameError as error:
+            await self._connection.send(jsonrpc.error(error.id, error.code, str(error)))
+            return
+        if isinstance(message, jsonrpc.Call):
+            await self._receive_call(message)
+        else:
+            await self._receive_reply(message)
+
+    async def _receive_call(self, call: jsonrpc.Call) -> None:
+        try:
+            request = decode_request(call.method, call.params)
+            id = call.id if isinstance(call.id, int) else None
+            outcome = await self._fleet.receive(self._robot, NAME, request, id)
+        except (MessageError, NotReadyError, StoreError) as error:
+            log.warning("link websocket: robot %r: %s", self._robot, error)
+            await self._connection.send(jsonrpc.error(call.id, _code(error), str(error)))
+            return
+        await self._respond(call, outcome)
+        if isinstance(request, Ready):
+            self._deliver_from_the_start()
+
+    async def _respond(self, call: jsonrpc.Call, outcome: Outcome) -> None:
+        if call.id is not None:
+            await self._connection.send(jsonrpc.result(call.id, to_json(outcome.ack or OpAck())))
+        if outcome.answer is not None:
+            await self._fleet.finish([outcome], [], acks=False)
+
+    async def _receive_reply(self, reply: jsonrpc.Reply) -> None:
+        if not isinstance(reply.id, int):
+            return
+        ack = OpAck(id=reply.id, ok=reply.error is None, reason=reply.error)
+        try:
+            await self._fleet.receive(self._robot, NAME, ack, None)
+        except (NotReadyError, StoreError) as error:
+            log.warning("link websocket: robot %r: %s", self._robot, error)
+
+    def _deliver_from_the_start(self) -> None:
+        """Begin to deliver the outbox; what the robot had not acknowledged is sent to it again."""
+        if self._delivery is not None:
+            self._delivery.cancel()
+        self._delivery = asyncio.create_task(self._deliver())
+
+    async def _deliver(self) -> None:
+        last = 0
+        event = self._fleet.outbox_event(self._robot)
+        while True:
+            event.clear()
+            try:
+                for row in await self._fleet.outbox(self._robot, last):
+                    await self._connection.send(jsonrpc.call(row.op, _params(row), row.id))
+                    await self._fleet.delivered([row.id])
+                    last = row.id
+            except ConnectionClosed:
+                return
+            except StoreError as error:
+                log.error("link websocket: robot %r: %s", self._robot, error)
+                await asyncio.sleep(1)
+                continue
+            await event.wait()
+
+
+def _params(row: AnswerRow) -> dict[str, Any]:
+    params: dict[str, Any] = parse_params(row.op, row.params) or {}
+    return params if row.payload is None else {**params, "map": encode_map(row.payload)}
+
+
+def _code(error: Exception) -> int:
+    if isinstance(error, UnknownOperationError):
+        return jsonrpc.METHOD_NOT_FOUND
+    if isinstance(error, NotReadyError):
+        return jsonrpc.NOT_READY
+    return jsonrpc.INVALID_PARAMS if isinstance(error, MessageError) else jsonrpc.INTERNAL_ERROR

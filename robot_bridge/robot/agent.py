@@ -1,0 +1,145 @@
+"""What the robot says and does, without a wire or a clock of its own."""
+
+from __future__ import annotations
+
+import math
+import random
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from ..messages import (
+    Abort,
+    Alive,
+    Answer,
+    OpAck,
+    Ready,
+    Request,
+    SendPos,
+    SetMap,
+    SetPath,
+    SetPosEnd,
+    Start,
+    Stopped,
+)
+from ..robotmap.binary import decode
+from ..robotmap.errors import RobotMapError
+from ..robotmap.model import RobotMap
+from .body import Body, BodyLimits, Pose
+from .driver import Driver
+
+STANDING = 0.01
+"""m/s."""
+
+
+@dataclass(frozen=True)
+class AgentSettings:
+    """``magic`` names this run of the robot, ``noise`` is metres on reported positions."""
+
+    magic: int
+    pose: Pose
+    limits: BodyLimits
+    rate: float = 5.0
+    noise: float = 0.01
+    seed: int = 1
+
+
+class Agent:
+    """Takes in answers, lets time pass, and hands out the requests to send through ``say``.
+
+    A message that came twice is acknowledged twice and done once.
+    """
+
+    def __init__(self, settings: AgentSettings, say: Callable[[Request], None]) -> None:
+        self._settings = settings
+        self._say = say
+        self._random = random.Random(settings.seed)
+        self._body = Body(settings.pose, settings.limits)
+        self._driver: Driver | None = None
+        self._done: set[int] = set()
+        self._since_pose = math.inf
+        self._moving = False
+        self.map: RobotMap | None = None
+
+    @property
+    def pose(self) -> Pose:
+        """Where the robot really is."""
+        return self._body.pose
+
+    def greet(self) -> None:
+        """Say Ready; done again whenever the link is made anew."""
+        self._say(Ready(magic=self._settings.magic))
+
+    def receive(self, answer: Answer, id: int | None) -> OpAck | None:
+        """Take in message ``id`` of the server; return what to acknowledge it with."""
+        if isinstance(answer, Start):
+            self.greet()
+            return None if id is None else OpAck(id=id)
+        if isinstance(answer, OpAck):
+            return None
+        if id is not None and id in self._done:
+            return OpAck(id=id)
+        refusal = self._do(answer)
+        if id is not None:
+            self._done.add(id)
+        return OpAck(id=id, ok=refusal is None, reason=refusal)
+
+    def step(self, dt: float) -> None:
+        """Let ``dt`` seconds pass: drive, and say where the robot is when it is time."""
+        if self._driver is not None:
+            motion = self._driver.steer(self._body.pose)
+            if motion is None:
+                self._driver = None
+            self._body.drive(*(motion or (0.0, 0.0)))
+        self._body.step(dt)
+        self._since_pose += dt
+        if self._since_pose >= 1 / self._settings.rate - dt / 2:
+            self._since_pose = 0.0
+            self._say(self._position())
+        self._notice_stop()
+
+    def stop(self) -> None:
+        """Say that the robot stands and does nothing."""
+        self._driver = None
+        self._say(Stopped())
+
+    def alive(self) -> None:
+        """Say Alive."""
+        self._say(Alive())
+
+    def _do(self, answer: Answer) -> str | None:
+        """Do what a message asks; return why not, or None."""
+        limits = self._settings.limits
+        if isinstance(answer, SetMap):
+            return self._take_map(answer)
+        if isinstance(answer, SetPosEnd):
+            self._driver = Driver([(answer.x, answer.y)], answer.theta, limits)
+        elif isinstance(answer, SetPath):
+            self._driver = Driver(answer.points, None, limits)
+        elif isinstance(answer, Abort):
+            self._driver = None
+            self._body.drive(0.0, 0.0)
+        self._moving = self._moving or self._driver is not None
+        return None
+
+    def _take_map(self, answer: SetMap) -> str | None:
+        try:
+            self.map = decode(answer.map)
+        except RobotMapError as error:
+            return f"the map cannot be read: {error}"
+        return None
+
+    def _position(self) -> SendPos:
+        x, y, theta = self._body.pose
+        noise = self._settings.noise
+        return SendPos(
+            x=round(x + self._random.gauss(0, noise), 3),
+            y=round(y + self._random.gauss(0, noise), 3),
+            theta=round(theta, 4),
+            v=round(self._body.v, 3),
+        )
+
+    def _notice_stop(self) -> None:
+        if self._moving and self._driver is None and abs(self._body.v) < STANDING:
+            self._moving = False
+            self._say(self._position())
+            self._say(Stopped())

@@ -1,0 +1,93 @@
+"""Runs the reference robot in real time on one of the links."""
+
+from __future__ import annotations
+
+import asyncio
+import secrets
+from dataclasses import dataclass, field
+from typing import Protocol
+
+from ..messages import Request, check_robot_name
+from .agent import Agent, AgentSettings
+from .body import BodyLimits, Pose
+from .sql_link import SqlLink
+from .websocket_link import WebSocketLink
+
+STEP = 0.05
+ALIVE_INTERVAL = 1.0
+
+
+@dataclass(frozen=True)
+class RobotSettings:
+    """What a robot is started with; one of ``url`` and ``database`` is its link."""
+
+    name: str
+    url: str | None
+    database: str | None
+    pose: Pose = (0.0, 0.0, 0.0)
+    limits: BodyLimits = field(default_factory=BodyLimits)
+    rate: float = 5.0
+    noise: float = 0.01
+    seed: int = 1
+
+
+class Link(Protocol):
+    """Carries the agent's requests out and the server's answers in."""
+
+    def say(self, request: Request) -> None:
+        """Send a request."""
+
+    async def run(self, agent: Agent) -> None:
+        """Carry messages until cancelled."""
+
+
+async def run(settings: RobotSettings, stop: asyncio.Event) -> None:
+    """Run a robot until ``stop`` is set; it says Stopped before it leaves."""
+    link = _link(settings)
+    agent = Agent(
+        AgentSettings(
+            magic=secrets.randbelow(1 << 31),
+            pose=settings.pose,
+            limits=settings.limits,
+            rate=settings.rate,
+            noise=settings.noise,
+            seed=settings.seed,
+        ),
+        link.say,
+    )
+    tasks = [
+        asyncio.create_task(work) for work in (link.run(agent), _live(agent), _say_alive(agent), stop.wait())
+    ]
+    done, _ = await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+    agent.stop()
+    await asyncio.sleep(2 * STEP)
+    for task in tasks:
+        task.cancel()
+    await asyncio.gather(*tasks, return_exceptions=True)
+    for task in done:
+        task.result()
+
+
+def _link(settings: RobotSettings) -> Link:
+    name = check_robot_name(settings.name)
+    if settings.url is not None:
+        return WebSocketLink(settings.url, name)
+    assert settings.database is not None
+    return SqlLink(settings.database, name)
+
+
+async def _live(agent: Agent) -> None:
+    """Let the body move in real time, however late the event loop is."""
+    loop = asyncio.get_running_loop()
+    last = loop.time()
+    while True:
+        await asyncio.sleep(STEP)
+        now = loop.time()
+        agent.step(min(now - last, 10 * STEP))
+        last = now
+
+
+async def _say_alive(agent: Agent) -> None:
+    while True:
+        await asyncio.sleep(ALIVE_INTERVAL)
+        agent.alive()

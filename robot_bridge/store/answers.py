@@ -1,0 +1,61 @@
+"""Table SA: the gateway inserts; a robot reads and deletes its own rows. The outbox of every robot."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from sqlalchemy import Connection, delete, insert, select
+
+from ..messages import Answer, SetMap, to_json
+from .schema import sa
+
+
+class AnswerRow(NamedTuple):
+    """A row of SA."""
+
+    id: int
+    op: str
+    params: str | None
+    payload: bytes | None
+
+
+def add(connection: Connection, robot: str, answer: Answer) -> int:
+    """Write an answer for ``robot``; return its id."""
+    row = {
+        "robot": robot,
+        "op": type(answer).__name__,
+        "params": json.dumps(to_json(answer)),
+        "payload": answer.map if isinstance(answer, SetMap) else None,
+    }
+    key = connection.execute(insert(sa).values(row)).inserted_primary_key
+    assert key is not None
+    return int(key[0])
+
+
+def read(connection: Connection, robot: str, after: int = 0) -> list[AnswerRow]:
+    """Return the robot's answers with an id above ``after``, oldest first."""
+    query = select(sa.c.id, sa.c.op, sa.c.params, sa.c.payload)
+    query = query.where(sa.c.robot == robot, sa.c.id > after).order_by(sa.c.id)
+    return [AnswerRow(*row) for row in connection.execute(query)]
+
+
+def remove(connection: Connection, ids: Sequence[int]) -> None:
+    """Delete answers that were delivered, or that are void."""
+    connection.execute(delete(sa).where(sa.c.id.in_(ids)))
+
+
+def remove_own(connection: Connection, robot: str, id: int) -> None:
+    """Delete answer ``id`` if it is the robot's own."""
+    connection.execute(delete(sa).where(sa.c.robot == robot, sa.c.id == id))
+
+
+def remove_kinds(connection: Connection, robot: str, ops: Sequence[str]) -> None:
+    """Delete the robot's answers of the kinds ``ops``."""
+    connection.execute(delete(sa).where(sa.c.robot == robot, sa.c.op.in_(ops)))
+
+
+def waiting(connection: Connection, ids: Sequence[int]) -> set[int]:
+    """Return those of ``ids`` that still wait to be read."""
+    return set(connection.scalars(select(sa.c.id).where(sa.c.id.in_(ids))))
