@@ -16,7 +16,7 @@ NO_PYQGIS = 'case "$2" in *qgis*) echo no module named qgis >&2; exit 1;; esac'
 
 @pytest.fixture
 def machine(tmp_path, root):
-    """A machine with a few programs and the given ones (name: shell text); call it to run the set-up there."""
+    """A machine with a few programs and the given ones (name: shell text); a call runs the set-up there."""
     (tmp_path / "project" / "scripts").mkdir(parents=True)
     shutil.copy(root / "scripts" / "setup.sh", tmp_path / "project" / "scripts")
     programs = tmp_path / "bin"
