@@ -16,6 +16,12 @@ class FleetSupervisor:
     def __init__(self, iface):
         self._iface = iface
         self._provider = None
+        self._window = None
+
+    @property
+    def window(self):
+        """The desk in the QGIS window, None before ``initGui`` and after ``unload``."""
+        return self._window
 
     def initProcessing(self):
         self._provider = FleetProvider()
@@ -23,8 +29,17 @@ class FleetSupervisor:
 
     def initGui(self):
         self.initProcessing()
+        if self._iface is None:
+            return
+        # Only here: qgis_process has no window, and needs nothing of what the window is made of.
+        from .desk.window import DeskWindow
+
+        self._window = DeskWindow(self._iface)
 
     def unload(self):
+        if self._window is not None:
+            self._window.remove()
+            self._window = None
         if self._provider is not None:
             QgsApplication.processingRegistry().removeProvider(self._provider)
             self._provider = None

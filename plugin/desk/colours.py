@@ -1,0 +1,31 @@
+"""The desk's colours: of Okabe and Ito's palette, told apart by colour-blind people as well."""
+
+from __future__ import annotations
+
+from qgis.PyQt.QtGui import QColor
+
+from ...robot_bridge.messages import CommandState, RobotState
+
+STATE_COLOURS = {
+    RobotState.FRESH: QColor("#0072B2"),
+    RobotState.STALE: QColor("#E69F00"),
+    RobotState.LOST: QColor("#C62828"),
+    RobotState.OFFLINE: QColor("#757575"),
+}
+"""Each state has a shape of its own as well (see :mod:`.glyphs`)."""
+
+COMMAND_COLOURS = {
+    CommandState.REACHED: QColor("#00795C"),
+    CommandState.ABORTED: QColor("#C62828"),
+    CommandState.FAILED: QColor("#C62828"),
+    CommandState.EXPIRED: QColor("#A15C00"),
+    CommandState.SUPERSEDED: QColor("#757575"),
+}
+
+CASING = QColor(20, 24, 28, 170)
+PAPER = QColor(255, 255, 255)
+TRAIL = QColor("#56C7FF")
+ROUTE = QColor("#FFE14D")
+CONE = QColor("#F26A1B")
+SELECTED = QColor("#FFE14D")
+REFUSED = QColor("#E53935")

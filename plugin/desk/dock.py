@@ -1,0 +1,130 @@
+"""The fleet panel: link, robots, what to do with them, and what was done."""
+
+from __future__ import annotations
+
+from qgis.gui import QgsDockWidget
+from qgis.PyQt.QtCore import Qt
+from qgis.PyQt.QtGui import QFont
+from qgis.PyQt.QtWidgets import (
+    QAction,
+    QFrame,
+    QGridLayout,
+    QLabel,
+    QPushButton,
+    QSizePolicy,
+    QSplitter,
+    QToolButton,
+    QVBoxLayout,
+    QWidget,
+)
+
+from .actions import Actions
+from .command_log import CommandLog
+from .connection_panel import ConnectionPanel
+from .desk import Desk
+from .draft_panel import DraftPanel
+from .robot_table import RobotTable
+
+STOP_STYLE = (
+    "QPushButton { background: #C62828; color: white; font-weight: bold; border: 1px solid #8E0000;"
+    " border-radius: 4px; padding: 7px; }"
+    "QPushButton:hover { background: #D93636; }"
+    "QPushButton:pressed { background: #8E0000; }"
+)
+
+
+class FleetDock(QgsDockWidget):
+    """Lays the parts out so that a panel of 380 pixels shows all of them uncut."""
+
+    def __init__(self, desk: Desk, actions: Actions, parent: QWidget | None = None):
+        super().__init__("Fleet", parent)
+        self.setObjectName("fleet_dock")
+        self._desk = desk
+        self.connection_panel = ConnectionPanel(actions.connect)
+        self.table = RobotTable(desk)
+        self.log = CommandLog(desk)
+        self.draft_panel = DraftPanel(desk, actions)
+        body = QWidget()
+        rows = QVBoxLayout(body)
+        rows.setContentsMargins(8, 6, 8, 8)
+        rows.setSpacing(6)
+        rows.addWidget(self.connection_panel)
+        rows.addWidget(_line())
+        split = QSplitter(Qt.Orientation.Vertical)
+        split.setChildrenCollapsible(False)
+        split.addWidget(self._upper(actions))
+        split.addWidget(self._lower())
+        split.setStretchFactor(0, 3)
+        split.setStretchFactor(1, 2)
+        rows.addWidget(split, 1)
+        rows.addWidget(_stop_button(actions.abort_all))
+        self.setWidget(body)
+        body.setMinimumWidth(380)
+        self.setToggleVisibilityAction(actions.panel)
+        desk.pulled.connect(self._show_link)
+        desk.link_changed.connect(self._show_link)
+        self._show_link()
+
+    def _upper(self, actions: Actions) -> QWidget:
+        part = QWidget()
+        rows = QVBoxLayout(part)
+        rows.setContentsMargins(0, 0, 0, 0)
+        rows.setSpacing(6)
+        rows.addWidget(self.table, 1)
+        rows.addLayout(_tools(actions))
+        rows.addWidget(self.draft_panel)
+        return part
+
+    def _lower(self) -> QWidget:
+        part = QWidget()
+        rows = QVBoxLayout(part)
+        rows.setContentsMargins(0, 2, 0, 0)
+        rows.setSpacing(3)
+        title = QLabel("Commands")
+        font = QFont(title.font())
+        font.setBold(True)
+        title.setFont(font)
+        rows.addWidget(title)
+        rows.addWidget(self.log, 1)
+        return part
+
+    def _show_link(self) -> None:
+        self.connection_panel.show_link(self._desk.link, self._desk.site, self._desk.clock())
+
+
+def _tools(actions: Actions) -> QGridLayout:
+    grid = QGridLayout()
+    grid.setSpacing(4)
+    places = ((actions.cone, 0, 0), (actions.route, 0, 1), (actions.select, 0, 2))
+    places += ((actions.follow, 1, 0), (actions.abort, 1, 1))
+    for action, row, column in places:
+        grid.addWidget(tool_button(action), row, column)
+    for column in range(3):
+        grid.setColumnStretch(column, 1)
+    return grid
+
+
+def tool_button(action: QAction) -> QToolButton:
+    """Return a button as wide as its column that does what ``action`` does."""
+    button = QToolButton()
+    button.setObjectName(f"{action.objectName()}_button")
+    button.setDefaultAction(action)
+    button.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
+    button.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+    return button
+
+
+def _stop_button(action: QAction) -> QPushButton:
+    button = QPushButton(action.icon(), action.text())
+    button.setObjectName("fleet_abort_all_button")
+    button.setToolTip(action.toolTip())
+    button.setStyleSheet(STOP_STYLE)
+    button.clicked.connect(action.trigger)
+    return button
+
+
+def _line() -> QFrame:
+    line = QFrame()
+    line.setFrameShape(QFrame.Shape.HLine)
+    line.setFrameShadow(QFrame.Shadow.Sunken)
+    return line

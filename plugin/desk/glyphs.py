@@ -1,0 +1,123 @@
+"""The drawings of robots and cones, in logical pixels around (0, 0)."""
+
+from __future__ import annotations
+
+from qgis.PyQt.QtCore import QPointF, QRectF, Qt
+from qgis.PyQt.QtGui import QBrush, QColor, QIcon, QPainter, QPainterPath, QPen, QPixmap, QPolygonF
+
+from ...robot_bridge.messages import RobotState
+from .colours import CASING, CONE, PAPER, STATE_COLOURS
+from .picture import STATES
+
+CELL = 36
+"""Width and height of the square that a robot's drawing fits in at any heading."""
+
+
+def robot_atlas(pixel_ratio: float) -> QPixmap:
+    """Return every robot drawing in one picture, a cell each of ``CELL`` logical pixels.
+
+    The columns are :data:`~.picture.STATES`; in the first row the robot points along +x, in the second its
+    heading is not known. The picture is made for ``pixel_ratio`` device pixels per logical one.
+    """
+    side = round(CELL * pixel_ratio)
+    atlas = QPixmap(side * len(STATES), side * 2)
+    atlas.fill(QColor(0, 0, 0, 0))
+    painter = QPainter(atlas)
+    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+    for row, with_heading in enumerate((True, False)):
+        for column, state in enumerate(STATES):
+            painter.save()
+            painter.translate((column + 0.5) * side, (row + 0.5) * side)
+            painter.scale(side / CELL, side / CELL)
+            draw_robot(painter, state, with_heading)
+            painter.restore()
+    painter.end()
+    return atlas
+
+
+def state_icon(state: RobotState) -> QIcon:
+    """Return the drawing of a robot in ``state``, pointing up, for tables and legends."""
+    pixmap = QPixmap(64, 64)
+    pixmap.fill(QColor(0, 0, 0, 0))
+    painter = QPainter(pixmap)
+    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+    painter.translate(32, 32)
+    painter.scale(64 / CELL * 1.15, 64 / CELL * 1.15)
+    painter.rotate(-90)
+    draw_robot(painter, state, True)
+    painter.end()
+    return QIcon(pixmap)
+
+
+def draw_robot(painter: QPainter, state: RobotState, with_heading: bool) -> None:
+    """Draw a robot that points along +x: full when fresh, hollow when stale, crossed out when lost, and a
+    box when offline."""
+    colour = STATE_COLOURS[state]
+    outline = _outline(state, with_heading)
+    painter.setBrush(Qt.BrushStyle.NoBrush)
+    painter.setPen(_pen(CASING, 5.0))
+    painter.drawPath(outline)
+    hollow = state in (RobotState.STALE, RobotState.LOST)
+    painter.setPen(_pen(PAPER, 3.2))
+    painter.drawPath(outline)
+    painter.setBrush(QBrush(PAPER if hollow else colour))
+    painter.setPen(_pen(colour, 2.6 if hollow else 0.6))
+    painter.drawPath(outline)
+    if state is RobotState.LOST:
+        _cross(painter, colour)
+
+
+def draw_cone(painter: QPainter, foot: QPointF, size: float = 22.0) -> None:
+    """Draw a traffic cone that stands on ``foot``, ``size`` logical pixels high."""
+    painter.save()
+    painter.translate(foot)
+    painter.scale(size / 22.0, size / 22.0)
+    body = QPolygonF([QPointF(-6.5, -2.5), QPointF(-1.4, -21), QPointF(1.4, -21), QPointF(6.5, -2.5)])
+    base = QRectF(-9.5, -3.2, 19, 4.4)
+    painter.setPen(_pen(CASING, 3.6))
+    painter.drawPolygon(body)
+    painter.drawRoundedRect(base, 1.6, 1.6)
+    painter.setPen(_pen(PAPER, 1.6))
+    painter.setBrush(QBrush(CONE))
+    painter.drawPolygon(body)
+    painter.drawRoundedRect(base, 1.6, 1.6)
+    painter.setPen(Qt.PenStyle.NoPen)
+    painter.drawPolygon(body)
+    painter.drawRoundedRect(base, 1.6, 1.6)
+    painter.setBrush(QBrush(PAPER))
+    painter.drawPolygon(QPolygonF([QPointF(-4.8, -8.6), QPointF(-3.7, -12.4), QPointF(3.7, -12.4),
+                                   QPointF(4.8, -8.6)]))
+    painter.restore()
+
+
+def _outline(state: RobotState, with_heading: bool) -> QPainterPath:
+    path = QPainterPath()
+    if state is RobotState.OFFLINE:
+        path.addRoundedRect(QRectF(-7.5, -7.5, 15, 15), 2, 2)
+        nose = [QPointF(7.5, -4), QPointF(12.5, 0), QPointF(7.5, 4)]
+    elif with_heading:
+        path.addPolygon(QPolygonF([QPointF(13, 0), QPointF(-9.5, 9), QPointF(-5, 0), QPointF(-9.5, -9)]))
+        path.closeSubpath()
+        return path
+    else:
+        path.addEllipse(QPointF(0, 0), 8.5, 8.5)
+        return path
+    if with_heading:
+        point = QPainterPath()
+        point.addPolygon(QPolygonF(nose))
+        point.closeSubpath()
+        path = path.united(point)
+    return path
+
+
+def _cross(painter: QPainter, colour: QColor) -> None:
+    for pen in (_pen(PAPER, 5.4), _pen(colour, 2.8)):
+        painter.setPen(pen)
+        painter.drawLine(QPointF(-11, -11), QPointF(11, 11))
+        painter.drawLine(QPointF(-11, 11), QPointF(11, -11))
+
+
+def _pen(colour: QColor, width: float) -> QPen:
+    return QPen(
+        colour, width, Qt.PenStyle.SolidLine, Qt.PenCapStyle.RoundCap, Qt.PenJoinStyle.RoundJoin
+    )

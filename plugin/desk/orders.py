@@ -1,0 +1,108 @@
+"""What the operator asks for, from the press of a button to the gateway's answer."""
+
+from __future__ import annotations
+
+import uuid
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from qgis.PyQt.QtCore import QObject, pyqtSignal
+
+from ...robot_bridge.messages import Abort, AbortAll, Send, to_json
+from ..errors import NotSentError
+from .drafts import Draft
+from .wire.outbox import Answer, Order
+
+SLOW_AFTER = 5.0
+
+
+@dataclass
+class Pending:
+    """An order without an answer: what it is in words, and the draft it came from."""
+
+    words: str
+    asked_at: float
+    draft: Draft | None = None
+    told_slow: bool = False
+
+
+class Orders(QObject):
+    """Gives each press of a button its own id, hands it to the connection and tells what became of it."""
+
+    refused = pyqtSignal(str, object)
+    """An order was not carried out: the text, and the draft it came from or None."""
+    accepted = pyqtSignal(str)
+    slow = pyqtSignal(str)
+
+    def __init__(
+        self, submit: Callable[[Order], None], clock: Callable[[], float], parent: QObject | None = None
+    ):
+        super().__init__(parent)
+        self._submit = submit
+        self._clock = clock
+        self._pending: dict[str, Pending] = {}
+
+    def __len__(self) -> int:
+        return len(self._pending)
+
+    def send(self, draft: Draft) -> str:
+        """Send a draft and return the command's id.
+
+        :raises NotSentError: when it must not or cannot be sent; nothing was sent then.
+        """
+        if draft.fault:
+            raise NotSentError(f"{draft.in_words()} was not sent: {draft.fault}")
+        op, params = draft.message()
+        return self._command(draft.robot, op, params, draft.in_words(), draft)
+
+    def abort(self, robot: str) -> str:
+        """Ask one robot to give up its task and return the command's id.
+
+        :raises NotSentError: when it cannot be sent.
+        """
+        return self._command(robot, Abort.__name__, {}, f"Abort of {robot}", None)
+
+    def abort_all(self) -> str:
+        """Ask every robot to give up its task and return the order's key.
+
+        :raises NotSentError: when it cannot be sent.
+        """
+        return self._put(str(uuid.uuid4()), AbortAll.method, {}, "ABORT ALL", None)
+
+    def answered(self, answer: Answer) -> None:
+        """Take in what became of an order."""
+        pending = self._pending.pop(answer.order.key, None)
+        if pending is None:
+            return
+        if answer.error is not None:
+            self.refused.emit(f"{pending.words}: {answer.error}", pending.draft)
+            return
+        commands = (answer.result or {}).get("commands")
+        if commands is None:
+            self.accepted.emit(f"{pending.words}: queued")
+        else:
+            self.accepted.emit(f"{pending.words}: sent to {len(commands)} robots")
+
+    def watch(self) -> None:
+        """Tell once of each order that waits for its answer for too long."""
+        now = self._clock()
+        for pending in self._pending.values():
+            if not pending.told_slow and now - pending.asked_at > SLOW_AFTER:
+                pending.told_slow = True
+                self.slow.emit(
+                    f"{pending.words}: the gateway has not answered for {SLOW_AFTER:g} s, so it may not have "
+                    "arrived. It is repeated when the link is back; it is never done twice."
+                )
+
+    def _command(self, robot: str, op: str, params: dict, words: str, draft: Draft | None) -> str:
+        command = str(uuid.uuid4())
+        return self._put(command, Send.method, to_json(Send(command, robot, op, params)), words, draft)
+
+    def _put(self, key: str, method: str, params: dict, words: str, draft: Draft | None) -> str:
+        order = Order(key, method, params, self._clock())
+        try:
+            self._submit(order)
+        except NotSentError as error:
+            raise NotSentError(f"{words} was NOT sent: {error}") from error
+        self._pending[key] = Pending(words, order.asked_at, draft)
+        return key

@@ -1,0 +1,99 @@
+"""From the site frame to the canvas and back, many points at once."""
+
+from __future__ import annotations
+
+import struct
+
+import numpy as np
+import numpy.typing as npt
+from qgis.core import (
+    Qgis,
+    QgsCoordinateReferenceSystem,
+    QgsCoordinateTransform,
+    QgsCoordinateTransformContext,
+    QgsCsException,
+    QgsGeometry,
+    QgsPointXY,
+)
+
+from ...robot_bridge.messages import SiteReport
+from ...robot_bridge.sites.frame import SiteFrame
+from ..errors import PlacementError
+
+Points = npt.NDArray[np.float64]
+
+_LINE_HEADER = struct.Struct("<BII")
+_LINE_STRING = 2
+
+
+class Placement:
+    """Site frame → site CRS → a map's CRS, and back.
+
+    :raises PlacementError: when QGIS does not know the site's CRS.
+    """
+
+    def __init__(
+        self,
+        site: SiteReport,
+        map_crs: QgsCoordinateReferenceSystem,
+        context: QgsCoordinateTransformContext,
+    ):
+        self.site_crs = QgsCoordinateReferenceSystem(site.crs)
+        if not self.site_crs.isValid():
+            raise PlacementError(
+                f"The site {site.name} is in the CRS {site.crs}, which this QGIS does not know: its robots "
+                "cannot be placed on the map. Correct crs in the site's site.toml, or update QGIS."
+            )
+        self.map_crs = map_crs
+        self.frame = SiteFrame(site.crs, site.origin, site.rotation)
+        self._forward = QgsCoordinateTransform(self.site_crs, map_crs, context)
+
+    def to_map(self, xy: Points) -> Points:
+        """Return (n, 2) metres in the site frame as (n, 2) coordinates of the map's CRS.
+
+        :raises PlacementError: when a point cannot be expressed in the map's CRS.
+        """
+        return transformed(self.frame.to_crs(xy), self._forward)
+
+    def to_site(self, point: QgsPointXY) -> tuple[float, float]:
+        """Return a point in the map's CRS as metres in the site frame.
+
+        :raises PlacementError: when the point cannot be expressed in the site's CRS.
+        """
+        try:
+            in_site_crs = self._forward.transform(point, Qgis.TransformDirection.Reverse)
+        except QgsCsException as error:
+            raise _out_of_reach(self.map_crs, self.site_crs, error) from error
+        ((x, y),) = self.frame.to_site([(in_site_crs.x(), in_site_crs.y())])
+        return float(x), float(y)
+
+
+def transformed(xy: Points, transform: QgsCoordinateTransform) -> Points:
+    """Return (n, 2) coordinates through ``transform``, as one line string and not point by point.
+
+    :raises PlacementError: when a point has no place in the target CRS.
+    """
+    if len(xy) == 0 or transform.isShortCircuited():
+        return np.asarray(xy, dtype=np.float64).reshape(-1, 2)
+    geometry = QgsGeometry()
+    # A line string of one point is none, so the first point goes twice.
+    line = np.concatenate([xy[:1], xy])
+    geometry.fromWkb(_LINE_HEADER.pack(1, _LINE_STRING, len(line)) + line.astype("<f8").tobytes())
+    try:
+        geometry.transform(transform)
+    except QgsCsException as error:
+        raise _out_of_reach(transform.sourceCrs(), transform.destinationCrs(), error) from error
+    wkb = bytes(geometry.asWkb())
+    out = np.frombuffer(wkb, dtype="<f8", offset=_LINE_HEADER.size).reshape(-1, 2)[1:]
+    if not np.isfinite(out).all():
+        raise _out_of_reach(transform.sourceCrs(), transform.destinationCrs(), "not a finite place")
+    return out
+
+
+def _out_of_reach(
+    source: QgsCoordinateReferenceSystem, target: QgsCoordinateReferenceSystem, error: object
+) -> PlacementError:
+    return PlacementError(
+        f"A position in {source.authid()} has no place in {target.authid()} ({error}). Choose the site's CRS "
+        "as the project's CRS (bottom right in the QGIS window)."
+    )

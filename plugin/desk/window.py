@@ -1,0 +1,130 @@
+"""Puts the desk into the QGIS window, and takes it out again without a trace."""
+
+from __future__ import annotations
+
+from qgis.core import QgsProject
+from qgis.gui import QgisInterface, QgsMapTool
+from qgis.PyQt.QtCore import QObject, Qt
+from qgis.PyQt.QtWidgets import QToolBar
+
+from ..errors import FleetError
+from .actions import Actions
+from .cone_tool import ConeTool
+from .desk import Desk
+from .dock import FleetDock
+from .live_view import LiveView
+from .notices import Notices
+from .route_tool import RouteTool
+from .select_tool import SelectTool
+from .wire.status import Phase
+
+MENU = "Fleet Supervisor"
+
+
+class DeskWindow(QObject):
+    """Everything of the desk that hangs in the QGIS window. :meth:`remove` undoes the constructor."""
+
+    def __init__(self, iface: QgisInterface):
+        super().__init__()
+        self._iface = iface
+        self._told = ""
+        canvas = iface.mapCanvas()
+        self.desk = Desk(canvas, QgsProject.instance(), self)
+        self.actions = Actions(self)
+        self.notices = Notices(iface.messageBar(), self)
+        self.view = LiveView(self.desk, self)
+        self.dock = FleetDock(self.desk, self.actions, iface.mainWindow())
+        self.toolbar: QToolBar = iface.addToolBar("Fleet Supervisor")
+        self.toolbar.setObjectName("fleet_toolbar")
+        self._tools = {
+            self.actions.select: SelectTool(self.desk, self.view.overlay),
+            self.actions.cone: ConeTool(self.desk),
+            self.actions.route: RouteTool(self.desk),
+        }
+        self._wire_actions()
+        self._place()
+
+    def remove(self) -> None:
+        """Take every part out of the window and wait for the connection's threads."""
+        self.desk.shut_down()
+        for tool in self._tools.values():
+            self._put_away(tool)
+            tool.deleteLater()
+        self._tools.clear()
+        self.view.remove()
+        self.notices.withdraw()
+        for action in self.actions.all():
+            self._iface.removePluginMenu(MENU, action)
+        window = self._iface.mainWindow()
+        window.removeToolBar(self.toolbar)
+        self.toolbar.deleteLater()
+        self._iface.removeDockWidget(self.dock)
+        self.dock.deleteLater()
+        self.deleteLater()
+
+    def _place(self) -> None:
+        for action in self.actions.all():
+            self._iface.addPluginToMenu(MENU, action)
+            self.toolbar.addAction(action)
+            if action in (self.actions.connect, self.actions.cancel, self.actions.follow):
+                self.toolbar.addSeparator()
+        self._iface.addDockWidget(Qt.DockWidgetArea.RightDockWidgetArea, self.dock)
+
+    def _wire_actions(self) -> None:
+        actions, desk = self.actions, self.desk
+        for action, tool in self._tools.items():
+            tool.setAction(action)
+            action.triggered.connect(lambda on, tool=tool: self._use(tool, on))
+        actions.connect.triggered.connect(self._connect_or_not)
+        actions.send.triggered.connect(desk.send_draft)
+        actions.cancel.triggered.connect(lambda: desk.drafts.put(None))
+        actions.follow.toggled.connect(self.view.follow)
+        actions.abort.triggered.connect(desk.abort_selected)
+        actions.abort_all.triggered.connect(desk.abort_all)
+        self.dock.table.zoom_wanted.connect(self._zoom_to)
+        desk.failed.connect(self.notices.error)
+        desk.complained.connect(self.notices.warning)
+        desk.link_changed.connect(self._show_link)
+
+    def _use(self, tool: QgsMapTool, on: bool) -> None:
+        if on:
+            self._iface.mapCanvas().setMapTool(tool)
+        else:
+            self._put_away(tool)
+
+    def _put_away(self, tool: QgsMapTool) -> None:
+        canvas = self._iface.mapCanvas()
+        if canvas.mapTool() is tool:
+            canvas.unsetMapTool(tool)
+            # A QGIS without any map tool would not answer to clicks.
+            self._iface.actionPan().trigger()
+
+    def _connect_or_not(self, wanted: bool) -> None:
+        if not wanted:
+            self.desk.close_link()
+            return
+        try:
+            self.desk.open_link(self.dock.connection_panel.url(), self.dock.connection_panel.operator())
+        except FleetError as error:
+            self.notices.error(error)
+            self._show_link()
+            return
+        self.dock.connection_panel.remember()
+
+    def _show_link(self) -> None:
+        link = self.desk.link
+        wanted = link.phase not in (Phase.CLOSED, Phase.FAILED)
+        self.actions.connect.setChecked(wanted)
+        self.actions.connect.setText("Disconnect" if wanted else "Connect")
+        if link.phase is Phase.FAILED:
+            self.notices.error(link.reason)
+        elif link.phase is Phase.RETRYING and link.reason != self._told:
+            # The panel goes on showing it; the message bar says it once for each outage.
+            self.notices.warning(link.reason)
+        self._told = "" if link.phase in (Phase.CONNECTED, Phase.CLOSED) else link.reason
+
+    def _zoom_to(self, robot: str) -> None:
+        try:
+            self.view.zoom_to(robot)
+        except FleetError as error:
+            self.notices.error(error)
