@@ -1,0 +1,298 @@
+"""The link to a gateway: what it says when it fails, and that nothing is lost or done twice."""
+
+from __future__ import annotations
+
+import asyncio
+import socket
+import threading
+import time
+
+import pytest
+from fleet_supervisor.plugin.connection import Connection
+from fleet_supervisor.plugin.desk.wire.outbox import Order
+from fleet_supervisor.plugin.desk.wire.status import Phase
+from fleet_supervisor.plugin.errors import AddressError, NotSentError
+from qgis.PyQt.QtCore import QThread
+
+
+@pytest.fixture
+def connection(qgis_app):
+    made = Connection()
+    yield made
+    made.shut_down()
+    assert not made.findChildren(QThread)
+
+
+def phase_of(connection):
+    return connection.take().link.phase
+
+
+def reason_when(connection, wait, phase):
+    found = []
+
+    def there():
+        link = connection.take().link
+        found.append(link)
+        return link.phase is phase
+
+    wait(there, 8, what=str(phase))
+    return found[-1].reason
+
+
+def test_a_gateway_is_greeted_and_its_site_and_robots_arrive(connection, gateway, make_robot, wait):
+    gateway.show(make_robot("r1"))
+    connection.open(gateway.url, "anna")
+    robots, sites = {}, []
+
+    def arrived():
+        news = connection.take()
+        robots.update(news.robots)
+        sites.extend([news.site] if news.site else [])
+        return robots
+
+    wait(arrived, what="r1")
+    assert sites == [gateway.site]
+    assert robots["r1"].report == gateway.robots["r1"]
+    assert gateway.requests[0] == ("hello", {"operator": "anna", "protocol": 1})
+
+
+def test_nothing_listening_is_said_with_place_and_remedy(connection, wait):
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port = probe.getsockname()[1]
+    connection.open(f"ws://127.0.0.1:{port}/desk", "anna")
+    reason = reason_when(connection, wait, Phase.RETRYING)
+    assert reason.startswith(f"Nothing listens at 127.0.0.1:{port}.")
+    assert "robot-bridge serve" in reason
+
+
+@pytest.mark.parametrize(
+    ("url", "says"),
+    [
+        ("http://127.0.0.1:8765/desk", "begins with http"),
+        ("127.0.0.1:8765", "ws://"),
+        ("", "is empty"),
+        ("ws:///desk", "names no host"),
+        ("ws://host:abc/desk", "cannot be read"),
+        ("ws://host:99999/desk", "cannot be read"),
+        ("ws://ho st/desk", "names no host"),
+    ],
+)
+def test_a_url_that_cannot_be_a_gateways_is_refused_with_an_example(connection, url, says):
+    with pytest.raises(AddressError, match=says) as caught:
+        connection.open(url, "anna")
+    assert "ws://127.0.0.1:8765/desk" in str(caught.value)
+    assert not connection.is_open
+
+
+class Babbler:
+    """A TCP server that answers everything with the same bytes."""
+
+    def __init__(self, says: bytes):
+        self._says = says
+        self._listening = socket.create_server(("127.0.0.1", 0))
+        self.port = self._listening.getsockname()[1]
+        self._thread = threading.Thread(target=self._run, daemon=True)
+        self._thread.start()
+
+    def _run(self):
+        while True:
+            try:
+                peer, _ = self._listening.accept()
+            except OSError:
+                return
+            with peer:
+                peer.recv(4096)
+                peer.sendall(self._says)
+
+    def close(self):
+        # close() alone leaves the thread in accept().
+        self._listening.shutdown(socket.SHUT_RDWR)
+        self._listening.close()
+        self._thread.join(2)
+
+
+@pytest.mark.parametrize(
+    ("answer", "says"),
+    [
+        (b"HTTP/1.1 404 Not Found\r\nContent-Length: 0\r\n\r\n", "(HTTP 404)"),
+        (b"HTTP/1.1 200 OK\r\nContent-Length: 2\r\n\r\nhi", "HTTP 200"),
+        (b"SSH-2.0-OpenSSH_9.2\r\n", "does not speak WebSocket"),
+        (b"", "does not speak WebSocket"),
+    ],
+)
+def test_what_is_no_gateway_is_named_and_tried_again(connection, wait, answer, says):
+    babbler = Babbler(answer)
+    connection.open(f"ws://127.0.0.1:{babbler.port}/desk", "anna")
+    reason = reason_when(connection, wait, Phase.RETRYING)
+    babbler.close()
+    assert says in reason
+    assert str(babbler.port) in reason
+
+
+@pytest.mark.parametrize("text", ["garbage", "[1]", '{"id": 1, "result": {"protocol": 1}}'])
+def test_a_websocket_that_does_not_speak_the_desks_protocol_is_named(connection, gateway, wait, text):
+    gateway.raw = text
+    connection.open(gateway.url, "anna")
+    reason = reason_when(connection, wait, Phase.RETRYING)
+    assert "not the desk's protocol" in reason
+    assert gateway.url in reason
+
+
+def test_numbers_that_are_none_are_a_fault_of_the_gateway_and_not_a_crash(connection, gateway, make_robot, wait):
+    connection.open(gateway.url, "anna")
+    wait(lambda: phase_of(connection) is Phase.CONNECTED)
+    wait(lambda: gateway._sockets)
+    gateway.show(make_robot("r1", x=float("nan")))
+    assert "x of robot r1 is nan" in reason_when(connection, wait, Phase.RETRYING)
+
+
+def test_another_protocol_ends_the_attempts_and_says_what_to_update(connection, gateway, wait):
+    gateway.protocol = 2
+    connection.open(gateway.url, "anna")
+    reason = reason_when(connection, wait, Phase.FAILED)
+    assert "speaks protocol 2, this plugin protocol 1" in reason
+    assert len(gateway.asked("hello")) == 1
+
+
+def test_a_gateway_that_turns_the_desk_away_is_quoted(connection, gateway, wait):
+    gateway.refuse["hello"] = "operator 'anna' is not known here; ask the site's supervisor"
+    connection.open(gateway.url, "anna")
+    assert "operator 'anna' is not known here" in reason_when(connection, wait, Phase.RETRYING)
+
+
+def test_a_killed_gateway_is_found_again_on_its_port(connection, gateway, make_robot, wait):
+    connection.open(gateway.url, "anna")
+    wait(lambda: phase_of(connection) is Phase.CONNECTED)
+    gateway.stop()
+    wait(lambda: phase_of(connection) is Phase.RETRYING, 3)
+    gateway.show(make_robot("r9"))
+    gateway.start()
+    robots = {}
+
+    def again():
+        news = connection.take()
+        robots.update(news.robots)
+        return news.link.phase is Phase.CONNECTED and "r9" in robots
+
+    wait(again, 6, what="the second link")
+    assert len(gateway.asked("hello")) == 2
+
+
+def test_an_unanswered_order_is_repeated_with_its_id_and_done_once(connection, gateway, wait):
+    connection.open(gateway.url, "anna")
+    wait(lambda: phase_of(connection) is Phase.CONNECTED)
+    gateway.mute.add("send")
+    params = {"command": "command-1", "robot": "r1", "op": "SetPosEnd", "params": {"x": 1.0, "y": 2.0}}
+    connection.submit(Order("command-1", "send", params, time.monotonic()))
+    wait(lambda: gateway.asked("send"))
+    gateway.stop()
+    wait(lambda: phase_of(connection) is Phase.RETRYING, 3)
+    gateway.mute.clear()
+    gateway.start()
+    answers = []
+    wait(lambda: answers.extend(connection.take().answers) or answers, 6, what="the answer")
+    assert [params["command"] for params in gateway.asked("send")] == ["command-1", "command-1"]
+    assert list(gateway.commands) == ["command-1"]
+    assert answers[0].result["state"] == "queued"
+
+
+def test_an_answered_order_is_not_repeated_on_the_next_link(connection, gateway, wait):
+    connection.open(gateway.url, "anna")
+    wait(lambda: phase_of(connection) is Phase.CONNECTED)
+    params = {"command": "command-1", "robot": "r1", "op": "Abort", "params": {}}
+    connection.submit(Order("command-1", "send", params, time.monotonic()))
+    answers = []
+    wait(lambda: answers.extend(connection.take().answers) or answers)
+    gateway.stop()
+    wait(lambda: phase_of(connection) is Phase.RETRYING, 3)
+    gateway.start()
+    wait(lambda: len(gateway.asked("get_commands")) == 2, 6)
+    assert len(gateway.asked("send")) == 1
+
+
+def test_an_order_that_became_old_without_a_link_is_handed_back_and_not_sent(connection, gateway, wait):
+    connection.open(gateway.url, "anna")
+    wait(lambda: phase_of(connection) is Phase.CONNECTED)
+    gateway.mute.add("send")
+    params = {"command": "command-1", "robot": "r1", "op": "Abort", "params": {}}
+    connection.submit(Order("command-1", "send", params, time.monotonic() - 60.0))
+    wait(lambda: gateway.asked("send"))
+    gateway.stop()
+    wait(lambda: phase_of(connection) is Phase.RETRYING, 3)
+    gateway.start()
+    answers = []
+    wait(lambda: answers.extend(connection.take().answers) or answers, 6)
+    assert "it was not repeated" in answers[0].error
+    assert len(gateway.asked("send")) == 1
+
+
+def test_closing_hands_back_what_was_not_answered(connection, gateway, wait):
+    connection.open(gateway.url, "anna")
+    wait(lambda: phase_of(connection) is Phase.CONNECTED)
+    gateway.mute.add("send")
+    params = {"command": "command-1", "robot": "r1", "op": "Abort", "params": {}}
+    connection.submit(Order("command-1", "send", params, time.monotonic()))
+    wait(lambda: gateway.asked("send"))
+    connection.close()
+    answers = []
+    wait(lambda: answers.extend(connection.take().answers) or answers)
+    assert "whether it arrived is not known" in answers[0].error
+
+
+def test_without_a_link_nothing_can_be_submitted(connection):
+    with pytest.raises(NotSentError, match="not connected"):
+        connection.submit(Order("key", "abort_all"))
+
+
+def test_a_slow_reader_gets_the_newest_state_and_no_queue(connection, gateway, make_robot, wait):
+    connection.open(gateway.url, "anna")
+    wait(lambda: phase_of(connection) is Phase.CONNECTED)
+    wait(lambda: gateway._sockets)
+    for x in range(2000):
+        gateway.show(make_robot("r1", x=float(x)))
+    time.sleep(0.3)
+    news = connection.take()
+    assert len(news.robots) == 1
+    assert news.robots["r1"].report.x == 1999.0
+
+
+def test_a_gateway_that_hangs_is_noticed_within_five_seconds(connection, gateway, wait):
+    connection.open(gateway.url, "anna")
+    wait(lambda: phase_of(connection) is Phase.CONNECTED)
+    release = threading.Event()
+    gateway._loop.call_soon_threadsafe(release.wait)
+    began = time.monotonic()
+    wait(lambda: phase_of(connection) is not Phase.CONNECTED, 6, what="the silence")
+    took = time.monotonic() - began
+    release.set()
+    assert took < 5.2
+
+
+def test_opening_and_closing_never_wait_for_the_network(connection):
+    # A host that swallows everything: packets to TEST-NET-1 are answered by nobody.
+    for call in (lambda: connection.open("ws://192.0.2.1:8765/desk", "anna"), connection.close):
+        began = time.monotonic()
+        call()
+        assert time.monotonic() - began < 0.1
+
+
+def test_a_fault_in_the_worker_becomes_a_state_and_not_a_crash(connection, gateway, wait, monkeypatch):
+    async def broken(client):
+        await asyncio.sleep(0)
+        raise RuntimeError("a screw came loose")
+
+    monkeypatch.setattr("fleet_supervisor.plugin.desk.wire.client.DeskClient.run", broken)
+    connection.open(gateway.url, "anna")
+    assert "a screw came loose" in reason_when(connection, wait, Phase.FAILED)
+
+
+def test_every_thread_has_ended_after_shut_down(connection, gateway, wait):
+    before = threading.active_count()
+    for _ in range(3):
+        connection.open(gateway.url, "anna")
+        wait(lambda: phase_of(connection) is Phase.CONNECTED)
+    workers = [connection._worker, *connection._ending]
+    connection.shut_down()
+    assert all(worker.isFinished() for worker in workers)
+    assert threading.active_count() <= before
