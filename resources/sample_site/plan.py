@@ -93,7 +93,7 @@ def buildings(hall: list[tuple[float, float]]) -> list[Item]:
         Item(shapely.box(84, 128, 112, 142), "Library", 8.5, "pitched"),
         Item(shapely.box(122, 66, 130, 74), "Control tower", 14.0, "tower"),
         Item(shapely.Polygon(canteen), "Canteen", 4.8, "green"),
-        Item(shapely.box(150, 18, 188, 34), "Offices", 12.0, "solar"),
+        Item(shapely.box(150, 18, 188, 34), "Offices", 7.5, "solar"),
         Item(shapely.box(134, 10, 141, 15), "Cone store", 2.8, "metal"),
     ]
 

@@ -1,0 +1,1 @@
+"""The sample site as a photograph from above, drawn from its plan."""
