@@ -5,7 +5,6 @@ Needs PyQGIS; ``make_sample_site.py`` runs it as a process of its own.
 
 from __future__ import annotations
 
-import os
 import sys
 import tempfile
 from pathlib import Path
@@ -13,7 +12,6 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 sys.path[:0] = [str(HERE), str(ROOT), str(ROOT / "resources" / "styles")]
-os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
 
 from project_file import save_project  # noqa: E402
 from qgis.core import (  # noqa: E402
@@ -67,7 +65,7 @@ def main() -> None:
     """Write the project and the styles."""
     from published import SETTINGS
 
-    application = QgsApplication([], False, tempfile.mkdtemp(prefix="fleet-qgis-"))
+    application = QgsApplication([], True, tempfile.mkdtemp(prefix="fleet-qgis-"))
     application.initQgis()
     project = QgsProject.instance()
     project.setFileName(str(HERE / "sample_site.qgs"))

@@ -37,7 +37,9 @@ def main(parts: list[str]) -> None:
         write_orthophoto(HERE / "orthophoto.tif", plan)
     if "project" in wanted:
         # QGIS has a GDAL of its own, which does not share a process with that of pyogrio.
-        subprocess.run([sys.executable, str(HERE / "make_project.py")], check=True)
+        # Qt writes attributes in the order of its hash tables, which the seed fixes.
+        environment = {**os.environ, "QT_HASH_SEED": "0", "QT_QPA_PLATFORM": "offscreen"}
+        subprocess.run([sys.executable, str(HERE / "make_project.py")], check=True, env=environment)
 
 
 if __name__ == "__main__":

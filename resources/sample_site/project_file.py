@@ -32,6 +32,8 @@ def _neutral(text: str) -> str:
     text = re.sub(r' save(User|UserFull|DateTime)="[^"]*"', "", text)
     text = re.sub(r"<creation>[^<]*</creation>", "<creation>2026-01-01T00:00:00</creation>", text)
     text = re.sub(r"<author>[^<]*</author>", "<author></author>", text)
+    # Snapping defaults of each layer come in the order of addresses in memory; QGIS restores them by itself.
+    text = re.sub(r"\n *<layer-setting [^>]*/>", "", text)
     known: dict[str, str] = {}
 
     def number(match: re.Match[str]) -> str:

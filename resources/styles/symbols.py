@@ -91,7 +91,7 @@ def ramps() -> QgsFeatureRenderer:
 
 
 def road_centrelines() -> QgsFeatureRenderer:
-    symbol = QgsLineSymbol([_line("26,32,44,110", 0.6), _line("255,222,120,255", 0.28)])
+    symbol = _strokes(_line("26,32,44,110", 0.6), _line("255,222,120,255", 0.28))
     symbol.symbolLayer(1).setUseCustomDashPattern(True)
     symbol.symbolLayer(1).setCustomDashVector([3.0, 2.0])
     return QgsSingleSymbolRenderer(symbol)
@@ -124,8 +124,17 @@ def _line(colour: str, width: float) -> QgsSimpleLineSymbolLayer:
     return QgsSimpleLineSymbolLayer(QColor(red, green, blue, alpha), width)
 
 
+def _strokes(*lines: QgsSimpleLineSymbolLayer) -> QgsLineSymbol:
+    # One by one: a list given to the constructor stays Python's and is freed under QGIS.
+    symbol = QgsLineSymbol()
+    symbol.changeSymbolLayer(0, lines[0])
+    for line in lines[1:]:
+        symbol.appendSymbolLayer(line)
+    return symbol
+
+
 def _cased(colour: str, width: float, casing: str, casing_width: float) -> QgsFeatureRenderer:
-    return QgsSingleSymbolRenderer(QgsLineSymbol([_line(casing, casing_width), _line(colour, width)]))
+    return QgsSingleSymbolRenderer(_strokes(_line(casing, casing_width), _line(colour, width)))
 
 
 def _dot(shape: str, colour: str, size: float) -> QgsFeatureRenderer:
@@ -148,7 +157,7 @@ def _hatch(colour: str, angle: float, distance: float, width: float) -> QgsLineP
     layer = QgsLinePatternFillSymbolLayer()
     layer.setLineAngle(angle)
     layer.setDistance(distance)
-    layer.setSubSymbol(QgsLineSymbol([_line(colour, width)]))
+    layer.setSubSymbol(_strokes(_line(colour, width)))
     return layer
 
 
