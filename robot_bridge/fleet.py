@@ -70,7 +70,9 @@ class Outcome:
 class MapSource(Protocol):
     """What the fleet needs of a site: its facts and its maps in the binary format."""
 
-    report: SiteReport
+    @property
+    def report(self) -> SiteReport:
+        """The facts of the site."""
 
     def contains(self, x: float, y: float) -> bool:
         """Tell whether (x, y), metres in the site frame, lies on the site."""

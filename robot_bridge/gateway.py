@@ -23,7 +23,7 @@ from .links.sql import SqlLink
 from .links.websocket import WebSocketLink
 from .messages import MessageError, check_robot_name
 from .site_maps import SiteMaps
-from .sites.site import read_site
+from .sites.publication import read_site
 from .store.database import Database
 
 log = logging.getLogger(__name__)

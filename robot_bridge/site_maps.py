@@ -15,7 +15,7 @@ class SiteMaps:
     def __init__(self, site: Site) -> None:
         self._site = site
 
-    @cached_property
+    @property
     def report(self) -> SiteReport:
         """The facts of the site that operators are told."""
         site, settings = self._site, self._site.settings
@@ -26,7 +26,7 @@ class SiteMaps:
             crs=site.frame.crs,
             origin=site.frame.origin,
             rotation=site.frame.rotation,
-            bounds=tuple(site.bounds),
+            bounds=(site.bounds.x_min, site.bounds.y_min, site.bounds.x_max, site.bounds.y_max),
             reached_tolerance=settings.reached_tolerance_m,
             stale_after=settings.liveness.stale_after_s,
             lost_after=settings.liveness.lost_after_s,

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
 from enum import IntEnum
+from typing import Any, NamedTuple
+
+from numpy.typing import NDArray
 
 
 class ShapeType(IntEnum):
@@ -14,3 +18,73 @@ class ShapeType(IntEnum):
     OPEN_CURVE = 4
     STAIRS = 5
     RAMP = 6
+
+
+class Border(NamedTuple):
+    """The rectangle that a map covers, metres in the site frame."""
+
+    x_min: float
+    y_min: float
+    x_max: float
+    y_max: float
+
+    @property
+    def left_upper(self) -> tuple[float, float]:
+        """The corner that the format names first."""
+        return self.x_min, self.y_max
+
+    @property
+    def right_lower(self) -> tuple[float, float]:
+        """The corner that the format names second."""
+        return self.x_max, self.y_min
+
+    @property
+    def area(self) -> float:
+        """Square metres."""
+        return (self.x_max - self.x_min) * (self.y_max - self.y_min)
+
+
+@dataclass(frozen=True, eq=False)
+class Obstacle:
+    """One obstacle with n oriented segments from ``a`` to ``b``; free space lies to the right of a→b.
+
+    ``text`` is how it stood in the file it was read from, so that it is written back byte for byte; a
+    changed copy, made by ``dataclasses.replace``, has none.
+    """
+
+    id: int
+    shape_type: ShapeType
+    semantics: str
+    a: NDArray[Any]
+    """(n, 2) float64, metres in the site frame."""
+    b: NDArray[Any]
+    """(n, 2) float64, metres in the site frame."""
+    height: NDArray[Any]
+    """(n,) float64, metres."""
+    outdoor: NDArray[Any]
+    """(n,) bool."""
+    segment_semantics: tuple[str, ...]
+    ext: dict[str, str] = field(default_factory=dict)
+    text: str | None = field(default=None, init=False, repr=False)
+
+
+@dataclass(frozen=True, eq=False)
+class RobotMap:
+    """A map of ``border`` with its obstacles.
+
+    ``meta`` are its leading lines (version, crs, origin, rotation, id). ``warnings`` say what was odd in
+    what it was read or built from. ``head`` and ``tail`` are what stood before the first obstacle and after
+    the last one in the file it was read from.
+    """
+
+    border: Border
+    obstacles: tuple[Obstacle, ...]
+    meta: dict[str, str] = field(default_factory=dict)
+    warnings: tuple[str, ...] = ()
+    head: str | None = field(default=None, init=False, repr=False)
+    tail: str = field(default="", init=False, repr=False)
+
+    @property
+    def segment_count(self) -> int:
+        """How many segments all obstacles have together."""
+        return sum(len(obstacle.a) for obstacle in self.obstacles)

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .model import ShapeType
 
@@ -20,17 +22,17 @@ class Outlines:
     Rows of kind stairs hold one riser after another, bottom first, two points each.
     """
 
-    coordinates: np.ndarray
+    coordinates: NDArray[Any]
     """(N, 2) float64, x and y of all outlines one after the other."""
-    offsets: np.ndarray
+    offsets: NDArray[Any]
     """(K + 1,) int64, outline k is ``coordinates[offsets[k]:offsets[k + 1]]``."""
-    shape_type: np.ndarray
+    shape_type: NDArray[Any]
     """(K,) int8, a :class:`ShapeType` each, as the outline is before any clipping."""
-    courtyard: np.ndarray
+    courtyard: NDArray[Any]
     """(K,) bool, true where the free space is inside the ring."""
-    height: np.ndarray
+    height: NDArray[Any]
     """(K,) float64, metres above the ground; 0 where the obstacle has none (ramps)."""
-    outdoor: np.ndarray
+    outdoor: NDArray[Any]
     """(K,) bool."""
     semantics: Sequence[str]
     """K labels, such as ``building,A5``."""
@@ -61,7 +63,7 @@ class Outlines:
 class OutlineRow:
     """One outline on its way into :class:`Outlines`; ``points`` is (n, 2), metres, site frame."""
 
-    points: np.ndarray
+    points: NDArray[Any]
     shape_type: ShapeType
     height: float
     semantics: str

@@ -1,0 +1,192 @@
+"""Reading the text format, line by line, keeping how everything was written."""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import NoReturn
+
+import numpy as np
+
+from .errors import TextError
+from .labels import unescape
+from .model import Border, Obstacle, RobotMap, ShapeType
+
+_NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
+_INTEGER = re.compile(r"[+-]?\d{1,18}", re.ASCII)
+_META = re.compile(r"%\s*(\S+)\s+(.*)")
+
+Segment = tuple[tuple[float, float], tuple[float, float], float, bool, str]
+
+
+def read_text(text: str) -> RobotMap:
+    """Return the map in ``text``; raises TextError naming the line, what was expected and what was found."""
+    return _Reader(text).read()
+
+
+class _Reader:
+    """Goes through the lines once. Lines that are empty or only a comment are passed over and kept."""
+
+    def __init__(self, text: str) -> None:
+        # Not splitlines: a label may hold one of the other characters that it takes for line ends.
+        self._lines = re.findall(r"[^\n]*\n|[^\n]+", text)
+        self._next = 0
+        self._place = "the head of the map"
+        self._warnings: list[str] = []
+
+    def read(self) -> RobotMap:
+        meta = self._read_meta()
+        border = self._read_border()
+        head = "".join(self._lines[: self._next])
+        obstacles = []
+        while self._skip_comments() < len(self._lines):
+            obstacles.append(self._read_obstacle())
+        tail_start = len(head) + sum(len(o.text or "") for o in obstacles)
+        self._warn_of_repeated_ids(obstacles)
+        robot_map = RobotMap(border, tuple(obstacles), meta, tuple(self._warnings))
+        object.__setattr__(robot_map, "head", head)
+        object.__setattr__(robot_map, "tail", "".join(self._lines)[tail_start:])
+        return robot_map
+
+    def _read_meta(self) -> dict[str, str]:
+        meta = {}
+        for line in self._lines[: self._skip_comments()]:
+            match = _META.match(line.strip())
+            if match:
+                meta[match[1]] = match[2].strip()
+        return meta
+
+    def _read_border(self) -> Border:
+        self._keyword("border;")
+        left, upper = self._point()
+        right, lower = self._point()
+        self._separator()
+        if right <= left or upper <= lower:
+            self._fail_at(
+                self._next - 1,
+                "the left-upper corner of the border, then the right-lower one",
+                f"({left}, {upper}) and ({right}, {lower})",
+            )
+        return Border(left, lower, right, upper)
+
+    def _read_obstacle(self) -> Obstacle:
+        start = self._next
+        self._skip_comments()
+        self._place = "an obstacle"
+        self._keyword("obstacle;")
+        id, shape_type, declared, semantics, ext = self._obstacle_line()
+        self._place = f"obstacle {id}"
+        line_number = self._next
+        self._separator()
+        segments = []
+        while not self._at_obstacle_or_end():
+            segments.append(self._segment())
+        if len(segments) != declared:
+            self._warnings.append(
+                f"line {line_number}: obstacle {id} declares {declared} segments and {len(segments)} follow"
+            )
+        obstacle = _obstacle(id, shape_type, semantics, ext, segments)
+        object.__setattr__(obstacle, "text", "".join(self._lines[start : self._next]))
+        return obstacle
+
+    def _obstacle_line(self) -> tuple[int, ShapeType, int, str, dict[str, str]]:
+        expected = "'id;ST;NS;semantics;' with ST from 1 to 6"
+        number, fields = self._fields(expected)
+        if len(fields) not in (4, 5):
+            self._fail_at(number, expected, self._lines[number].strip())
+        if not all(_INTEGER.fullmatch(value) for value in fields[:3]) or fields[1] not in set("123456"):
+            self._fail_at(number, expected, self._lines[number].strip())
+        ext = self._ext(number, fields[4]) if len(fields) == 5 else {}
+        return int(fields[0]), ShapeType(int(fields[1])), int(fields[2]), unescape(fields[3]), ext
+
+    def _ext(self, number: int, text: str) -> dict[str, str]:
+        pairs = [pair.partition("=") for pair in text.split(",") if pair]
+        if not all(equals for _, equals, _ in pairs):
+            self._fail_at(number, "'key=value,...;' after the semantics", text)
+        return {unescape(key): unescape(value) for key, _, value in pairs}
+
+    def _segment(self) -> Segment:
+        a, b = self._point(), self._point()
+        expected = "'height;0 or 1;semantics;'"
+        number, fields = self._fields(expected)
+        if len(fields) not in (3, 4) or fields[1] not in ("0", "1"):
+            self._fail_at(number, expected, self._lines[number].strip())
+        height = self._number(number, fields[0], expected)
+        self._separator()
+        return a, b, height, fields[1] == "1", unescape(fields[2])
+
+    def _point(self) -> tuple[float, float]:
+        expected = "a point such as '4.53;12.10;'"
+        number, fields = self._fields(expected)
+        if len(fields) != 2:
+            self._fail_at(number, expected, self._lines[number].strip())
+        return self._number(number, fields[0], expected), self._number(number, fields[1], expected)
+
+    def _number(self, number: int, text: str, expected: str) -> float:
+        value = float(text) if _NUMBER.fullmatch(text) else math.nan
+        if not math.isfinite(value):
+            self._fail_at(number, f"{expected} with finite numbers", self._lines[number].strip())
+        return value
+
+    def _fields(self, expected: str) -> tuple[int, list[str]]:
+        """Return the next line's number and what stands before each of its semicolons."""
+        number, content = self._line(expected)
+        fields = [value.strip() for value in content.split(";")]
+        if fields.pop():
+            self._fail_at(number, f"{expected}, closed by ';'", self._lines[number].strip())
+        return number, fields
+
+    def _keyword(self, word: str) -> None:
+        number, content = self._line(repr(word))
+        if content != word:
+            self._fail_at(number, repr(word), self._lines[number].strip())
+
+    def _separator(self) -> None:
+        self._keyword("#")
+
+    def _line(self, expected: str) -> tuple[int, str]:
+        number = self._skip_comments()
+        if number >= len(self._lines):
+            raise TextError(
+                f"line {len(self._lines)}: the text ends in {self._place} where {expected} should follow; "
+                "it was cut off, so get the map once more"
+            )
+        self._next = number + 1
+        return number, self._lines[number].partition("%")[0].strip()
+
+    def _skip_comments(self) -> int:
+        """Return the number of the next line that says something, and go there."""
+        number = self._next
+        while number < len(self._lines) and not self._lines[number].partition("%")[0].strip():
+            number += 1
+        return number
+
+    def _at_obstacle_or_end(self) -> bool:
+        number = self._skip_comments()
+        return number >= len(self._lines) or self._lines[number].partition("%")[0].strip() == "obstacle;"
+
+    def _fail_at(self, number: int, expected: str, found: str) -> NoReturn:
+        raise TextError(f"line {number + 1}: in {self._place}, expected {expected}, found {found[:80]!r}")
+
+    def _warn_of_repeated_ids(self, obstacles: list[Obstacle]) -> None:
+        seen: set[int] = set()
+        for obstacle in obstacles:
+            if obstacle.id in seen:
+                self._warnings.append(f"obstacle id {obstacle.id} is used more than once")
+            seen.add(obstacle.id)
+
+
+def _obstacle(
+    id: int, shape_type: ShapeType, semantics: str, ext: dict[str, str], segments: list[Segment]
+) -> Obstacle:
+    return Obstacle(
+        id=id,
+        shape_type=shape_type,
+        semantics=semantics,
+        a=np.array([s[0] for s in segments], dtype=np.float64).reshape(-1, 2),
+        b=np.array([s[1] for s in segments], dtype=np.float64).reshape(-1, 2),
+        height=np.array([s[2] for s in segments], dtype=np.float64),
+        outdoor=np.array([s[3] for s in segments], dtype=bool),
+        segment_semantics=tuple(s[4] for s in segments),
+        ext=ext,
+    )
