@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 from dataclasses import dataclass
 from pathlib import Path
@@ -24,10 +25,11 @@ class Start:
 
 
 STARTS = (
-    Start("r1", (0.0, 0.0, 0.0)),
-    Start("r2", (0.0, 0.0, 0.0), over_sql=True),
-    Start("r3", (0.0, 0.0, 0.0)),
+    Start("r1", (20.0, 8.0, 0.0)),
+    Start("r2", (40.0, 84.0, 0.0), over_sql=True),
+    Start("r3", (92.0, 22.0, math.pi)),
 )
+"""On the straight, on the campus road, and on the handling loop."""
 
 
 def start_gateway(processes: Processes, database: Path) -> str:
@@ -42,8 +44,8 @@ def start_gateway(processes: Processes, database: Path) -> str:
 
 def start_robots(processes: Processes, address: str, database: Path) -> None:
     """Start the three robots: two over WebSocket, one over SQL."""
-    for start in STARTS:
+    for seed, start in enumerate(STARTS, start=1):
         way = ["--database", f"sqlite:///{database}"] if start.over_sql else ["--url", f"{address}/robot"]
         pose = ",".join(str(number) for number in start.pose)
-        robot = ["robot", *way, "--name", start.name, f"--pose={pose}"]
+        robot = ["robot", *way, "--name", start.name, f"--pose={pose}", "--seed", str(seed)]
         processes.start(start.name, [sys.executable, "-m", "robot_bridge", *robot])

@@ -19,10 +19,7 @@ PATIENCE_S = 5.0
 
 
 class Processes:
-    """A context that starts processes, keeps their output in files, and ends each by its id at the end.
-
-    SIGTERM, SIGHUP and Ctrl-C end it the same way as an exception does.
-    """
+    """A context that starts processes, keeps their output in files, and ends each by its id at the end."""
 
     def __init__(self, logs: Path):
         self._logs = logs
@@ -30,8 +27,6 @@ class Processes:
 
     def __enter__(self) -> Processes:
         self._logs.mkdir(parents=True, exist_ok=True)
-        for number in (signal.SIGTERM, signal.SIGHUP):
-            signal.signal(number, _leave)
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -85,10 +80,10 @@ class Processes:
             text = self.log(name).read_text(encoding="utf-8", errors="replace")
             raise StageError(f"{name} was still running after {seconds:.0f} s{_said(text)}") from None
 
-    def require_running(self) -> None:
-        """Raise StageError when a process that should still run has ended."""
+    def require_running(self, *, but: str | None = None) -> None:
+        """Raise StageError when a process other than ``but`` has ended."""
         for name, process in self._running.items():
-            if process.poll() is not None:
+            if name != but and process.poll() is not None:
                 text = self.log(name).read_text(encoding="utf-8", errors="replace")
                 raise StageError(f"{name} ended with status {process.returncode}{_said(text)}")
 
@@ -108,6 +103,12 @@ class Processes:
 def _said(text: str) -> str:
     last = [line for line in text.splitlines() if line.strip()][-5:]
     return "; it said:\n  " + "\n  ".join(last) if last else "; it said nothing"
+
+
+def leave_on_signals() -> None:
+    """Make SIGTERM and a closed terminal end this program the way an exception does, so that contexts end."""
+    for number in (signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, _leave)
 
 
 def _leave(number: int, _: FrameType | None) -> None:

@@ -1,4 +1,4 @@
-"""What the packaging tests share: the scripts, the built zip, and a Python that has PyQGIS but not the venv."""
+"""What the packaging tests share: the scripts, the zip, and a Python that has PyQGIS but not the venv."""
 
 from __future__ import annotations
 

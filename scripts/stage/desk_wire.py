@@ -1,0 +1,36 @@
+"""Asks the gateway itself, over the wire and past the window, what became of the commands and the robots."""
+
+from __future__ import annotations
+
+import itertools
+import json
+from collections.abc import Mapping
+from typing import Any
+
+from websockets.sync.client import connect
+
+from .errors import StageError
+
+TIMEOUT_S = 5.0
+
+
+def ask(address: str, *questions: tuple[str, Mapping[str, Any]]) -> list[dict[str, Any]]:
+    """Say hello to the gateway at ``address`` as an operator and return its answer to each question.
+
+    :raises StageError: when it refuses one.
+    """
+    with connect(f"{address}/desk", open_timeout=TIMEOUT_S, close_timeout=TIMEOUT_S) as wire:
+        numbers = itertools.count(1)
+        _answer(wire, next(numbers), "hello", {"operator": "demo check"})
+        return [_answer(wire, next(numbers), method, params) for method, params in questions]
+
+
+def _answer(wire: Any, number: int, method: str, params: Mapping[str, Any]) -> dict[str, Any]:
+    wire.send(json.dumps({"jsonrpc": "2.0", "id": number, "method": method, "params": params}))
+    while True:
+        message = json.loads(wire.recv(TIMEOUT_S))
+        if message.get("id") == number:
+            break
+    if "error" in message:
+        raise StageError(f"the gateway refused {method}: {message['error']['message']}")
+    return dict(message["result"])

@@ -1,0 +1,65 @@
+"""Runs one session of :mod:`inside_qgis` in a QGIS Desktop of its own, and passes on what happens in it."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import time
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from plugin_files import ROOT
+
+from .errors import StageError
+from .processes import Processes
+from .qgis import Profile, program
+
+SESSIONS = ROOT / "scripts" / "inside_qgis"
+
+
+def start_qgis(
+    processes: Processes, profile: Profile, session: str, plan: Mapping[str, object], display: str | None
+) -> subprocess.Popen[bytes]:
+    """Open QGIS Desktop and let ``session`` (a file of scripts/inside_qgis) work by ``plan`` in it.
+
+    ``plan["journal"]`` names the file that the session writes down in what happened.
+    """
+    journal = Path(str(plan["journal"]))
+    journal.unlink(missing_ok=True)
+    plan_file = journal.with_name("plan.json")
+    plan_file.write_text(json.dumps(plan, indent=2), encoding="utf-8")
+    env = profile.environment(packages=False) | {"FLEET_DEMO_PLAN": str(plan_file)}
+    if display is not None:
+        env |= {"DISPLAY": display, "QT_QPA_PLATFORM": "xcb"}
+    options = ["--nologo", "--noversioncheck", "--profile", "default", "--code", SESSIONS / session]
+    return processes.start("qgis", [program("qgis"), *options], env=env)
+
+
+def follow(
+    processes: Processes, qgis: subprocess.Popen[bytes], journal: Path, seconds: float
+) -> Iterator[dict[str, Any]]:
+    """Yield each entry of ``journal`` as it comes, until QGIS ends.
+
+    :raises StageError: when the session failed, QGIS ended in another way than by itself, or ``seconds``
+        passed, or a process that it needs has ended.
+    """
+    until = time.monotonic() + seconds
+    read = 0
+    while True:
+        ended = qgis.poll()
+        entries = journal.read_text(encoding="utf-8").splitlines() if journal.exists() else []
+        for line in entries[read:]:
+            entry = json.loads(line)
+            if "failed" in entry:
+                raise StageError(f"inside QGIS: {entry['failed']}")
+            yield entry
+        read = len(entries)
+        if ended is not None:
+            break
+        if time.monotonic() > until:
+            raise StageError(f"QGIS was not done after {seconds:.0f} s; its output: {processes.log('qgis')}")
+        processes.require_running(but="qgis")
+        time.sleep(0.1)
+    if ended != 0:
+        raise StageError(f"QGIS ended with status {ended}; its output: {processes.log('qgis')}")
