@@ -28,7 +28,7 @@ def serve(
         str, typer.Option(help="Where commands, requests and answers are kept.")
     ] = "sqlite:///robot-bridge.db",
     host: Annotated[str, typer.Option(help="Address to listen on; loopback only.")] = "127.0.0.1",
-    port: Annotated[int, typer.Option(help="Port to listen on; 0 takes a free one.", min=0, max=65535)] = 8765,
+    port: Annotated[int, typer.Option(help="Port to listen on; 0 takes any.", min=0, max=65535)] = 8765,
 ) -> None:
     """Serve one site to robots (/robot, and tables rr and sa) and to operators (/desk)."""
     from .gateway import GatewaySettings, run

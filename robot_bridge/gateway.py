@@ -67,7 +67,8 @@ class Gateway:
             )
         except OSError as error:
             raise BridgeError(
-                f"cannot listen on {host}:{port}: {error.strerror or error}; choose another --port, or 0 for any"
+                f"cannot listen on {host}:{port}: {error.strerror or error}; "
+                "choose another --port, or 0 for any"
             ) from error
 
     async def watch(self) -> None:

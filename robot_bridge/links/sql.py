@@ -44,10 +44,11 @@ class SqlLink:
         version = await self._database.changed_elsewhere()
         if version == self._seen_version:
             return
+        # What a robot read comes before what it says to it: it may delete and acknowledge at once.
+        await self._fleet.delivered_by_deletion(NAME)
         while rows := await self._fleet.take_requests():
             outcomes = [outcome for row in rows if (outcome := await self._deal_with(row)) is not None]
             await self._fleet.finish(outcomes, [row.id for row in rows], acks=True)
-        await self._fleet.delivered_by_deletion(NAME)
         self._seen_version = version
 
     async def _deal_with(self, row: RequestRow) -> Outcome | None:
