@@ -63,11 +63,16 @@ TITLES = {
 
 def main() -> None:
     """Write the project and the styles."""
+    with tempfile.TemporaryDirectory(prefix="fleet-qgis-") as profile:
+        application = QgsApplication([], True, profile)
+        application.initQgis()
+        _write_project(QgsProject.instance())
+        application.exitQgis()
+
+
+def _write_project(project: QgsProject) -> None:
     from published import SETTINGS
 
-    application = QgsApplication([], True, tempfile.mkdtemp(prefix="fleet-qgis-"))
-    application.initQgis()
-    project = QgsProject.instance()
     project.setFileName(str(HERE / "sample_site.qgs"))
     project.setTitle(SETTINGS.name)
     project.setCrs(QgsCoordinateReferenceSystem(SETTINGS.crs))
@@ -82,7 +87,6 @@ def main() -> None:
     project.viewSettings().setDefaultViewExtent(QgsReferencedRectangle(view, project.crs()))
     save_project(project, HERE / "sample_site.qgz")
     project.clear()
-    application.exitQgis()
 
 
 def _set_frame(project: QgsProject, settings) -> None:

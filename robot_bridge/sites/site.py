@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
+from ..robotmap.builder import Window, build_map
+from ..robotmap.model import RobotMap
 from ..robotmap.outlines import Outlines
 from .features import Area, Centreline
 from .frame import SiteFrame
 from .settings import Bounds, SiteSettings
-
-if TYPE_CHECKING:
-    from ..robotmap.builder import Window
-    from ..robotmap.model import RobotMap
 
 
 @dataclass(frozen=True)
@@ -56,25 +53,16 @@ class Site:
 
     def whole_map(self) -> RobotMap:
         """Return the map that a robot gets after Ready: everything within the bounds (paper 1, III.A)."""
-        from ..robotmap.builder import Window
-
-        b = self.bounds
-        return self._map(
-            Window((b.x_min + b.x_max) / 2, (b.y_min + b.y_max) / 2, b.x_max - b.x_min, b.y_max - b.y_min)
-        )
+        return self._map(Window.from_bounds(*self.bounds))
 
     def map_around(self, x: float, y: float, area: float) -> RobotMap:
         """Return the answer to GetMap(x, y, A): a square of ``area`` m² centred on (x, y), site frame.
 
-        :raises MapError: when the three are no window (negative area, NaN).
+        :raises WindowError: when the three are no window (no area, NaN).
         """
-        from ..robotmap.builder import Window
-
         return self._map(Window.square(x, y, area))
 
     def _map(self, window: Window) -> RobotMap:
-        from ..robotmap.builder import build_map
-
         return build_map(self.outlines, window, meta=self.map_meta())
 
     def map_meta(self) -> dict[str, str]:
