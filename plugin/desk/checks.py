@@ -17,12 +17,9 @@ from qgis.core import (
 )
 
 from ...robot_bridge.messages import SiteReport
+from ..sites.roles import KEEPOUT, ROAD_SURFACE, layers_with_role
 from .drafts import Findings, Point
 from .placement import Placement, transformed
-
-ROLE = "fleet/role"
-KEEPOUT = "keepout"
-ROAD_SURFACE = "road_surface"
 
 
 def check_bounds(points: Sequence[Point], site: SiteReport) -> Findings:
@@ -81,10 +78,9 @@ class LayerCheck:
         return Findings(warnings=(f"({x:.2f}, {y:.2f}) m{more} is not on a road surface.",))
 
     def _layers(self, role: str) -> Iterator[QgsVectorLayer]:
-        for layer in self._project.mapLayers().values():
+        for layer in layers_with_role(self._project, role):
             if (
                 isinstance(layer, QgsVectorLayer)
-                and layer.customProperty(ROLE) == role
                 and layer.isValid()
                 and layer.geometryType() == QgsWkbTypes.GeometryType.PolygonGeometry
             ):

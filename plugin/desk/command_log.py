@@ -6,12 +6,13 @@ import time
 
 from qgis.PyQt.QtCore import QModelIndex, Qt
 from qgis.PyQt.QtGui import QStandardItem, QStandardItemModel
-from qgis.PyQt.QtWidgets import QAbstractItemView, QTreeView, QWidget
+from qgis.PyQt.QtWidgets import QAbstractItemView, QHeaderView, QTreeView, QWidget
 
 from ...robot_bridge.messages import CommandReport, CommandState, CommandStep
 from .colours import COMMAND_COLOURS
 from .command_book import in_words
 from .desk import Desk
+from .robot_table import shrink
 
 COLUMNS = ("Time", "Command", "State", "Details")
 MOST_ROWS = 200
@@ -32,10 +33,12 @@ class CommandLog(QTreeView):
         self.setAlternatingRowColors(True)
         self.setUniformRowHeights(True)
         self.setIndentation(14)
-        metrics = self.fontMetrics()
-        for column, widest in enumerate(("00:00:00", "robot-1 · cone at 000.00, 00", "acknowledged")):
-            self.setColumnWidth(column, metrics.horizontalAdvance(widest) + (34 if column == 0 else 12))
-        self.header().setStretchLastSection(True)
+        shrink(self)
+        for column, widest in enumerate(("00:00:00", "", "acknowledged", "00.00 m off")):
+            width = self.fontMetrics().horizontalAdvance(widest)
+            self.setColumnWidth(column, width + (2 * self.indentation() + 12 if column == 0 else 12))
+        self.header().setStretchLastSection(False)
+        self.header().setSectionResizeMode(1, QHeaderView.ResizeMode.Stretch)
         desk.commands_changed.connect(self.show_reports)
         desk.site_changed.connect(self._site_changed)
         self._desk = desk

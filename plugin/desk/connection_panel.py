@@ -79,8 +79,8 @@ class ConnectionPanel(QWidget):
             self._state.setText(text)
         wanted = link.phase not in (Phase.CLOSED, Phase.FAILED)
         for field in (self._url, self._operator):
-            if field.isEnabled() == wanted:
-                field.setEnabled(not wanted)
+            if field.isReadOnly() != wanted:
+                field.setReadOnly(wanted)
 
 
 def _in_words(link: LinkStatus, site: SiteReport | None, now: float) -> str:

@@ -34,7 +34,7 @@ STOP_STYLE = (
 
 
 class FleetDock(QgsDockWidget):
-    """Lays the parts out so that a panel of 380 pixels shows all of them uncut."""
+    """Lays the parts out so that a panel of 400 pixels shows all of them uncut."""
 
     def __init__(self, desk: Desk, actions: Actions, parent: QWidget | None = None):
         super().__init__("Fleet", parent)
@@ -59,7 +59,7 @@ class FleetDock(QgsDockWidget):
         rows.addWidget(split, 1)
         rows.addWidget(_stop_button(actions.abort_all))
         self.setWidget(body)
-        body.setMinimumWidth(380)
+        body.setMinimumWidth(400)
         self.setToggleVisibilityAction(actions.panel)
         desk.pulled.connect(self._show_link)
         desk.link_changed.connect(self._show_link)
@@ -95,11 +95,11 @@ class FleetDock(QgsDockWidget):
 def _tools(actions: Actions) -> QGridLayout:
     grid = QGridLayout()
     grid.setSpacing(4)
-    places = ((actions.cone, 0, 0), (actions.route, 0, 1), (actions.select, 0, 2))
-    places += ((actions.follow, 1, 0), (actions.abort, 1, 1))
-    for action, row, column in places:
-        grid.addWidget(tool_button(action), row, column)
-    for column in range(3):
+    for column, action in enumerate((actions.select, actions.follow, actions.abort)):
+        grid.addWidget(tool_button(action), 0, 2 * column, 1, 2)
+    for column, action in enumerate((actions.cone, actions.route)):
+        grid.addWidget(tool_button(action), 1, 3 * column, 1, 3)
+    for column in range(6):
         grid.setColumnStretch(column, 1)
     return grid
 

@@ -111,10 +111,14 @@ def _outline(state: RobotState, with_heading: bool) -> QPainterPath:
 
 
 def _cross(painter: QPainter, colour: QColor) -> None:
-    for pen in (_pen(PAPER, 5.4), _pen(colour, 2.8)):
-        painter.setPen(pen)
-        painter.drawLine(QPointF(-11, -11), QPointF(11, 11))
-        painter.drawLine(QPointF(-11, 11), QPointF(11, -11))
+    """Draw a cross on a disc, small enough to leave the heading to be seen."""
+    centre, arm = QPointF(-7.0, 0.0), 3.1
+    painter.setPen(_pen(PAPER, 2.0))
+    painter.setBrush(QBrush(colour))
+    painter.drawEllipse(centre, 7.0, 7.0)
+    painter.setPen(_pen(PAPER, 2.4))
+    painter.drawLine(centre + QPointF(-arm, -arm), centre + QPointF(arm, arm))
+    painter.drawLine(centre + QPointF(-arm, arm), centre + QPointF(arm, -arm))
 
 
 def _pen(colour: QColor, width: float) -> QPen:

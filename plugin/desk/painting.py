@@ -88,10 +88,14 @@ class ScenePainter:
         for name, state, age, (x, y) in zip(
             robots.names, robots.state, placed.scene.ages, at, strict=True
         ):
-            silent = STATES[state] in (RobotState.STALE, RobotState.LOST)
-            text = f"{name} · {STATES[state].value} {age:.0f} s" if silent else name
-            label = self._labels.picture(text, ratio)
+            label = self._labels.picture(_label(name, STATES[state], age), ratio)
             painter.drawPixmap(QPointF(x + 15, y - label.height() / ratio / 2 - 12), label)
+
+
+def _label(name: str, state: RobotState, age: float) -> str:
+    if state is RobotState.FRESH:
+        return name
+    return f"{name} · offline" if state is RobotState.OFFLINE else f"{name} · {state.value} {age:.0f} s"
 
 
 def _draft(painter: QPainter, placed: PlacedScene, robots: Points, points: Points, cursor: Points) -> None:

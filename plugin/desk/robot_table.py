@@ -14,8 +14,8 @@ from .desk import PULL_EVERY_MS, Desk
 from .glyphs import state_icon
 from .picture import STATES, RobotView
 
-COLUMNS = ("Robot", "State", "Task", "Speed", "Battery", "Age", "Link")
-WIDEST = ("robot-00", "offline", "", "00.0 m/s", "Battery", "000.0 s", "websocket")
+COLUMNS = ("Robot", "State", "Task", "Speed", "Batt.", "Age", "Link")
+WIDEST = ("robot-0", "offline", "", "0.0 m/s", "100%", "00.0 s", "websock")
 TASK = COLUMNS.index("Task")
 SORT_ROLE = Qt.ItemDataRole.UserRole
 REFRESH_EVERY = 500 // PULL_EVERY_MS
@@ -54,7 +54,7 @@ class RobotTableModel(QAbstractTableModel):
             return STATE_COLOURS[view.state]
         if role == Qt.ItemDataRole.ToolTipRole:
             return self._tip(view)
-        if role == Qt.ItemDataRole.TextAlignmentRole and column in ("Speed", "Battery", "Age"):
+        if role == Qt.ItemDataRole.TextAlignmentRole and column in ("Speed", "Batt.", "Age"):
             return int(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
         return None
 
@@ -94,7 +94,7 @@ class RobotTableModel(QAbstractTableModel):
             return _task_in_words(self._task_of(view.name), view)
         if column == "Speed":
             return "" if report.v is None else f"{report.v:.1f} m/s"
-        if column == "Battery":
+        if column == "Batt.":
             return "" if report.battery is None else f"{report.battery:.0%}"
         return f"{view.age:.1f} s" if column == "Age" else report.link
 
@@ -102,7 +102,7 @@ class RobotTableModel(QAbstractTableModel):
         numbers = {
             "State": STATES.index(view.state),
             "Speed": view.report.v,
-            "Battery": view.report.battery,
+            "Batt.": view.report.battery,
             "Age": view.age,
         }
         if column in numbers:
@@ -157,13 +157,14 @@ class RobotTable(QTableView):
         self.setSortingEnabled(True)
         self.sortByColumn(0, Qt.SortOrder.AscendingOrder)
         self.verticalHeader().hide()
+        shrink(self)
         metrics = self.fontMetrics()
         self.verticalHeader().setDefaultSectionSize(metrics.height() + 8)
         header = self.horizontalHeader()
         header.setHighlightSections(False)
         header.setMinimumSectionSize(24)
         for column, widest in enumerate(WIDEST):
-            extra = 28 if column == 0 else 12
+            extra = 30 if column == 0 else 10
             self.setColumnWidth(column, metrics.horizontalAdvance(widest) + extra)
         header.setSectionResizeMode(TASK, QHeaderView.ResizeMode.Stretch)
 
@@ -188,6 +189,15 @@ class RobotTable(QTableView):
         index = self._sorted.mapFromSource(self._model.index(row, 0))
         if not self.selectionModel().isRowSelected(index.row(), QModelIndex()):
             self.selectRow(index.row())
+
+
+def shrink(view: QAbstractItemView) -> None:
+    """Take a size less for the cells and headers of a table in a narrow panel."""
+    font = view.font()
+    font.setPointSizeF(max(7.0, font.pointSizeF() - 1.0))
+    view.setFont(font)
+    for header in view.findChildren(QHeaderView):
+        header.setFont(font)
 
 
 def _task_in_words(task: CommandReport | None, view: RobotView) -> str:
