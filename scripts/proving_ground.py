@@ -4,7 +4,8 @@
 
 ``DATA_DIR`` is the folder of real data beside the project (``../shared/data``, see its README). The photo is
 shown from where it lies; only what is derived from the data is written, and only to ``OUT_DIR``:
-``site.toml``, ``site.gpkg`` and ``proving_ground.qgz``. Lane borders are paint, not obstacles, so the site has none.
+``site.toml``, ``site.gpkg`` and ``proving_ground.qgz``. Lane borders are paint, not obstacles, so there are
+none.
 """
 
 from __future__ import annotations
@@ -64,7 +65,8 @@ def read_surfaces(file: Path) -> list[tuple[str, shapely.Geometry]]:
     """Return (class, geometry in EPSG:32633) of each digitised road surface."""
     pyogrio = _pyogrio()
     _, _, wkb, (classes,) = pyogrio.raw.read(str(file), columns=["surface"])
-    return list(zip(classes, shapely.from_wkb(wkb), strict=True))
+    words = [name.replace("_", " ") for name in classes]
+    return list(zip(words, shapely.from_wkb(wkb), strict=True))
 
 
 def centrelines(

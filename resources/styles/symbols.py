@@ -27,9 +27,9 @@ from qgis.PyQt.QtGui import QColor, QFont
 
 INK, PAPER = "26,32,44", "255,255,255"
 SURFACES = {
-    "asphalt": ("Asphalt", "74,98,138,60", "58,78,112,190"),
-    "parking pavement": ("Parking pavement", "205,158,72,70", "150,112,46,190"),
-    "slippery": ("Slippery", "40,170,214,90", "18,118,160,220"),
+    "asphalt": ("Asphalt", "96,142,206,46", "190,214,246,200"),
+    "parking pavement": ("Parking pavement", "220,166,70,54", "255,222,150,210"),
+    "slippery": ("Slippery", "60,170,210,76", "18,118,160,220"),
 }
 OTHER_SURFACE = ("Other", "150,150,150,70", "110,110,110,190")
 
