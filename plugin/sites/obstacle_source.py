@@ -1,0 +1,104 @@
+"""A layer as it is read: everything that must be taken from it while the main thread holds it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from qgis.core import (
+    QgsAbstractFeatureSource,
+    QgsCoordinateReferenceSystem,
+    QgsExpressionContext,
+    QgsExpressionContextUtils,
+    QgsFields,
+    QgsVectorLayer,
+    QgsVectorLayerFeatureSource,
+    QgsWkbTypes,
+)
+
+from .errors import LayerTypeError
+from .roles import LayerExpressions, expressions_of, role_of
+
+
+@dataclass(frozen=True)
+class ObstacleSource:
+    """One obstacle layer, readable from any thread.
+
+    ``name`` is unique among the layers read together, so that ``name:id`` names one feature.
+    """
+
+    name: str
+    role: str
+    crs: QgsCoordinateReferenceSystem
+    fields: QgsFields
+    count: int
+    features: QgsAbstractFeatureSource
+    expressions: LayerExpressions
+    context: QgsExpressionContext
+
+
+def obstacle_sources(
+    layers: Sequence[QgsVectorLayer], general: LayerExpressions, context: QgsExpressionContext
+) -> list[ObstacleSource]:
+    """Return what is read of ``layers``; to be called in the thread that they belong to.
+
+    An expression kept in a layer wins over the one in ``general``. ``context`` is what expressions see
+    besides the layer.
+
+    :raises LayerTypeError: naming the layer that holds neither lines nor polygons.
+    """
+    for layer in layers:
+        _check(layer)
+    names = _unique([layer.name() for layer in layers])
+    return [_source(layer, name, general, context) for layer, name in zip(layers, names, strict=True)]
+
+
+def _check(layer: QgsVectorLayer) -> None:
+    if not layer.isValid():
+        raise LayerTypeError(
+            f"The layer {layer.name()} cannot be opened ({layer.source()}): repair its data source or leave "
+            "it out."
+        )
+    points = QgsWkbTypes.GeometryType.PointGeometry
+    if not layer.isSpatial() or layer.geometryType() == points:
+        held = "points" if layer.isSpatial() else "no geometry"
+        raise LayerTypeError(
+            f"The layer {layer.name()} holds {held}, and only lines and polygons are obstacles: leave it "
+            "out, or give it an extent first (for example with Buffer)."
+        )
+
+
+def _source(
+    layer: QgsVectorLayer, name: str, general: LayerExpressions, context: QgsExpressionContext
+) -> ObstacleSource:
+    own = expressions_of(layer)
+    scoped = QgsExpressionContext(context)
+    scoped.appendScope(QgsExpressionContextUtils.layerScope(layer))
+    return ObstacleSource(
+        name=name,
+        role=role_of(layer),
+        crs=layer.crs(),
+        fields=layer.fields(),
+        count=layer.featureCount(),
+        features=QgsVectorLayerFeatureSource(layer),
+        expressions=LayerExpressions(
+            height=own.height or general.height,
+            semantics=own.semantics or general.semantics,
+            outdoor=own.outdoor or general.outdoor,
+        ),
+        context=scoped,
+    )
+
+
+def _unique(names: Sequence[str]) -> list[str]:
+    """Return ``names`` with a number after each one that was there before."""
+    taken: set[str] = set()
+    unique = []
+    for name in names:
+        candidate, number = name, 1
+        while candidate in taken:
+            number += 1
+            candidate = f"{name} ({number})"
+        taken.add(candidate)
+        unique.append(candidate)
+    return unique

@@ -1,0 +1,65 @@
+"""The polygons and lines of a QGIS geometry as plain arrays."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+from qgis.core import QgsAbstractGeometry, QgsCurve, QgsCurvePolygon, QgsGeometry, QgsGeometryCollection
+
+
+class Parts(NamedTuple):
+    """Polygons as lists of (n, 2) rings, shell first; (n, 2) lines; a note for each part that is neither."""
+
+    polygons: list[list[np.ndarray]]
+    lines: list[np.ndarray]
+    notes: list[str]
+
+    @property
+    def finite(self) -> bool:
+        """Whether every coordinate is a finite number."""
+        rings = [ring for polygon in self.polygons for ring in polygon]
+        return all(np.isfinite(points).all() for points in [*rings, *self.lines])
+
+
+def parts_of(geometry: QgsGeometry) -> Parts:
+    """Return what ``geometry`` is made of: collections opened, rings closed, Z and M dropped.
+
+    A null geometry has no parts.
+    """
+    parts = Parts([], [], [])
+    for part in _simple(geometry.constGet()) if not geometry.isNull() else ():
+        if isinstance(part, QgsCurvePolygon):
+            rings = [part.exteriorRing(), *(part.interiorRing(k) for k in range(part.numInteriorRings()))]
+            parts.polygons.append([_closed(_points(ring)) for ring in rings if ring is not None])
+        elif isinstance(part, QgsCurve):
+            parts.lines.append(_points(part))
+        else:
+            kind = part.geometryType().lower()
+            parts.notes.append(f"has a {kind}, which is no area or line; it is left out")
+    return parts
+
+
+def _simple(part: QgsAbstractGeometry) -> Iterator[QgsAbstractGeometry]:
+    if isinstance(part, QgsGeometryCollection):
+        for k in range(part.numGeometries()):
+            yield from _simple(part.geometryN(k))
+    else:
+        yield part
+
+
+def _points(curve: QgsCurve) -> np.ndarray:
+    line = curve.curveToLine()
+    line.dropZValue()
+    line.dropMValue()
+    wkb = bytes(line.asWkb())
+    order = "<" if wkb[:1] == b"\x01" else ">"
+    # 9 bytes come first: byte order, geometry type, number of points.
+    return np.frombuffer(wkb, order + "f8", offset=9).reshape(-1, 2).astype(np.float64)
+
+
+def _closed(ring: np.ndarray) -> np.ndarray:
+    if len(ring) and (ring[0] != ring[-1]).any():
+        return np.concatenate([ring, ring[:1]])
+    return ring

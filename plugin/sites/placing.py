@@ -1,0 +1,113 @@
+"""From a layer's coordinates to metres in the site frame."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from qgis.core import (
+    Qgis,
+    QgsCoordinateReferenceSystem,
+    QgsCoordinateTransform,
+    QgsCoordinateTransformContext,
+    QgsCsException,
+    QgsGeometry,
+    QgsRectangle,
+)
+
+from ...robot_bridge.sites.frame import SiteFrame
+from .errors import LayerCrsError
+from .site_crs import crs_name, is_engineering
+
+Bounds = tuple[float, float, float, float]
+"""x_min, y_min, x_max, y_max."""
+
+
+class PlacingError(Exception):
+    """One geometry cannot be transformed into the site's CRS."""
+
+
+@dataclass(frozen=True)
+class SitePlacing:
+    """Where the site is: its CRS (invalid when nothing has one) and its frame in it.
+
+    ``local`` says that layers whose place is not known are in the site frame's metres already.
+    """
+
+    crs: QgsCoordinateReferenceSystem
+    frame: SiteFrame
+    transform_context: QgsCoordinateTransformContext
+    local: bool = False
+
+    def of_layer(self, name: str, crs: QgsCoordinateReferenceSystem) -> LayerPlacing:
+        """Return how the coordinates of the layer ``name`` come into the site frame.
+
+        :raises LayerCrsError: when they do not.
+        """
+        if crs.isValid() and crs == self.crs:
+            return LayerPlacing(None, self.frame)
+        unrelated = not crs.isValid() or is_engineering(crs) or is_engineering(self.crs)
+        if unrelated and not self.local:
+            raise LayerCrsError(self._why_unplaced(name, crs))
+        if unrelated:
+            return LayerPlacing(None, None)
+        return LayerPlacing(QgsCoordinateTransform(crs, self.crs, self.transform_context), self.frame)
+
+    def _why_unplaced(self, name: str, crs: QgsCoordinateReferenceSystem) -> str:
+        tick = "tick 'Layers without a CRS are already in the site frame's metres' (LOCAL=true)"
+        if not crs.isValid():
+            return (
+                f"The layer {name} has no CRS, so its place on the site is not known: set the layer's CRS "
+                f"(Layer > Set CRS of Layer), or {tick}."
+            )
+        return (
+            f"The layer {name} is in the CRS {crs_name(crs)}, which has no known relation to the site CRS "
+            f"{crs_name(self.crs)}: choose the layer's CRS as the site CRS, or {tick}."
+        )
+
+
+@dataclass(frozen=True)
+class LayerPlacing:
+    """How one layer's coordinates come into the site frame: by a transform or none, then a frame or none."""
+
+    transform: QgsCoordinateTransform | None
+    frame: SiteFrame | None
+
+    def area_of(self, window: Bounds) -> QgsRectangle | None:
+        """Return the rectangle in the layer's CRS that holds ``window``; None when it cannot be told."""
+        corners = corners_of(window)
+        if self.frame is not None:
+            corners = self.frame.to_crs(corners)
+        area = QgsRectangle(*corners.min(axis=0), *corners.max(axis=0))
+        if self.transform is None:
+            return area
+        try:
+            back = Qgis.TransformDirection.Reverse
+            return self.transform.transformBoundingBox(area, back)
+        except QgsCsException:
+            return None
+
+    def to_metres(self, geometry: QgsGeometry) -> QgsGeometry:
+        """Return ``geometry`` in metres: the site CRS's, or the site frame's where there is no frame.
+
+        :raises PlacingError: when the transform fails somewhere on it.
+        """
+        if self.transform is None:
+            return geometry
+        moved = QgsGeometry(geometry)
+        try:
+            moved.transform(self.transform)
+        except QgsCsException as error:
+            raise PlacingError(str(error)) from error
+        return moved
+
+    def to_site(self, xy: np.ndarray) -> np.ndarray:
+        """Return ``xy``, (n, 2) metres as :meth:`to_metres` gives them, as (n, 2) in the site frame."""
+        return xy if self.frame is None else self.frame.to_site(xy)
+
+
+def corners_of(bounds: Sequence[float]) -> np.ndarray:
+    """Return the four corners of (x_min, y_min, x_max, y_max) as (4, 2)."""
+    x_min, y_min, x_max, y_max = bounds
+    return np.array([[x_min, y_min], [x_max, y_min], [x_max, y_max], [x_min, y_max]])

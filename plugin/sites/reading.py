@@ -1,0 +1,155 @@
+"""Obstacle layers read into outlines; whatever could not be read as it is becomes a warning."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from qgis.core import QgsFeature, QgsFeedback, QgsRectangle
+
+from ...robot_bridge.robotmap.outlines import OutlineRow, Outlines
+from .feature_values import FeatureValues
+from .obstacle_source import ObstacleSource
+from .placing import Bounds, LayerPlacing, PlacingError, SitePlacing
+from .roles import OBSTACLE_ROLES, RAMP, STAIRS
+from .shapes import Shape, shapes_of
+
+NAMED = 5
+"""How many features a warning about a whole layer names."""
+
+
+@dataclass
+class Reading:
+    """What was read: outlines in the site frame, warnings naming layer and feature.
+
+    ``estimated`` are the sources whose height is the default. ``complete`` is false after a cancel.
+    """
+
+    rows: list[OutlineRow] = field(default_factory=list)
+    warnings: list[str] = field(default_factory=list)
+    estimated: set[str] = field(default_factory=set)
+    complete: bool = True
+
+    def outlines(self) -> Outlines:
+        """Return the outlines in the order of layers and features."""
+        return Outlines.from_rows(self.rows)
+
+
+def read_outlines(
+    sources: Sequence[ObstacleSource],
+    site: SitePlacing,
+    window: Bounds,
+    default_height: float,
+    feedback: QgsFeedback,
+) -> Reading:
+    """Return the outlines of all features whose bounding box touches ``window``, metres in the site frame.
+
+    Expressions and CRSs of every layer are checked before the first feature is read.
+
+    :raises LayerReadingError: when a layer has no known place on the site or an expression is not one.
+    """
+    readers = [_LayerReader(source, site, window, default_height) for source in sources]
+    total = max(sum(max(source.count, 0) for source in sources), 1)
+    reading, done = Reading(), 0
+    for reader in readers:
+        for feature in reader.source.features.getFeatures():
+            if feedback.isCanceled():
+                reading.complete = False
+                return reading
+            reader.read(feature, reading)
+            done += 1
+            feedback.setProgress(90.0 * done / total)
+        reader.finish(reading)
+    return reading
+
+
+class _LayerReader:
+    """Reads the features of one layer into a :class:`Reading`."""
+
+    def __init__(self, source: ObstacleSource, site: SitePlacing, window: Bounds, default_height: float):
+        self.source = source
+        self._default_height = default_height
+        self._values = FeatureValues(
+            source.name, source.fields, source.role, source.expressions, default_height, source.context
+        )
+        self._placing: LayerPlacing = site.of_layer(source.name, source.crs)
+        self._area: QgsRectangle | None = self._placing.area_of(window)
+        self._estimated: list[int] = []
+        self._odd_for_role: list[int] = []
+
+    def read(self, feature: QgsFeature, reading: Reading) -> None:
+        """Add the outlines of ``feature``, or a warning why there are none."""
+        geometry = feature.geometry()
+        if geometry.isNull() or geometry.isEmpty():
+            reading.warnings.append(self._named(feature, "has no geometry; it is left out"))
+            return
+        if not self._may_touch(geometry.boundingBox()):
+            return
+        try:
+            shapes, notes = shapes_of(self._placing.to_metres(geometry), self.source.role)
+        except PlacingError as error:
+            shapes, notes = [], [f"cannot be transformed into the site's CRS ({error}); it is left out"]
+        if shapes:
+            notes = [*notes, *self._add(feature, shapes, reading)]
+        reading.warnings.extend(self._named(feature, note) for note in notes)
+
+    def finish(self, reading: Reading) -> None:
+        """Add the warnings that are about the layer as a whole."""
+        name, role = self.source.name, self.source.role
+        reading.warnings.extend(self._values.warnings)
+        if role and role not in OBSTACLE_ROLES:
+            reading.warnings.append(f"Layer {name}: its role is {role}, yet it is exported as obstacles")
+        if self._estimated:
+            reading.warnings.append(
+                f"Layer {name}: {len(self._estimated)} heights are not known and estimated as "
+                f"{self._default_height:g} m ({_features(self._estimated)})"
+            )
+        if self._odd_for_role:
+            wanted = "lines, one a riser" if role == STAIRS else "polygons"
+            reading.warnings.append(
+                f"Layer {name}: its role {role} wants {wanted}; other features are exported as plain "
+                f"obstacles ({_features(self._odd_for_role)})"
+            )
+
+    def _may_touch(self, box: QgsRectangle) -> bool:
+        """Tell whether a feature with this bounding box must be looked at."""
+        if self._area is None or box.isNull() or not box.isFinite():
+            return True
+        return self._area.intersects(box)
+
+    def _add(self, feature: QgsFeature, shapes: Sequence[Shape], reading: Reading) -> list[str]:
+        source = f"{self.source.name}:{feature.id()}"
+        values = self._values.of(feature)
+        if values.estimated:
+            self._estimated.append(feature.id())
+            reading.estimated.add(source)
+        if any(_odd(shape, self.source.role) for shape in shapes):
+            self._odd_for_role.append(feature.id())
+        reading.rows.extend(
+            OutlineRow(
+                points=self._placing.to_site(shape.points),
+                shape_type=shape.shape_type,
+                height=values.height,
+                semantics=values.semantics,
+                source=source,
+                courtyard=shape.courtyard,
+                outdoor=values.outdoor,
+            )
+            for shape in shapes
+        )
+        return values.notes
+
+    def _named(self, feature: QgsFeature, note: str) -> str:
+        return f"Layer {self.source.name}, feature {feature.id()}: {note}"
+
+
+def _odd(shape: Shape, role: str) -> bool:
+    """Tell whether a layer of ``role`` should not hold this shape."""
+    ring = bool(len(shape.points) > 2 and (shape.points[0] == shape.points[-1]).all())
+    return (role == STAIRS and ring) or (role == RAMP and not ring)
+
+
+def _features(ids: Sequence[int]) -> str:
+    shown = ", ".join(str(number) for number in ids[:NAMED])
+    more = f" and {len(ids) - NAMED} more" if len(ids) > NAMED else ""
+    return f"feature{'s' if len(ids) > 1 else ''} {shown}{more}"

@@ -1,0 +1,65 @@
+"""From one QGIS geometry to the rings, lines and risers of a robot map."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from qgis.core import QgsAbstractGeometry, QgsGeometry
+
+from ...robot_bridge.robotmap.model import ShapeType
+from .parts import parts_of
+from .roles import RAMP, STAIRS
+from .soundness import lines_with_length, risers_of, sound_polygons
+
+SAGITTA_M = 0.02
+"""How far a chord may be from the curve it stands for (design, section 6)."""
+
+
+class Shape(NamedTuple):
+    """One outline: ``points`` is (n, 2) in the geometry's coordinates, rings repeat their first point."""
+
+    points: np.ndarray
+    shape_type: ShapeType
+    courtyard: bool = False
+
+
+class Shapes(NamedTuple):
+    """What was found in a geometry, and a note for each thing that was repaired or left out."""
+
+    shapes: list[Shape]
+    notes: list[str]
+
+
+def shapes_of(geometry: QgsGeometry, role: str = "") -> Shapes:
+    """Return the outlines in ``geometry``, which is in metres, for a layer of ``role``.
+
+    Curves become chords with a sagitta of 2 cm. Rings and lines without extent are left out, a ring that
+    crosses itself is repaired; ``notes`` says so for each. Several lines of a stairs layer are one flight,
+    a riser each, bottom first; a single one stays a low wall, which is what the paper makes of a riser.
+    """
+    curved = geometry.constGet().hasCurvedSegments()
+    if curved:
+        maximum = QgsAbstractGeometry.SegmentationToleranceType.MaximumDifference
+        geometry = QgsGeometry(geometry.constGet().segmentize(SAGITTA_M, maximum))
+    parts = parts_of(geometry)
+    if not parts.finite:
+        return Shapes([], ["has a coordinate that is not a finite number; it is left out"])
+    # Valid as a whole is the rule and quickly told; only what is not is taken apart.
+    sound = geometry.isGeosValid()
+    polygons, polygon_notes = (parts.polygons, []) if sound else sound_polygons(parts.polygons)
+    lines, line_notes = lines_with_length(parts.lines)
+    notes = [*parts.notes, *polygon_notes, *line_notes]
+    closed = _closed_type(role, curved)
+    shapes = [Shape(ring, closed, k > 0) for polygon in polygons for k, ring in enumerate(polygon)]
+    if role == STAIRS and len(lines) > 1:
+        risers, bent = risers_of(lines)
+        return Shapes([*shapes, Shape(risers, ShapeType.STAIRS)], [*notes, *bent])
+    opened = ShapeType.OPEN_CURVE if curved else ShapeType.OPEN_POLYGON
+    return Shapes([*shapes, *(Shape(line, opened) for line in lines)], notes)
+
+
+def _closed_type(role: str, curved: bool) -> ShapeType:
+    if role == RAMP:
+        return ShapeType.RAMP
+    return ShapeType.CLOSED_CURVE if curved else ShapeType.CLOSED_POLYGON

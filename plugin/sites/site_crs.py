@@ -1,0 +1,80 @@
+"""Which CRS carries the site, and which CRSs cannot."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from qgis.core import QgsCoordinateReferenceSystem, QgsUnitTypes
+
+from ...robot_bridge.sites.projections import utm_zone_of
+from .errors import SiteCrsError
+
+
+def site_crs_for(
+    chosen: QgsCoordinateReferenceSystem,
+    project: QgsCoordinateReferenceSystem,
+    layers: Sequence[QgsCoordinateReferenceSystem],
+) -> QgsCoordinateReferenceSystem:
+    """Return the CRS that carries the site: ``chosen``, else the layers' own or the project's.
+
+    The layers' own wins over the project's when it is one engineering CRS, which nothing else relates to, and
+    where there is no project. The result is invalid when no CRS is known at all.
+
+    :raises SiteCrsError: when that CRS cannot carry a site.
+    """
+    own = [crs for crs in layers if crs.isValid()]
+    shared = own[0] if own and all(crs == own[0] for crs in own) else QgsCoordinateReferenceSystem()
+    if chosen.isValid():
+        crs = chosen
+    elif is_engineering(shared) or not project.isValid():
+        crs = shared
+    else:
+        crs = project
+    if crs.isValid():
+        check_site_crs(crs)
+    return crs
+
+
+def check_site_crs(crs: QgsCoordinateReferenceSystem) -> None:
+    """Raise :class:`SiteCrsError` unless ``crs`` is a plane in true metres (design, section 4).
+
+    Projected CRSs in metres are, except Mercator ones such as EPSG:3857; so is an engineering CRS in metres,
+    which is a site frame already.
+    """
+    named = f"The CRS {crs_name(crs)} cannot carry a site"
+    if crs.isGeographic() or crs.projectionAcronym() == "geocent":
+        raise SiteCrsError(
+            f"{named}: its coordinates are not metres on a plane. "
+            f"Choose a projected CRS such as the local UTM zone{_suggestion(crs)}."
+        )
+    if crs.projectionAcronym() in ("merc", "webmerc"):
+        raise SiteCrsError(
+            f"{named}: its metres are not metres; 1 m on the ground is 1.56 m there at latitude 50°. "
+            "Choose the local UTM zone, such as EPSG:32633 for 12°E to 18°E."
+        )
+    if crs.mapUnits() != QgsUnitTypes.DistanceUnit.DistanceMeters:
+        raise SiteCrsError(
+            f"{named}: its unit is {QgsUnitTypes.toString(crs.mapUnits())}, and robots speak metres. "
+            f"Choose a CRS in metres such as the local UTM zone{_suggestion(crs)}."
+        )
+
+
+def is_engineering(crs: QgsCoordinateReferenceSystem) -> bool:
+    """Tell whether ``crs`` is local by definition, with no known place on the Earth."""
+    wkt = crs.toWkt(QgsCoordinateReferenceSystem.WktVariant.WKT_PREFERRED)
+    return wkt.startswith(("ENGCRS", "ENGINEERINGCRS", "LOCAL_CS"))
+
+
+def crs_name(crs: QgsCoordinateReferenceSystem) -> str:
+    """Return the authority's code and the name of ``crs``, as far as it has them."""
+    if crs.authid() and crs.description():
+        return f"{crs.authid()} ({crs.description()})"
+    return crs.authid() or crs.description() or "without a name"
+
+
+def _suggestion(crs: QgsCoordinateReferenceSystem) -> str:
+    """Return ``", EPSG:..."`` for the UTM zone in the middle of the CRS's area when that area is small."""
+    area = crs.bounds()
+    if area.isEmpty() or area.width() > 30.0:
+        return " (EPSG:326xx north, EPSG:327xx south of the equator)"
+    return f", {utm_zone_of(area.center().x(), area.center().y())}"
