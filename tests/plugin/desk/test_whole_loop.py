@@ -215,11 +215,8 @@ def test_unload_takes_everything_out_while_robots_drive(loop, operator, plugin, 
     items = len(iface.canvas.scene().items())
     plugin.unload()
     QTest.qWait(100)
-    assert [
-        d.objectName() for d in iface.findChildren(QDockWidget) if d.objectName().startswith("fleet")
-    ] == []
-    assert [b for b in iface.findChildren(QToolBar) if "fleet" in b.objectName().lower()] == []
-    assert [a for a in iface.findChildren(QAction) if a.objectName().startswith("fleet_")] == []
+    for kind in (QDockWidget, QToolBar, QAction):
+        assert [part.objectName() for part in iface.findChildren(kind, QRegularExpression("^fleet"))] == []
     assert QgsProject.instance().mapLayers() == {}
     assert QgsProject.instance().layerTreeRoot().findGroup("Fleet") is None
     assert len(iface.canvas.scene().items()) < items
