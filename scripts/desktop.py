@@ -16,6 +16,7 @@ import numpy as np
 from plugin_files import ROOT
 from stage.errors import StageError
 from stage.fleet import PROJECT, SITE, STARTS, start_gateway, start_robots
+from stage.picture import reduce_colours
 from stage.processes import Processes, leave_on_signals
 from stage.qgis import Profile, has_screen, virtual_screen
 from stage.session import follow, start_qgis
@@ -23,17 +24,17 @@ from stage.session import follow, start_qgis
 from robot_bridge.sites.publication import read_site
 
 FOLDER = ROOT / "build" / "desktop"
-WINDOW = (1440, 900)
+WINDOW = (1360, 850)
 PICTURE_TIMEOUT = 120.0
-EXTENT = (-2.0, -4.0, 140.0, 96.0)
+EXTENT = (0.0, 0.0, 140.0, 130.0)
 ERRANDS = {
-    "r1": [(96.0, 8.0)],
-    "r2": [(72.0, 84.0), (72.0, 76.0)],
+    "r1": [(104.0, 8.0)],
+    "r2": [(46.0, 84.0), (70.0, 84.0), (72.0, 82.0), (72.0, 76.0)],
     "r3": [(60.0, 22.0), (44.0, 22.0), (28.0, 22.0)],
 }
 """For the picture: where each robot is sent, site frame, metres; one place is a cone target."""
 
-DRIVE_SECONDS = 6.0
+DRIVE_SECONDS = 14.0
 
 
 def plan(address: str, picture: Path | None) -> dict[str, object]:
@@ -89,6 +90,8 @@ def run(picture: Path | None) -> None:
         patience = PICTURE_TIMEOUT if picture else float("inf")
         for entry in follow(processes, qgis, Path(str(told["journal"])), patience):
             print(f"{entry['text']}", flush=True)
+    if picture is not None:
+        reduce_colours(picture)
 
 
 def main() -> int:

@@ -16,6 +16,7 @@ def work(session: Session) -> None:
     layers = session.open_project()
     session.happened("project", f"QGIS opened the sample project: {layers} layers, all valid", layers=layers)
     session.size_window(1440, 900)
+    operator.close_panel("Browser")
     operator.show_map(plan["extent"], plan["crs"])
     connect(session)
     send_cone(session, "r1", plan["cone"])
@@ -52,7 +53,7 @@ def connect(session: Session) -> None:
 def send_cone(session: Session, robot: str, place: list[float]) -> None:
     operator = session.operator
     operator.select(robot)
-    operator.press("fleet_cone_target")
+    operator.choose("fleet_cone_target")
     operator.click_map(*place, session.plan["crs"])
     send(session, robot, "cone target")
 
@@ -60,7 +61,7 @@ def send_cone(session: Session, robot: str, place: list[float]) -> None:
 def send_route(session: Session, robot: str, places: list[list[float]]) -> None:
     operator = session.operator
     operator.select(robot)
-    operator.press("fleet_draw_route")
+    operator.choose("fleet_draw_route")
     for place in places:
         operator.click_map(*place, session.plan["crs"])
     send(session, robot, f"route of {len(places)} points")

@@ -31,10 +31,11 @@ def all_fresh(session: Session) -> bool:
 def picture(session: Session) -> None:
     """Let every robot drive, then save the window as it looks."""
     plan, operator = session.plan, session.operator
+    operator.close_panel("Browser")
     operator.show_map(plan["extent"], plan["crs"])
     for robot, places in plan["errands"].items():
         operator.select(robot)
-        operator.press("fleet_cone_target" if len(places) == 1 else "fleet_draw_route")
+        operator.choose("fleet_cone_target" if len(places) == 1 else "fleet_draw_route")
         for place in places:
             operator.click_map(*place, plan["crs"])
         operator.press("fleet_send")

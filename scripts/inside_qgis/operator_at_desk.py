@@ -28,6 +28,8 @@ from qgis.PyQt.QtWidgets import (
 )
 
 POLL_MS = 50
+SMALLEST = 0
+"""Qt's word for the slowest and smallest PNG."""
 
 
 class NotHappenedError(Exception):
@@ -127,11 +129,20 @@ class OperatorAtDesk:
         table.scrollTo(index)
         self._click(table.viewport(), table.visualRect(index).center())
 
+    def close_panel(self, name: str) -> None:
+        """Close one of QGIS's own panels."""
+        self._find(QDockWidget, name).close()
+
     def press(self, action: str) -> None:
         """Click the dock's button of ``action``."""
         button = self._find(QAbstractButton, f"{action}_button")
         self.wait(f"button {action} becoming usable", button.isEnabled, 5)
         self._click(button, button.rect().center())
+
+    def choose(self, tool: str) -> None:
+        """Click the dock's button of a map tool, unless the tool is in hand already."""
+        if not self._find(QAbstractButton, f"{tool}_button").isChecked():
+            self.press(tool)
 
     def click_map(self, x: float, y: float, crs: str) -> None:
         """Click the map where (x, y) in ``crs`` is."""
@@ -159,7 +170,7 @@ class OperatorAtDesk:
         :raises NotHappenedError: when the file cannot be written.
         """
         path.parent.mkdir(parents=True, exist_ok=True)
-        if not widget.grab().save(str(path)):
+        if not widget.grab().save(str(path), "PNG", SMALLEST):
             raise NotHappenedError(f"the picture could not be saved as {path}")
 
     def _find(self, kind: type, name: str):

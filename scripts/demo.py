@@ -1,0 +1,143 @@
+"""Run the main job once, for real and without a display, and leave build/demo/.
+
+A gateway with SQLite, three simulated robots, a robot map exported by qgis_process, QGIS Desktop with the
+plugin on a virtual screen, and an operator who clicks. The exit status is 0 only when every step really
+happened; every process that was started has ended then, and also when something failed.
+"""
+
+from __future__ import annotations
+
+import platform
+import shutil
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+from plugin_files import ROOT, version
+from stage.desk_wire import ask
+from stage.errors import StageError
+from stage.fleet import PROJECT, SITE, STARTS, start_gateway, start_robots
+from stage.map_export import export
+from stage.processes import Processes, leave_on_signals
+from stage.qgis import Profile, virtual_screen
+from stage.report import PAPER_BYTES_PER_M2, Report
+from stage.session import follow, start_qgis
+from stage.verdict import Errand, Outcome, judge
+
+from robot_bridge.sites.publication import read_site
+from robot_bridge.sites.site import Site
+
+FOLDER = ROOT / "build" / "demo"
+SCREEN = (1440, 900)
+EXTENT = (0.0, 0.0, 130.0, 112.0)
+CONE = (58.0, 8.0)
+ROUTE = [(46.0, 84.0), (66.0, 84.0), (71.0, 82.0), (72.0, 76.0)]
+FAR = (44.0, 22.0)
+ERRANDS = (Errand("r1", CONE, "reached"), Errand("r2", ROUTE[-1], "reached"), Errand("r3", FAR, "aborted"))
+DESK_TIMEOUT = 240.0
+
+
+class Demonstration:
+    """Does one step after the other, printing and noting each when it has happened."""
+
+    def __init__(self, processes: Processes, report: Report):
+        self._processes = processes
+        self._report = report
+        self._site = read_site(SITE)
+        self._began = time.monotonic()
+
+    def run(self) -> None:
+        """Do everything.
+
+        :raises StageError: at the first step that does not happen.
+        """
+        database = FOLDER / "fleet.db"
+        address = start_gateway(self._processes, database)
+        self._happened(f"the gateway serves {self._site.name!r} at {address}, SQLite")
+        start_robots(self._processes, address, database)
+        profile = Profile(FOLDER / "profile", link=False)
+        self._export(profile)
+        self._drive(profile, address)
+        self._judge(address)
+
+    def _export(self, profile: Profile) -> None:
+        exported = self._report.exported = export(profile, FOLDER / "site.map", FOLDER / "site.bin")
+        self._happened(
+            f"qgis_process wrote the robot map: {exported.obstacles} obstacles, {exported.segments} segments"
+        )
+        per_m2 = f"{exported.text_bytes / exported.area:.2f} bytes/m² (paper: {PAPER_BYTES_PER_M2:g})"
+        self._happened(
+            f"as text it has {exported.text_bytes} bytes, {per_m2}; as binary {exported.binary_bytes}, same map"
+        )
+
+    def _drive(self, profile: Profile, address: str) -> None:
+        display = virtual_screen(self._processes, *SCREEN)
+        plan = desk_plan(self._site, address)
+        qgis = start_qgis(self._processes, profile, "demo_session.py", plan, display)
+        for entry in follow(self._processes, qgis, Path(str(plan["journal"])), DESK_TIMEOUT):
+            self._happened(entry["text"])
+
+    def _judge(self, address: str) -> None:
+        commands, positions = ask(address, ("get_commands", {}), ("get_positions", {}))
+        poses = {robot["robot"]: robot for robot in positions["robots"]}
+        tolerance = self._site.settings.reached_tolerance_m
+        outcomes = [judge(errand, commands["commands"], poses, tolerance) for errand in ERRANDS]
+        self._report.outcomes = outcomes
+        self._happened("the gateway's own record agrees: " + ", ".join(map(in_words, outcomes)))
+
+    def _happened(self, text: str) -> None:
+        at = time.monotonic() - self._began
+        self._report.steps.append((at, text))
+        print(f"{at:6.1f} s  {text}", flush=True)
+
+
+def in_words(outcome: Outcome) -> str:
+    """Return an outcome in a few words."""
+    off = "" if outcome.off_target is None else f", {outcome.off_target:.2f} m off"
+    return f"{outcome.errand.robot} {outcome.errand.outcome}{off}"
+
+
+def desk_plan(site: Site, address: str) -> dict[str, object]:
+    """Return what the session inside QGIS is told; places are in the site's CRS, metres."""
+    return {
+        "journal": str(FOLDER / "journal.jsonl"),
+        "project": str(PROJECT),
+        "gateway": address,
+        "robots": [start.name for start in STARTS],
+        "crs": site.frame.crs,
+        "extent": site.frame.to_crs(np.array([EXTENT[:2], EXTENT[2:]])).ravel().tolist(),
+        "cone": site.frame.to_crs(np.array([CONE]))[0].tolist(),
+        "route": site.frame.to_crs(np.array(ROUTE)).tolist(),
+        "far": site.frame.to_crs(np.array([FAR]))[0].tolist(),
+        "picture": str(FOLDER / "canvas.png"),
+    }
+
+
+def versions() -> dict[str, str]:
+    """Return the versions that the report names."""
+    from qgis.core import Qgis
+
+    return {"Fleet Supervisor": version(), "QGIS": Qgis.QGIS_VERSION, "Python": platform.python_version()}
+
+
+def main() -> int:
+    leave_on_signals()
+    shutil.rmtree(FOLDER, ignore_errors=True)
+    FOLDER.mkdir(parents=True)
+    report = Report(versions())
+    try:
+        with Processes(FOLDER / "logs") as processes:
+            Demonstration(processes, report).run()
+    except StageError as error:
+        print(f"demo: error: {error}\n(logs: {FOLDER / 'logs'})", file=sys.stderr)
+        return 1
+    except KeyboardInterrupt:
+        return 130
+    (FOLDER / "report.md").write_text(report.text(), encoding="utf-8")
+    print(f"see {FOLDER}: report.md, canvas.png, site.map, site.bin")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

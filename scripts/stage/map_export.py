@@ -1,0 +1,92 @@
+"""Exports the sample site's robot map with a real qgis_process, as a script would, and reads it back."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from robot_bridge.robotmap.binary import decode_text
+from robot_bridge.robotmap.text import read_text
+from robot_bridge.sites.publication import read_site
+
+from .errors import StageError
+from .fleet import PROJECT, SITE
+from .qgis import Profile, program
+
+LAYERS = ("Buildings", "Walls", "Columns", "Litter bins", "Stairs")
+TIMEOUT_S = 120
+FORMATS = ("text", "binary")
+
+
+@dataclass(frozen=True)
+class ExportedMap:
+    """What the two files hold. ``area`` is that of the window, m²; sizes are bytes."""
+
+    obstacles: int
+    segments: int
+    warnings: int
+    area: float
+    text_bytes: int
+    binary_bytes: int
+
+
+def export(profile: Profile, text: Path, binary: Path) -> ExportedMap:
+    """Write the whole sample site as ``text`` and as ``binary``; both must hold the same map.
+
+    :raises StageError: when the algorithm fails, or what it wrote is empty or cannot be read back.
+    """
+    for path, format_name in zip((text, binary), FORMATS, strict=True):
+        path.unlink(missing_ok=True)
+        _run(profile, path, format_name)
+    written = text.read_text(encoding="utf-8")
+    if decode_text(binary.read_bytes()) != written:
+        raise StageError(f"{binary} does not hold the same map as {text}")
+    robot_map = read_text(written)
+    if not robot_map.obstacles:
+        raise StageError(f"{text} holds no obstacle")
+    x_min, y_min, x_max, y_max = read_site(SITE).bounds
+    return ExportedMap(
+        obstacles=len(robot_map.obstacles),
+        segments=sum(len(obstacle.height) for obstacle in robot_map.obstacles),
+        warnings=len(robot_map.warnings),
+        area=(x_max - x_min) * (y_max - y_min),
+        text_bytes=text.stat().st_size,
+        binary_bytes=binary.stat().st_size,
+    )
+
+
+def _run(profile: Profile, output: Path, format_name: str) -> None:
+    done = subprocess.run(
+        [program("qgis_process"), "run", "fleet:exportrobotmap", "--", *_parameters(output, format_name)],
+        env={**os.environ, "QT_QPA_PLATFORM": "offscreen", **profile.environment(packages=True)},
+        capture_output=True,
+        text=True,
+        timeout=TIMEOUT_S,
+        check=False,
+    )
+    if done.returncode != 0 or not output.is_file():
+        said = re.sub(r"\n{2,}", "\n", done.stdout + done.stderr)[-1500:]
+        raise StageError(f"qgis_process wrote no {output} (status {done.returncode}); it said:\n{said}")
+
+
+def _parameters(output: Path, format_name: str) -> list[str]:
+    site = read_site(SITE)
+    x_min, y_min, x_max, y_max = site.bounds
+    (centre,) = site.frame.to_crs(np.array([[(x_min + x_max) / 2, (y_min + y_max) / 2]]))
+    place = f"{{:.3f}},{{:.3f}} [{site.frame.crs}]"
+    return [
+        f"PROJECT_PATH={PROJECT}",
+        *(f"OBSTACLES={layer}" for layer in LAYERS),
+        f"CENTER={place.format(*centre)}",
+        f"WIDTH={x_max - x_min}",
+        f"HEIGHT={y_max - y_min}",
+        f"SITE_CRS={site.frame.crs}",
+        f"ORIGIN={place.format(*site.frame.origin)}",
+        f"FORMAT={FORMATS.index(format_name)}",
+        f"OUTPUT={output}",
+    ]
