@@ -139,7 +139,7 @@ def test_a_websocket_that_does_not_speak_the_desks_protocol_is_named(connection,
     assert gateway.url in reason
 
 
-def test_numbers_that_are_none_are_a_fault_of_the_gateway_and_not_a_crash(connection, gateway, make_robot, wait):
+def test_numbers_that_are_none_are_the_gateways_fault_and_no_crash(connection, gateway, make_robot, wait):
     connection.open(gateway.url, "anna")
     wait(lambda: phase_of(connection) is Phase.CONNECTED)
     wait(lambda: gateway._sockets)

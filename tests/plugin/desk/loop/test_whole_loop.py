@@ -1,113 +1,19 @@
-"""The real loop: a gateway process, robots as processes of their own, and the plugin on a QGIS canvas."""
+"""What an operator does on the sample site, and what becomes of it."""
 
 from __future__ import annotations
 
 import math
 import signal
-import sys
 import threading
 
-import pytest
 from fleet_supervisor.robot_bridge.messages import CommandState
-from inside_qgis.operator_at_desk import OperatorAtDesk
 from qgis.core import QgsProject
 from qgis.PyQt.QtCore import QRegularExpression, Qt
 from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import QAction, QDockWidget, QToolBar
-from stage.processes import Processes
 
-CRS = "EPSG:32633"
 TOLERANCE = 0.20
 LIFE = ["queued", "delivered", "acknowledged", "reached"]
-
-
-class Loop:
-    """One gateway and its robots, and the desk that looks at them."""
-
-    def __init__(self, processes, root, folder):
-        self._processes = processes
-        self._site = root / "resources" / "sample_site"
-        self._database = f"sqlite:///{folder / 'fleet.db'}"
-        self.address = ""
-        self._runs = 0
-
-    def start_gateway(self, port=0):
-        self._runs += 1
-        options = ["--site", self._site, "--port", str(port), "--database", self._database]
-        self.gateway = self._processes.start(
-            f"gateway-{self._runs}", [sys.executable, "-m", "robot_bridge", "serve", *options]
-        )
-        found = self._processes.wait_for_line(f"gateway-{self._runs}", r"listening on (ws://\S+:(\d+))", 30)
-        self.address, self.port = found.group(1), int(found.group(2))
-
-    def start_robot(self, name, pose, *, sql=False):
-        way = ["--database", self._database] if sql else ["--url", f"{self.address}/robot"]
-        where = ",".join(str(number) for number in pose)
-        options = ["--name", name, f"--pose={where}", "--speed", "2.5", "--rate", "10"]
-        return self._processes.start(name, [sys.executable, "-m", "robot_bridge", "robot", *way, *options])
-
-
-@pytest.fixture
-def loop(tmp_path, root):
-    with Processes(tmp_path / "logs") as processes:
-        running = Loop(processes, root, tmp_path)
-        running.start_gateway()
-        yield running
-
-
-class Operator(OperatorAtDesk):
-    """The demonstration's operator, who also reads what the desk knows to the millimetre."""
-
-    def __init__(self, plugin, iface):
-        super().__init__(iface)
-        self.desk = plugin.window.desk
-        self._reports = {}
-        self.desk.commands_changed.connect(self._note)
-
-    def _note(self, reports):
-        self._reports.update({report.command: report for report in reports})
-
-    def connect_to(self, loop, robots):
-        """Connect, wait for the robots, and look at the whole site."""
-        self.connect(f"{loop.address}/desk", "anna")
-        self.wait(f"seeing {robots}", lambda: set(self.states()) == set(robots), 15)
-        self.show_site()
-
-    def show_site(self, margin=0.0):
-        x_min, y_min, x_max, y_max = self.desk.site.bounds
-        e, n = self.desk.site.origin
-        self.show_map((e + x_min - margin, n + y_min - margin, e + x_max + margin, n + y_max + margin), CRS)
-
-    def report(self, robot):
-        return self.desk.picture.view(robot, self.desk.clock()).report
-
-    def states(self):
-        return {view.name: view.state.value for view in self.desk.picture.views(self.desk.clock())}
-
-    def click_site(self, x, y):
-        e, n = self.desk.site.origin
-        self.click_map(e + x, n + y, CRS)
-
-    def set_cone(self, robot, x, y):
-        self.select(robot)
-        self.choose("fleet_cone_target")
-        self.click_site(x, y)
-        self.press("fleet_send")
-
-    def sent_to(self, robot):
-        return [command for command in self._reports.values() if command.robot == robot]
-
-    def wait_for_state(self, robot, op, state, seconds=40):
-        def now():
-            return [c for c in self.sent_to(robot) if c.op == op and c.state is state]
-
-        self.wait(f"{op} of {robot} being {state.value}", now, seconds)
-        return now()[0]
-
-
-@pytest.fixture
-def operator(plugin, iface):
-    return Operator(plugin, iface)
 
 
 def off(report, x, y):
