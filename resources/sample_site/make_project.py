@@ -106,7 +106,7 @@ def _vector_layer(name: str) -> QgsVectorLayer:
     layer = QgsVectorLayer(f"{HERE / 'sample_site.gpkg'}|layername={name}", TITLES[name], "ogr")
     look = "ramps" if name == "ramp" else name
     style(layer, look)
-    layer.saveNamedStyle(str(ROOT / "resources" / "styles" / f"{look}.qml"))
+    _save_style(layer, ROOT / "resources" / "styles" / f"{look}.qml")
     role, height, semantics = ROLES[name]
     layer.setCustomProperty("fleet/role", role)
     if height is not None:
@@ -115,6 +115,15 @@ def _vector_layer(name: str) -> QgsVectorLayer:
         layer.setCustomProperty("fleet/outdoor", "true")
     layer.setDisplayExpression('"surface"' if name.startswith("road") else '"name"')
     return layer
+
+
+def _save_style(layer: QgsVectorLayer, file: Path) -> None:
+    """Keep how ``layer`` looks, and nothing that would take the role of the layer it is given to."""
+    category = QgsMapLayer.StyleCategory
+    looks = QgsMapLayer.StyleCategories(category.Symbology | category.Labeling | category.Rendering)
+    message, saved = layer.saveNamedStyle(str(file), looks)
+    if not saved:
+        raise SystemExit(f"{file} cannot be written: {message}")
 
 
 def _photo() -> QgsRasterLayer:

@@ -111,10 +111,22 @@ def _read(file: Path, spec: LayerSpec, crs: str) -> Layer:
         if name not in values:
             raise LayerError(f"{file}, layer {spec.name}: the field {name!r} is missing. {_REPAIR}")
     _check_crs(file, spec, meta["crs"], crs)
-    # A GeoPackage holds NaN and broken rings as they are, so nothing here may rely on valid geometry.
-    layer = Layer(spec, ids, _shapely().from_wkb(wkb), {name: values[name] for name in spec.fields})
+    layer = Layer(spec, ids, _geometries(wkb, ids, spec, file), {name: values[name] for name in spec.fields})
     check_features(layer, str(file))
     return layer
+
+
+def _geometries(wkb: Any, ids: Any, spec: LayerSpec, file: Path) -> np.ndarray[Any, Any]:
+    # A GeoPackage keeps unclosed rings and half geometries; shapely does not say which one it was.
+    with np.errstate(invalid="ignore"):
+        geometries: np.ndarray[Any, Any] = _shapely().from_wkb(wkb, on_invalid="ignore")
+    unreadable = _shapely().is_missing(geometries) & np.array([blob is not None for blob in wkb], dtype=bool)
+    if unreadable.any():
+        raise LayerError(
+            f"{file}, layer {spec.name}, feature {ids[np.argmax(unreadable)]}: its geometry is broken, "
+            f"such as a ring that is not closed. Correct it in the source layer. {_REPAIR}"
+        )
+    return geometries
 
 
 def _check_crs(file: Path, spec: LayerSpec, found: str | None, wanted: str) -> None:

@@ -78,6 +78,8 @@ def _geometry(outlines: Outlines, first: int, last: int, frame: SiteFrame) -> An
     rings = [frame.to_crs(_points(outlines, k)) for k in range(first, last)]
     shape_type, source = ShapeType(int(outlines.shape_type[first])), outlines.source[first]
     try:
+        if not all(np.isfinite(ring).all() for ring in rings):
+            raise ValueError("it has a coordinate that is NaN or infinite")
         if shape_type is ShapeType.STAIRS:
             return shapely.MultiLineString(list(rings[0].reshape(-1, 2, 2)))
         if shape_type in _RINGS:

@@ -1,0 +1,47 @@
+"""The script that makes the sample site: twice the same, and the same as what lies beside it."""
+
+import shutil
+import subprocess
+import sys
+
+import pytest
+
+from robot_bridge.sites.publication import read_site
+
+
+@pytest.fixture
+def workshop(root, sample_site, tmp_path):
+    """A copy of the script in a tree of its own, with nothing made yet."""
+    (tmp_path / "robot_bridge").symlink_to(root / "robot_bridge")
+    folder = tmp_path / "resources" / "sample_site"
+    shutil.copytree(
+        sample_site, folder, ignore=shutil.ignore_patterns("*.gpkg", "*.tif", "*.qgz", "site.toml")
+    )
+    shutil.copytree(root / "resources" / "styles", tmp_path / "resources" / "styles")
+    return folder
+
+
+def make(folder, *parts):
+    subprocess.run([sys.executable, str(folder / "make_sample_site.py"), *parts], check=True, timeout=120)
+
+
+def test_two_runs_give_the_same_bytes(workshop, sample_site):
+    shutil.copy(sample_site / "orthophoto.tif", workshop)
+    results = []
+    for _ in range(2):
+        make(workshop, "layers", "project")
+        names = ("sample_site.gpkg", "site.gpkg", "site.toml", "sample_site.qgz")
+        results.append({name: (workshop / name).read_bytes() for name in names})
+    assert results[0] == results[1]
+
+
+def test_the_repository_holds_what_the_script_makes(workshop, sample_site):
+    make(workshop, "layers")
+    made, kept = read_site(workshop), read_site(sample_site)
+    assert made.settings == kept.settings
+    assert made.outlines.coordinates.tolist() == kept.outlines.coordinates.tolist()
+    assert list(made.outlines.semantics) == list(kept.outlines.semantics)
+    assert [road.points.tolist() for road in made.centrelines] == [
+        road.points.tolist() for road in kept.centrelines
+    ]
+    assert [len(area.rings) for area in made.surfaces] == [len(area.rings) for area in kept.surfaces]

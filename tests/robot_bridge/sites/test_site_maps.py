@@ -1,0 +1,82 @@
+"""The robot maps that a site gives out, on the sample site."""
+
+import numpy as np
+import pytest
+
+from robot_bridge.robotmap.errors import WindowError
+from robot_bridge.robotmap.model import ShapeType
+from robot_bridge.robotmap.text import write_text
+from robot_bridge.sites.publication import read_site
+
+
+@pytest.fixture(scope="module")
+def site(root):
+    return read_site(root / "resources" / "sample_site")
+
+
+def kinds(robot_map):
+    return {obstacle.semantics.partition(",")[0] for obstacle in robot_map.obstacles}
+
+
+def test_the_whole_map_is_the_bounds_with_every_obstacle(site):
+    whole = site.whole_map()
+    assert tuple(whole.border) == tuple(site.bounds) == (0.0, 0.0, 200.0, 160.0)
+    assert len(whole.obstacles) == len(site.outlines)
+    assert kinds(whole) == {"building", "wall", "column", "litter bin", "bench", "stairs", "ramp"}
+    assert whole.warnings == ()
+
+
+def test_every_map_says_where_it_belongs(site):
+    expected = {
+        "version": "1",
+        "crs": "EPSG:32633",
+        "origin": "640420.000,5193480.000",
+        "rotation": "0.000000000",
+        "id": "sample",
+    }
+    for robot_map in (site.whole_map(), site.map_around(100.0, 80.0, 400.0)):
+        assert robot_map.meta == expected
+    assert "EPSG:32633" in write_text(site.whole_map()).partition("border;")[0]
+
+
+def test_get_map_is_a_square_of_the_area_around_the_robot(site):
+    border = site.map_around(150.0, 119.5, 10000.0).border
+    assert tuple(border) == (100.0, 69.5, 200.0, 169.5)
+
+
+def test_the_walls_of_the_courtyard_have_their_free_space_inside(site):
+    court = site.map_around(150.0, 119.5, 400.0)
+    middle = np.array([150.0, 119.5])
+    (walls,) = [obstacle for obstacle in court.obstacles if obstacle.semantics == "building,Hall A"]
+    assert walls.shape_type is ShapeType.CLOSED_POLYGON
+    along, inwards = walls.b - walls.a, middle - walls.a
+    assert np.all(along[:, 0] * inwards[:, 1] - along[:, 1] * inwards[:, 0] < 0)
+
+
+def test_a_window_on_the_meadow_is_empty_and_still_a_map(site):
+    assert site.map_around(20.0, 55.0, 25.0).obstacles == ()
+
+
+def test_stairs_are_risers_of_15_cm_that_end_flat(site):
+    (stairs,) = [o for o in site.whole_map().obstacles if o.shape_type is ShapeType.STAIRS]
+    assert len(stairs.height) == 8
+    assert np.allclose(stairs.height[:-1], 0.15)
+    assert stairs.height[-1] == 0.0
+
+
+@pytest.mark.parametrize("area", [0.0, -4.0, float("nan"), float("inf")])
+def test_an_area_that_is_none_is_refused(site, area):
+    with pytest.raises(WindowError):
+        site.map_around(10.0, 10.0, area)
+
+
+@pytest.mark.parametrize(
+    ("x", "y", "inside"),
+    [(0, 0, True), (200, 160, True), (100, 80, True), (-0.01, 80, False), (100, 160.01, False)],
+)
+def test_the_edge_of_the_bounds_belongs_to_the_site(site, x, y, inside):
+    assert site.contains(x, y) is inside
+
+
+def test_a_target_that_is_not_a_number_is_not_on_the_site(site):
+    assert not site.contains(float("nan"), 10.0)
