@@ -7,6 +7,7 @@ happened; every process that was started has ended then, and also when something
 
 from __future__ import annotations
 
+import os
 import platform
 import shutil
 import sys
@@ -28,7 +29,7 @@ from stage.verdict import Errand, Outcome, judge
 from robot_bridge.sites.publication import read_site
 from robot_bridge.sites.site import Site
 
-FOLDER = ROOT / "build" / "demo"
+FOLDER = Path(os.environ.get("FLEET_DEMO_FOLDER") or ROOT / "build" / "demo")
 SCREEN = (1440, 900)
 EXTENT = (0.0, 0.0, 130.0, 112.0)
 CONE = (58.0, 8.0)
@@ -68,7 +69,7 @@ class Demonstration:
         )
         per_m2 = f"{exported.text_bytes / exported.area:.2f} bytes/m² (paper: {PAPER_BYTES_PER_M2:g})"
         self._happened(
-            f"as text it has {exported.text_bytes} bytes, {per_m2}; as binary {exported.binary_bytes}, same map"
+            f"as text {exported.text_bytes} bytes, {per_m2}; as binary {exported.binary_bytes}, the same map"
         )
 
     def _drive(self, profile: Profile, address: str) -> None:

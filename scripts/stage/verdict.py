@@ -56,7 +56,9 @@ def judge(errand: Errand, commands: Sequence[Wire], poses: Mapping[str, Wire], t
         pose = poses[errand.robot]
         off_target = math.dist((pose["x"], pose["y"]), _end_of(command))
         if off_target > tolerance:
-            raise StageError(f"{errand.robot} stands {off_target:.2f} m from its target, not within {tolerance} m")
+            raise StageError(
+                f"{errand.robot} stands {off_target:.2f} m from its target, not within {tolerance} m"
+            )
     first = command["steps"][0]["at"]
     return Outcome(errand, {step["state"]: step["at"] - first for step in command["steps"][1:]}, off_target)
 

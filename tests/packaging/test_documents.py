@@ -1,0 +1,96 @@
+"""What the documents say is there: links, targets of the Makefile, commands."""
+
+from __future__ import annotations
+
+import re
+import shlex
+import subprocess
+import time
+from pathlib import Path
+
+import pytest
+from stage.desk_wire import ask
+from stage.processes import Processes
+
+ROOT = Path(__file__).resolve().parents[2]
+DOCUMENTS = [ROOT / "README.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").glob("*.md"))]
+GUIDES = {"architecture.md", "install.md", "integrator.md", "operator.md", "robot-map.md"}
+LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
+
+
+def commands(document: Path, start: str) -> list[str]:
+    """Return the lines of code in ``document`` that begin with ``start``, without their remarks."""
+    lines = (line.strip() for line in document.read_text(encoding="utf-8").splitlines() if line[:4].isspace())
+    return [line.split("  #")[0].split("   ")[0].strip() for line in lines if line.startswith(start)]
+
+
+def anchors(document: Path) -> set[str]:
+    headings = re.findall(r"^#+ (.+)$", document.read_text(encoding="utf-8"), re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
+
+
+@pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: path.name)
+def test_every_link_resolves(document):
+    for target in LINK.findall(document.read_text(encoding="utf-8")):
+        if target.startswith(("http://", "https://")):
+            continue
+        name, _, anchor = target.partition("#")
+        path = document.parent / name if name else document
+        assert path.exists(), f"{document.name} links to {target}, which is not there"
+        assert not anchor or anchor in anchors(path), f"{document.name} links to {target}: no such heading"
+
+
+def test_the_readme_leads_to_every_guide():
+    assert {path.name for path in (ROOT / "docs").glob("*.md")} == GUIDES
+    linked = {Path(target).name for target in LINK.findall((ROOT / "README.md").read_text(encoding="utf-8"))}
+    assert linked >= GUIDES
+
+
+def test_the_two_commands_come_first():
+    assert commands(ROOT / "README.md", "")[:2] == ["make demo", "make test"]
+
+
+def test_every_make_target_that_a_document_names_is_there():
+    named = set()
+    for document in DOCUMENTS:
+        text = document.read_text(encoding="utf-8")
+        named |= set(re.findall(r"`make ([a-z]+)", text))
+        named |= {line.split()[1] for line in commands(document, "make ")}
+    assert {"demo", "test", "desktop", "install", "package"} <= named
+    for target in sorted(named):
+        done = subprocess.run(
+            ["make", "--dry-run", target], cwd=ROOT, capture_output=True, text=True, check=False
+        )
+        assert done.returncode == 0, f"a document names make {target}: {done.stderr}"
+
+
+def test_the_help_lists_every_target():
+    shown = subprocess.run(["make"], cwd=ROOT, capture_output=True, text=True, check=True).stdout
+    phony = re.search(r"^\.PHONY: (.+)$", (ROOT / "Makefile").read_text(encoding="utf-8"), re.MULTILINE)
+    assert set(re.findall(r"^  make (\w+)", shown, re.MULTILINE)) == set(phony.group(1).split())
+
+
+def test_gateway_and_robot_run_as_the_readme_says(tmp_path):
+    serve, robot, *_ = commands(ROOT / "README.md", ".venv/bin/robot-bridge")
+    assert "serve" in serve
+    assert "--url ws://127.0.0.1:8765/robot" in robot
+    with Processes(tmp_path) as processes:
+        database = f"sqlite:///{tmp_path / 'fleet.db'}"
+        processes.start("gateway", [*words(serve), "--port", "0", "--database", database])
+        address = processes.wait_for_line("gateway", r"listening on (ws://\S+)", 30).group(1)
+        processes.start("robot", words(robot.replace("ws://127.0.0.1:8765", address)))
+        until = time.monotonic() + 15
+        while not (robots := ask(address, ("get_positions", {}))[0]["robots"]) or robots[0].get("x") is None:
+            processes.require_running()
+            assert time.monotonic() < until, "the robot did not come up"
+            time.sleep(0.2)
+    assert robots[0]["robot"] == "r1"
+    assert robots[0]["x"] == pytest.approx(20, abs=0.2)
+
+
+def words(command: str) -> list[str]:
+    first, *rest = shlex.split(command)
+    return [
+        str(ROOT / first),
+        *(str(ROOT / word) if word.startswith("resources/") else word for word in rest),
+    ]

@@ -1,0 +1,150 @@
+"""The demonstration claims only what happened, and leaves no process behind."""
+
+from __future__ import annotations
+
+import copy
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from stage.errors import StageError
+from stage.processes import Processes
+from stage.verdict import Errand, judge
+
+SLEEP = [sys.executable, "-c", "import time; print('ready', flush=True); time.sleep(60)"]
+STUBBORN = [
+    sys.executable,
+    "-c",
+    "import signal, time; signal.signal(15, signal.SIG_IGN)\nprint('ready', flush=True); time.sleep(60)",
+]
+INTERRUPTED = """\
+import sys, time
+from pathlib import Path
+from stage.processes import Processes, leave_on_signals
+leave_on_signals()
+with Processes(Path(sys.argv[1])) as processes:
+    print(processes.start("one", sys.argv[2:]).pid, flush=True)
+    time.sleep(60)
+"""
+
+
+def is_running(pid: int) -> bool:
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return False
+    return True
+
+
+def test_an_exception_ends_every_process(tmp_path):
+    with pytest.raises(ZeroDivisionError), Processes(tmp_path) as processes:
+        pids = [processes.start(name, SLEEP).pid for name in ("one", "two")]
+        processes.wait_for_line("two", "ready", 10)
+        raise ZeroDivisionError
+    assert not any(map(is_running, pids))
+
+
+def test_a_process_that_ignores_sigterm_is_killed(tmp_path, monkeypatch):
+    monkeypatch.setattr("stage.processes.PATIENCE_S", 0.2)
+    with Processes(tmp_path) as processes:
+        pid = processes.start("stubborn", STUBBORN).pid
+        processes.wait_for_line("stubborn", "ready", 10)
+    assert not is_running(pid)
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP, signal.SIGINT])
+def test_a_signal_ends_every_process(tmp_path, root, number):
+    env = {**os.environ, "PYTHONPATH": str(root / "scripts")}
+    command = [sys.executable, "-c", INTERRUPTED, tmp_path, *SLEEP]
+    with subprocess.Popen(
+        command, env=env, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
+    ) as outer:
+        pid = int(outer.stdout.readline())
+        outer.send_signal(number)
+        assert outer.wait(10) != 0
+    assert not is_running(pid)
+
+
+def test_a_process_that_ends_too_early_is_told_with_its_last_words(tmp_path):
+    with Processes(tmp_path) as processes:
+        processes.start("short", [sys.executable, "-c", "import sys; sys.exit('no such site')"])
+        with pytest.raises(StageError, match=r"(?s)short ended with status 1 .*no such site"):
+            processes.wait_for_line("short", "listening", 10)
+        with pytest.raises(StageError, match="short ended with status 1"):
+            processes.require_running()
+        processes.require_running(but="short")
+
+
+def test_waiting_for_a_line_has_an_end(tmp_path):
+    with Processes(tmp_path) as processes:
+        processes.start("silent", SLEEP)
+        began = time.monotonic()
+        with pytest.raises(StageError, match="silent was not ready after 0 s"):
+            processes.wait_for_line("silent", "never said", 0.2)
+        assert time.monotonic() - began < 5
+
+
+REACHED = Errand("r1", (58.0, 8.0), "reached")
+COMMAND = {
+    "robot": "r1",
+    "op": "SetPosEnd",
+    "params": {"x": 58.1, "y": 8.0, "cone": True},
+    "steps": [
+        {"state": state, "at": 100.0 + number}
+        for number, state in enumerate(("queued", "delivered", "acknowledged", "reached"))
+    ],
+}
+POSES = {"r1": {"x": 58.05, "y": 8.0}}
+
+
+def test_a_reached_target_is_accepted_with_its_figures():
+    outcome = judge(REACHED, [COMMAND, {"robot": "r1", "op": "Abort"}], POSES, 0.2)
+    assert outcome.after == {"delivered": 1.0, "acknowledged": 2.0, "reached": 3.0}
+    assert outcome.off_target == pytest.approx(0.05)
+
+
+def with_steps(*states: str) -> dict:
+    command = copy.deepcopy(COMMAND)
+    command["steps"] = [{"state": state, "at": 100.0} for state in states]
+    return command
+
+
+WRONG = [
+    ([], POSES, "knows 0 commands for r1"),
+    ([COMMAND, COMMAND], POSES, "knows 2 commands for r1"),
+    ([with_steps("queued", "delivered", "acknowledged")], POSES, "queued → delivered → acknowledged, not"),
+    ([with_steps("queued", "delivered", "acknowledged", "aborted")], POSES, "aborted, not"),
+    ([with_steps("queued", "acknowledged", "delivered", "reached")], POSES, "went queued → acknowledged"),
+    ([COMMAND], {"r1": {"x": 58.4, "y": 8.0}}, r"stands 0\.30 m from its target"),
+    ([{**COMMAND, "params": {"x": 60.0, "y": 8.0}}], POSES, r"\(58\.0, 8\.0\) was clicked"),
+]
+
+
+@pytest.mark.parametrize(("commands", "poses", "complaint"), WRONG)
+def test_anything_else_is_refused(commands, poses, complaint):
+    with pytest.raises(StageError, match=complaint):
+        judge(REACHED, commands, poses, 0.2)
+
+
+def test_the_demo_fails_when_a_program_is_missing_and_leaves_nothing_running(root, tmp_path):
+    script = root / "scripts" / "demo.py"
+    env = {**os.environ, "PATH": str(tmp_path), "FLEET_DEMO_FOLDER": str(tmp_path / "demo")}
+    done = subprocess.run([sys.executable, script], env=env, capture_output=True, text=True, check=False)
+    assert done.returncode == 1
+    assert "demo: error: qgis_process is not on the path; run: make setup" in done.stderr
+    assert not (tmp_path / "demo" / "report.md").exists()
+    assert not [command for command in running_commands() if str(tmp_path) in command]
+
+
+def running_commands() -> list[str]:
+    commands = []
+    for file in Path("/proc").glob("[0-9]*/cmdline"):
+        try:
+            commands.append(file.read_bytes().replace(b"\0", b" ").decode(errors="replace"))
+        except OSError:
+            continue
+    return commands
