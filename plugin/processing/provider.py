@@ -7,6 +7,8 @@ from pathlib import Path
 from qgis.core import QgsProcessingProvider
 from qgis.PyQt.QtGui import QIcon
 
+from .export_robot_map import ExportRobotMap
+
 ICON = Path(__file__).parents[2] / "resources" / "icons" / "fleet.svg"
 
 
@@ -23,4 +25,4 @@ class FleetProvider(QgsProcessingProvider):
         return QIcon(str(ICON))
 
     def loadAlgorithms(self):
-        pass
+        self.addAlgorithm(ExportRobotMap())

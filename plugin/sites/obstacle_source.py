@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 from qgis.core import (
     QgsAbstractFeatureSource,
@@ -11,6 +12,7 @@ from qgis.core import (
     QgsExpressionContext,
     QgsExpressionContextUtils,
     QgsFields,
+    QgsProviderRegistry,
     QgsVectorLayer,
     QgsVectorLayerFeatureSource,
     QgsWkbTypes,
@@ -49,7 +51,7 @@ def obstacle_sources(
     """
     for layer in layers:
         _check(layer)
-    names = _unique([layer.name() for layer in layers])
+    names = _unique([_plain_name(layer) for layer in layers])
     return [_source(layer, name, general, context) for layer, name in zip(layers, names, strict=True)]
 
 
@@ -88,6 +90,17 @@ def _source(
         ),
         context=scoped,
     )
+
+
+def _plain_name(layer: QgsVectorLayer) -> str:
+    """Return the layer's name; the one inside its file where it is only called as the file is.
+
+    That is what qgis_process calls ``campus.gpkg|layername=walls``: all layers of a file alike.
+    """
+    parts = QgsProviderRegistry.instance().decodeUri(layer.providerType(), layer.source())
+    inside, path = parts.get("layerName"), parts.get("path")
+    called_as_file = bool(inside and path) and layer.name() == Path(str(path)).stem
+    return str(inside) if called_as_file else layer.name()
 
 
 def _unique(names: Sequence[str]) -> list[str]:

@@ -19,8 +19,15 @@ class Parts(NamedTuple):
     @property
     def finite(self) -> bool:
         """Whether every coordinate is a finite number."""
-        rings = [ring for polygon in self.polygons for ring in polygon]
-        return all(np.isfinite(points).all() for points in [*rings, *self.lines])
+        return all(np.isfinite(points).all() for points in [*self._rings(), *self.lines])
+
+    @property
+    def rings_have_points(self) -> bool:
+        """Whether every ring has the four points of a triangle."""
+        return all(len(ring) >= 4 for ring in self._rings())
+
+    def _rings(self) -> Iterator[np.ndarray]:
+        return (ring for polygon in self.polygons for ring in polygon)
 
 
 def parts_of(geometry: QgsGeometry) -> Parts:

@@ -45,8 +45,8 @@ def shapes_of(geometry: QgsGeometry, role: str = "") -> Shapes:
     parts = parts_of(geometry)
     if not parts.finite:
         return Shapes([], ["has a coordinate that is not a finite number; it is left out"])
-    # Valid as a whole is the rule and quickly told; only what is not is taken apart.
-    sound = geometry.isGeosValid()
+    # Valid as a whole is the rule and quickly told; GEOS takes a ring without points for valid, too.
+    sound = parts.rings_have_points and geometry.isGeosValid()
     polygons, polygon_notes = (parts.polygons, []) if sound else sound_polygons(parts.polygons)
     lines, line_notes = lines_with_length(parts.lines)
     notes = [*parts.notes, *polygon_notes, *line_notes]

@@ -1,0 +1,20 @@
+"""Errors on their way to whoever runs an algorithm."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from qgis.core import QgsProcessingException
+
+from ...robot_bridge.robotmap.errors import RobotMapError
+from ..errors import FleetError
+
+
+@contextmanager
+def shown_by_processing() -> Iterator[None]:
+    """Turn errors of the plugin and of robot maps into what Processing shows without a traceback."""
+    try:
+        yield
+    except (FleetError, RobotMapError) as error:
+        raise QgsProcessingException(str(error)) from error

@@ -1,0 +1,27 @@
+"""The help of ``fleet:exportrobotmap``."""
+
+HELP = """
+<p>Writes the obstacles in a window of the site as a map that robots read: oriented segments with free space
+to their right, grouped by kind. Robots get metres in the <b>site frame</b>: a projected CRS, an origin in it
+and a rotation.</p>
+<p><b>Obstacle layers</b>: lines and polygons, several at once, in any CRS. Curves become chords (2 cm). What
+the window cuts becomes open chains; no wall is invented on the border.</p>
+<p><b>Window</b>: a centre with width and height in metres, or an extent. Positions may name their CRS, as in
+<i>12.5,48.1 [EPSG:4326]</i>; without one they are in the site CRS.</p>
+<p><b>Site CRS</b>: in metres, such as the local UTM zone. EPSG:3857 is refused, because its metres are not
+metres. Default: the project's CRS; without a project the layers' own. A local engineering CRS is used as it
+is.</p>
+<p><b>Height, label, outdoors</b>: QGIS expressions. Expressions kept in a layer's custom properties
+<i>fleet/height</i>, <i>fleet/semantics</i> and <i>fleet/outdoor</i> win over these; the property
+<i>fleet/role</i> makes flights of risers of a layer (stairs) or surfaces without height (ramp). Default: the
+field <i>height</i> or <i>height_m</i>, the layer's name, true. Where no height is known, the default height
+is used, said in a warning and marked <i>h=est</i> in the map.</p>
+<p><b>Format</b>: text, or binary (the text compressed, with a check sum), which needs the Python package
+zstandard. docs/robot-map.md describes both.</p>
+<p>Broken geometry is repaired where that is safe and left out where it is not. Each time a warning names the
+layer and the feature; the export goes on.</p>
+<p>From a script, with no display:</p>
+<pre>qgis_process run fleet:exportrobotmap -- \\
+  OBSTACLES="campus.gpkg|layername=buildings" OBSTACLES="campus.gpkg|layername=walls" \\
+  CENTER=48,48 WIDTH=104 HEIGHT=104 FORMAT=text OUTPUT=campus.txt</pre>
+"""

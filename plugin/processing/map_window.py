@@ -1,0 +1,146 @@
+"""The window of a robot map, and the frame it lies in, from an algorithm's parameters."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from qgis.core import (
+    QgsCoordinateReferenceSystem,
+    QgsProcessingAlgorithm,
+    QgsProcessingContext,
+    QgsProcessingParameterBoolean,
+    QgsProcessingParameterCrs,
+    QgsProcessingParameterDefinition,
+    QgsProcessingParameterExtent,
+    QgsProcessingParameterNumber,
+    QgsProcessingParameterPoint,
+)
+
+from ...robot_bridge.robotmap.builder import Window
+from ...robot_bridge.sites.frame import SiteFrame
+from ..errors import FleetError
+from ..sites.project_site import frame_in_project
+from ..sites.site_crs import crs_name
+
+CENTER, WIDTH, HEIGHT, EXTENT = "CENTER", "WIDTH", "HEIGHT", "EXTENT"
+SITE_CRS, ORIGIN, ROTATION, LOCAL = "SITE_CRS", "ORIGIN", "ROTATION", "LOCAL"
+PAPERS_SIDE_M = 100.0
+
+_REAL = QgsProcessingParameterNumber.Type.Double
+
+
+class ParameterError(FleetError):
+    """A parameter cannot be used."""
+
+
+def window_parameters() -> list[QgsProcessingParameterDefinition]:
+    """Return the parameters that say where the map is and in which frame."""
+    return [
+        QgsProcessingParameterPoint(CENTER, "Centre of the window (or choose an extent)", optional=True),
+        QgsProcessingParameterNumber(WIDTH, "Width of the window, along x [m]", _REAL, PAPERS_SIDE_M),
+        QgsProcessingParameterNumber(HEIGHT, "Height of the window, along y [m]", _REAL, PAPERS_SIDE_M),
+        QgsProcessingParameterExtent(EXTENT, "Extent (instead of centre, width and height)", optional=True),
+        *(_advanced(parameter) for parameter in _frame_parameters()),
+    ]
+
+
+def window_problem(parameters: Mapping[str, Any]) -> str:
+    """Return what is wrong with the choice of window, or nothing."""
+    has_center, has_extent = _given(parameters, CENTER), _given(parameters, EXTENT)
+    if has_center and has_extent:
+        return "Both CENTER and EXTENT are given: give one of them, the window cannot be both."
+    if not has_center and not has_extent:
+        return (
+            "Neither CENTER nor EXTENT is given: give the centre of the window with WIDTH and HEIGHT in "
+            "metres, or an extent."
+        )
+    return ""
+
+
+def site_frame(
+    algorithm: QgsProcessingAlgorithm,
+    parameters: Mapping[str, Any],
+    context: QgsProcessingContext,
+    crs: QgsCoordinateReferenceSystem,
+) -> SiteFrame:
+    """Return the site frame: from ORIGIN and ROTATION, else as the project has it, else ``crs`` itself."""
+    name = crs.authid() or (crs_name(crs) if crs.isValid() else "")
+    if not _given(parameters, ORIGIN) and not _given(parameters, ROTATION):
+        known = frame_in_project(context.project(), crs) if context.project() is not None else None
+        return known or SiteFrame(name, (0.0, 0.0))
+    origin = (0.0, 0.0)
+    if _given(parameters, ORIGIN):
+        point = algorithm.parameterAsPoint(parameters, ORIGIN, context, crs)
+        origin = (point.x(), point.y())
+    degrees = algorithm.parameterAsDouble(parameters, ROTATION, context)
+    if not all(math.isfinite(number) for number in (*origin, degrees)):
+        raise ParameterError(f"ORIGIN {origin} or ROTATION {degrees} is not finite: give numbers.")
+    return SiteFrame(name, origin, math.radians(degrees))
+
+
+def map_window(
+    algorithm: QgsProcessingAlgorithm,
+    parameters: Mapping[str, Any],
+    context: QgsProcessingContext,
+    crs: QgsCoordinateReferenceSystem,
+    frame: SiteFrame,
+) -> Window:
+    """Return the window in the site frame.
+
+    Positions without a CRS of their own are in ``crs``. An extent whose sides are not parallel to the site's
+    axes becomes the smallest window that holds it.
+
+    :raises WindowError: when the window encloses nothing.
+    """
+    if _given(parameters, EXTENT):
+        outline = algorithm.parameterAsExtentGeometry(parameters, EXTENT, context, crs)
+        corners = frame.to_site([(vertex.x(), vertex.y()) for vertex in outline.vertices()])
+        if not len(corners):
+            raise ParameterError(f"EXTENT {parameters[EXTENT]} is no extent: write 'xmin,xmax,ymin,ymax'.")
+        return Window.from_bounds(*_rounded(corners.min(axis=0)), *_rounded(corners.max(axis=0)))
+    center = algorithm.parameterAsPoint(parameters, CENTER, context, crs)
+    ((x, y),) = frame.to_site([(center.x(), center.y())])
+    return Window(
+        float(x),
+        float(y),
+        algorithm.parameterAsDouble(parameters, WIDTH, context),
+        algorithm.parameterAsDouble(parameters, HEIGHT, context),
+    )
+
+
+def _frame_parameters() -> list[QgsProcessingParameterDefinition]:
+    return [
+        QgsProcessingParameterCrs(
+            SITE_CRS, "Site CRS, in metres (default: the project's, else the layers')", optional=True
+        ),
+        QgsProcessingParameterPoint(
+            ORIGIN, "Origin of the site frame (default: as the project has it, else 0,0)", optional=True
+        ),
+        QgsProcessingParameterNumber(
+            ROTATION,
+            "Rotation of the site frame, counter-clockwise from the CRS's x axis [degrees]",
+            _REAL,
+            optional=True,
+        ),
+        QgsProcessingParameterBoolean(
+            LOCAL, "Layers without a CRS are already in the site frame's metres", defaultValue=False
+        ),
+    ]
+
+
+def _advanced(parameter: QgsProcessingParameterDefinition) -> QgsProcessingParameterDefinition:
+    parameter.setFlags(parameter.flags() | QgsProcessingParameterDefinition.Flag.FlagAdvanced)
+    return parameter
+
+
+def _given(parameters: Mapping[str, Any], name: str) -> bool:
+    value = parameters.get(name)
+    return value is not None and value != ""
+
+
+def _rounded(corner: np.ndarray) -> list[float]:
+    """Return the corner without the noise of a rotation there and back."""
+    return [float(value) for value in np.round(corner, 6)]
