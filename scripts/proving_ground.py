@@ -86,7 +86,7 @@ def centrelines(
 
 
 def _pyogrio():
-    projections()  # which finds the database of pyproj before pyogrio asks for it
+    projections()  # which imports pyproj without its warning
     import pyogrio.raw
 
     return pyogrio
@@ -130,6 +130,15 @@ def _write_project(out: Path, photo: Path) -> None:
     project.setTitle(SETTINGS.name)
     project.setCrs(QgsCoordinateReferenceSystem(SETTINGS.crs))
     project.writeEntry("fleet", "site", ".")
+    project.setCustomVariables(
+        {
+            "fleet_site": SETTINGS.id,
+            "fleet_site_crs": SETTINGS.crs,
+            "fleet_origin_x": SETTINGS.origin[0],
+            "fleet_origin_y": SETTINGS.origin[1],
+            "fleet_rotation_deg": SETTINGS.rotation_deg,
+        }
+    )
     picture = QgsRasterLayer(str(photo), "Drone photo", "gdal")
     layers = [(picture, "orthophoto")]
     for name, title, role in (

@@ -164,7 +164,7 @@ def check_features(layer: Layer, place: str) -> None:
 
 
 def _pyogrio() -> Any:
-    projections()  # pyogrio imports pyproj, which warns about a database that is found only here
+    projections()  # before pyogrio imports pyproj aloud
     try:
         import pyogrio
         import pyogrio.raw

@@ -3,21 +3,19 @@
 from __future__ import annotations
 
 import math
-import sys
 import warnings
-from pathlib import Path
 from typing import Any
 
 from .errors import CrsError
 
 
 def projections() -> Any:
-    """Return the module ``pyproj`` with its database found.
+    """Return the module ``pyproj``.
 
-    A distribution's pyproj seen from a virtual environment looks for ``proj.db`` under the environment's
-    prefix, where it never is; it lies under the base interpreter's.
+    A distribution's pyproj seen from a virtual environment looks for its database under the environment's
+    prefix and warns; PROJ itself then finds it where the distribution put it, so the warning is kept quiet.
 
-    :raises CrsError: when pyproj is not installed or its database is nowhere.
+    :raises CrsError: when pyproj is not installed.
     """
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", message="Valid PROJ data directory not found")
@@ -28,21 +26,7 @@ def projections() -> Any:
                 "The Python package pyproj is missing, which is needed to read a CRS: install it with "
                 "'python3 -m pip install pyproj' or the distribution's package python3-pyproj."
             ) from error
-    _find_database(pyproj)
     return pyproj
-
-
-def _find_database(pyproj: Any) -> None:
-    try:
-        pyproj.datadir.get_data_dir()
-    except pyproj.exceptions.DataDirError:
-        folder = Path(sys.base_prefix) / "share" / "proj"
-        if not (folder / "proj.db").is_file():
-            raise CrsError(
-                f"PROJ's database proj.db was not found, not even in {folder}: set the environment variable "
-                "PROJ_DATA to its folder or reinstall pyproj."
-            ) from None
-        pyproj.datadir.set_data_dir(str(folder))
 
 
 def crs_of(crs: str) -> Any:
@@ -55,7 +39,7 @@ def crs_of(crs: str) -> Any:
         return pyproj.CRS.from_user_input(crs)
     except pyproj.exceptions.CRSError as error:
         raise CrsError(
-            f"The CRS {crs!r} is not known to PROJ. Write an authority code such as 'EPSG:32633'."
+            f"The CRS {crs!r} is not known to PROJ ({error}). Write an authority code such as 'EPSG:32633'."
         ) from error
 
 

@@ -63,6 +63,9 @@ def test_the_project_opens_with_every_layer_and_its_role(made, data, opened):
     assert layers["Drone photo"].source().startswith(str(data)), "the photo stays where it lies"
     assert project.readEntry("fleet", "site")[0] == "."
     assert project.crs().authid() == "EPSG:32633"
+    variables, frame = project.customVariables(), read_site(made).frame
+    assert (float(variables["fleet_origin_x"]), float(variables["fleet_origin_y"])) == frame.origin
+    assert variables["fleet_site_crs"] == frame.crs
     assert complaints == []
 
 

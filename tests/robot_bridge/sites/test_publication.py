@@ -125,6 +125,9 @@ def test_a_refused_publication_leaves_the_one_before_it(folder):
     bad = Outlines.from_rows([replace(ROWS[0], points=ring(0, 0, np.nan, 5))])
     with pytest.raises(LayerError, match=r"obstacle buildings:1 .* it has a coordinate that is NaN"):
         write_site(folder, replace(SETTINGS, version=2), bad)
+    endless = Outlines.from_rows([replace(ROWS[0], height=np.inf)])
+    with pytest.raises(LayerError, match=r"obstacles, feature 1: it has no finite number in height_m"):
+        write_site(folder, replace(SETTINGS, version=2), endless)
     with pytest.raises(SettingsError, match=r"site\.crs: The CRS EPSG:3857"):
         write_site(folder, replace(SETTINGS, crs="EPSG:3857"), OBSTACLES)
     assert {path.name: path.read_bytes() for path in folder.iterdir()} == before
