@@ -81,6 +81,8 @@ class _Reader:
         segments = []
         while not self._at_obstacle_or_end():
             segments.append(self._segment())
+        if declared and not segments and self._skip_comments() >= len(self._lines):
+            self._line(f"the first of {declared} segments")
         if len(segments) != declared:
             self._warnings.append(
                 f"line {line_number}: obstacle {id} declares {declared} segments and {len(segments)} follow"
