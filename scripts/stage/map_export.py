@@ -18,7 +18,7 @@ from .errors import StageError
 from .fleet import PROJECT, SITE
 from .qgis import Profile, program
 
-LAYERS = ("Buildings", "Walls", "Columns", "Litter bins", "Stairs")
+LAYERS = ("Buildings", "Walls", "Columns", "Litter bins", "Benches", "Stairs")
 TIMEOUT_S = 120
 FORMATS = ("text", "binary")
 
@@ -29,7 +29,6 @@ class ExportedMap:
 
     obstacles: int
     segments: int
-    warnings: int
     area: float
     text_bytes: int
     binary_bytes: int
@@ -49,12 +48,12 @@ def export(profile: Profile, text: Path, binary: Path) -> ExportedMap:
     robot_map = read_text(written)
     if not robot_map.obstacles:
         raise StageError(f"{text} holds no obstacle")
-    x_min, y_min, x_max, y_max = read_site(SITE).bounds
+    if not np.allclose(robot_map.border, read_site(SITE).bounds, atol=0.01):
+        raise StageError(f"{text} covers {robot_map.border}, not the site's bounds {read_site(SITE).bounds}")
     return ExportedMap(
         obstacles=len(robot_map.obstacles),
-        segments=sum(len(obstacle.height) for obstacle in robot_map.obstacles),
-        warnings=len(robot_map.warnings),
-        area=(x_max - x_min) * (y_max - y_min),
+        segments=robot_map.segment_count,
+        area=robot_map.border.area,
         text_bytes=text.stat().st_size,
         binary_bytes=binary.stat().st_size,
     )
@@ -62,7 +61,7 @@ def export(profile: Profile, text: Path, binary: Path) -> ExportedMap:
 
 def _run(profile: Profile, output: Path, format_name: str) -> None:
     done = subprocess.run(
-        [program("qgis_process"), "run", "fleet:exportrobotmap", "--", *_parameters(output, format_name)],
+        [program("qgis_process"), "run", "fleet:exportrobotmap", *_arguments(output, format_name)],
         env={**os.environ, "QT_QPA_PLATFORM": "offscreen", **profile.environment(packages=True)},
         capture_output=True,
         text=True,
@@ -74,19 +73,17 @@ def _run(profile: Profile, output: Path, format_name: str) -> None:
         raise StageError(f"qgis_process wrote no {output} (status {done.returncode}); it said:\n{said}")
 
 
-def _parameters(output: Path, format_name: str) -> list[str]:
+def _arguments(output: Path, format_name: str) -> list[str]:
     site = read_site(SITE)
     x_min, y_min, x_max, y_max = site.bounds
-    (centre,) = site.frame.to_crs(np.array([[(x_min + x_max) / 2, (y_min + y_max) / 2]]))
-    place = f"{{:.3f}},{{:.3f}} [{site.frame.crs}]"
+    ((east, north),) = site.frame.to_crs(np.array([[(x_min + x_max) / 2, (y_min + y_max) / 2]]))
     return [
-        f"PROJECT_PATH={PROJECT}",
+        f"--PROJECT_PATH={PROJECT}",
+        "--",
         *(f"OBSTACLES={layer}" for layer in LAYERS),
-        f"CENTER={place.format(*centre)}",
+        f"CENTER={east:.3f},{north:.3f} [{site.frame.crs}]",
         f"WIDTH={x_max - x_min}",
         f"HEIGHT={y_max - y_min}",
-        f"SITE_CRS={site.frame.crs}",
-        f"ORIGIN={place.format(*site.frame.origin)}",
-        f"FORMAT={FORMATS.index(format_name)}",
+        f"FORMAT={format_name}",
         f"OUTPUT={output}",
     ]

@@ -40,7 +40,7 @@ class Report:
         rows = [
             f"| text | {done.text_bytes} | {done.text_bytes / done.area:.3f} |",
             f"| binary | {done.binary_bytes} | {done.binary_bytes / done.area:.3f} |",
-            f"| the paper's text | | {PAPER_BYTES_PER_M2:g} |",
+            f"| the paper's campus, text | | {PAPER_BYTES_PER_M2:g} |",
         ]
         head = f"{done.obstacles} obstacles, {done.segments} segments, {done.area:g} m²"
         table = ["| format | bytes | bytes/m² |", "|---|---:|---:|", *rows]
