@@ -67,7 +67,7 @@ class Demonstration:
         self._happened(
             f"qgis_process wrote the robot map: {exported.obstacles} obstacles, {exported.segments} segments"
         )
-        per_m2 = f"{exported.text_bytes / exported.area:.2f} bytes/m² (the paper's campus: {PAPER_BYTES_PER_M2:g})"
+        per_m2 = f"{exported.text_bytes / exported.area:.2f} bytes/m² (paper: {PAPER_BYTES_PER_M2:g})"
         self._happened(
             f"as text {exported.text_bytes} bytes, {per_m2}; as binary {exported.binary_bytes}, the same map"
         )

@@ -36,7 +36,7 @@ class Session:
     def open_project(self) -> int:
         """Open the plan's project and return how many layers it has.
 
-        :raises NotHappenedError: when it does not open or a layer of it is not valid.
+        :raises NotHappenedError: when it does not open, a layer is not valid, or QGIS complains about it.
         """
         if not iface.addProject(self.plan["project"]):
             raise NotHappenedError(f"QGIS could not open {self.plan['project']}")
@@ -45,6 +45,8 @@ class Session:
         if broken:
             raise NotHappenedError(f"layers of {self.plan['project']} are not valid: {', '.join(broken)}")
         self.operator.wait_for_map()
+        if complaint := iface.messageBar().currentItem():
+            raise NotHappenedError(f"QGIS complains about {self.plan['project']}: {complaint.text()}")
         return len(layers)
 
     def size_window(self, width: int, height: int) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import shlex
 import subprocess
@@ -11,6 +12,9 @@ from pathlib import Path
 import pytest
 from stage.desk_wire import ask
 from stage.processes import Processes
+from stage.qgis import program
+
+from robot_bridge.robotmap.text import read_text
 
 ROOT = Path(__file__).resolve().parents[2]
 DOCUMENTS = [ROOT / "README.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").glob("*.md"))]
@@ -86,6 +90,19 @@ def test_gateway_and_robot_run_as_the_readme_says(tmp_path):
             time.sleep(0.2)
     assert robots[0]["robot"] == "r1"
     assert robots[0]["x"] == pytest.approx(20, abs=0.2)
+
+
+def test_the_map_is_exported_as_the_readme_says(tmp_path):
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    block = re.search(r"^    export QT_QPA_PLATFORM[\s\S]*?OUTPUT=\S+$", text, re.MULTILINE).group()
+    script = block.replace("qgis_process.bin", program("qgis_process")).replace("build/", f"{tmp_path}/")
+    env = {"PATH": os.environ["PATH"], "HOME": str(tmp_path), "XDG_RUNTIME_DIR": str(tmp_path)}
+    done = subprocess.run(
+        ["bash", "-euc", script], cwd=ROOT, env=env, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    robot_map = read_text((tmp_path / "site.map").read_text(encoding="utf-8"))
+    assert {obstacle.semantics.split(",")[0] for obstacle in robot_map.obstacles} == {"building", "wall"}
 
 
 def words(command: str) -> list[str]:
