@@ -1,12 +1,16 @@
-"""Labels inside the text format: the characters that mean something there are written as ``\\HH``."""
+"""Labels inside the text format: characters that mean something there are written ``\\HH`` or ``\\uHHHH``."""
 
 from __future__ import annotations
 
 import re
 
-_RESERVED = re.compile(r"[;%#\\\x00-\x1f\x7f]")
-_RESERVED_IN_EXT = re.compile(r"[;,=%#\\\x00-\x1f\x7f]")
-_ESCAPED = re.compile(r"\\([0-9a-f]{2})")
+# The C1 controls and the line and paragraph separators end a line for some readers; lone surrogates are no
+# UTF-8; blanks at either end are taken for indentation.
+_ALWAYS = r"[\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff\\;%#]|^ | $"
+_RESERVED = re.compile(_ALWAYS)
+_RESERVED_IN_KEY = re.compile(rf"{_ALWAYS}|[=,]")
+_RESERVED_IN_VALUE = re.compile(rf"{_ALWAYS}|=")
+_ESCAPED = re.compile(r"\\(?:([0-9a-f]{2})|u([0-9a-f]{4}))")
 
 
 def escape(text: str) -> str:
@@ -14,15 +18,21 @@ def escape(text: str) -> str:
     return _RESERVED.sub(_code, text)
 
 
+def escape_key(text: str) -> str:
+    """Return a key of ``ext`` as it is written: commas and equal signs mean something there."""
+    return _RESERVED_IN_KEY.sub(_code, text)
+
+
 def escape_value(text: str) -> str:
-    """Return a key or value of ``ext`` as it is written: commas and equal signs mean something there."""
-    return _RESERVED_IN_EXT.sub(_code, text)
+    """Return a value of ``ext`` as it is written: it may hold commas, as the normal ``n=0,0.08,1`` does."""
+    return _RESERVED_IN_VALUE.sub(_code, text)
 
 
 def unescape(text: str) -> str:
     """Return what a written label says."""
-    return _ESCAPED.sub(lambda match: chr(int(match[1], 16)), text)
+    return _ESCAPED.sub(lambda match: chr(int(match[1] or match[2], 16)), text)
 
 
 def _code(match: re.Match[str]) -> str:
-    return f"\\{ord(match[0]):02x}"
+    code = ord(match[0])
+    return f"\\{code:02x}" if code < 0x100 else f"\\u{code:04x}"

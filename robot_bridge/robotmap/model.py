@@ -65,6 +65,8 @@ class Obstacle:
     """(n,) bool."""
     segment_semantics: tuple[str, ...]
     ext: dict[str, str] = field(default_factory=dict)
+    segment_ext: tuple[dict[str, str], ...] = ()
+    """n mappings, or nothing when no segment has any."""
     text: str | None = field(default=None, init=False, repr=False)
 
 

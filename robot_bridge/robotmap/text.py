@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+import math
+import re
 from collections.abc import Iterator
 
-from .labels import escape, escape_value
+import numpy as np
+
+from .errors import RobotMapError
+from .labels import escape, escape_key, escape_value
 from .model import Obstacle, RobotMap
 from .text_reader import read_text
 
@@ -15,26 +20,39 @@ def write_text(robot_map: RobotMap, *, strict: bool = False) -> str:
     """Return a map as text.
 
     What was read from a text is written back byte for byte. ``strict`` writes what Fig. 2 has and nothing
-    else: no leading lines, no ``ext``, no comments.
+    else: no leading lines, no ``ext``, no comments. Raises RobotMapError for a number that is not finite and
+    for a leading line whose key is not one word.
     """
-    head = "".join(_head(robot_map, strict)) if strict or robot_map.head is None else robot_map.head
-    body = (
-        obstacle.text if obstacle.text is not None and not strict else "".join(_obstacle(obstacle, strict))
-        for obstacle in robot_map.obstacles
-    )
-    return head + "".join(body) + ("" if strict else robot_map.tail)
+    parts = ["".join(_head(robot_map, strict)) if strict or robot_map.head is None else robot_map.head]
+    for obstacle in robot_map.obstacles:
+        # A text may end without a line break, and an obstacle read there may come to stand elsewhere.
+        if not parts[-1].endswith("\n"):
+            parts.append("\n")
+        as_read = None if strict else obstacle.text
+        parts.append("".join(_obstacle(obstacle, strict)) if as_read is None else as_read)
+    return "".join(parts) + ("" if strict else robot_map.tail)
 
 
 def format_number(value: float) -> str:
-    """Return metres in centimetres with no trailing zeros, such as ``-4`` or ``12.1``."""
-    text = f"{value:.2f}".rstrip("0").rstrip(".")
+    """Return the shortest decimal that reads back as ``value``, such as ``-4`` or ``12.1``.
+
+    Raises RobotMapError for NaN and infinity.
+    """
+    number = float(value)
+    if not math.isfinite(number):
+        raise RobotMapError(f"the number {number} cannot stand in a robot map; give a finite one")
+    text = repr(number).removesuffix(".0")
+    if "e" in text:
+        text = np.format_float_positional(number, trim="-")
     return "0" if text == "-0" else text
 
 
 def _head(robot_map: RobotMap, strict: bool) -> Iterator[str]:
     if not strict:
         for key, value in robot_map.meta.items():
-            yield f"%{key} {' '.join(value.split())}\n"
+            if not re.fullmatch(r"\S+", key):
+                raise RobotMapError(f"the leading line {key!r} of a robot map: give a key of one word")
+            yield f"%{key} {' '.join(value.split())}".rstrip(" ") + "\n"
     yield "border;\n"
     yield _point(*robot_map.border.left_upper)
     yield _point(*robot_map.border.right_lower)
@@ -42,7 +60,7 @@ def _head(robot_map: RobotMap, strict: bool) -> Iterator[str]:
 
 
 def _obstacle(obstacle: Obstacle, strict: bool) -> Iterator[str]:
-    ext = "" if strict or not obstacle.ext else _ext(obstacle.ext)
+    ext = _ext({} if strict else obstacle.ext)
     count = len(obstacle.a)
     yield "obstacle;\n"
     yield f"{obstacle.id};{int(obstacle.shape_type)};{count};{escape(obstacle.semantics)};{ext}\n#\n"
@@ -51,7 +69,8 @@ def _obstacle(obstacle: Obstacle, strict: bool) -> Iterator[str]:
         yield _point(*obstacle.b[row])
         flag = "1" if obstacle.outdoor[row] else "0"
         label = escape(obstacle.segment_semantics[row])
-        yield f"{format_number(obstacle.height[row])};{flag};{label};\n#\n"
+        extras = {} if strict or not obstacle.segment_ext else obstacle.segment_ext[row]
+        yield f"{format_number(obstacle.height[row])};{flag};{label};{_ext(extras)}\n#\n"
 
 
 def _point(x: float, y: float) -> str:
@@ -59,4 +78,6 @@ def _point(x: float, y: float) -> str:
 
 
 def _ext(ext: dict[str, str]) -> str:
-    return ",".join(f"{escape_value(key)}={escape_value(value)}" for key, value in ext.items()) + ";"
+    if not ext:
+        return ""
+    return ",".join(f"{escape_key(key)}={escape_value(value)}" for key, value in ext.items()) + ";"

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 import re
-from typing import NoReturn
+from typing import Any, NoReturn
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .errors import TextError
 from .labels import unescape
@@ -14,9 +15,10 @@ from .model import Border, Obstacle, RobotMap, ShapeType
 
 _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
 _INTEGER = re.compile(r"[+-]?\d{1,18}", re.ASCII)
-_META = re.compile(r"%\s*(\S+)\s+(.*)")
+_META = re.compile(r"%\s*(\S+)(?:\s+(.*))?")
+_BLANKS = " \t\r\n"
 
-Segment = tuple[tuple[float, float], tuple[float, float], float, bool, str]
+Segment = tuple[tuple[float, float], tuple[float, float], float, bool, str, dict[str, str]]
 
 
 def read_text(text: str) -> RobotMap:
@@ -29,7 +31,7 @@ class _Reader:
 
     def __init__(self, text: str) -> None:
         # Not splitlines: a label may hold one of the other characters that it takes for line ends.
-        self._lines = re.findall(r"[^\n]*\n|[^\n]+", text)
+        self._lines: list[str] = re.findall(r"[^\n]*\n|[^\n]+", text)
         self._next = 0
         self._place = "the head of the map"
         self._warnings: list[str] = []
@@ -53,7 +55,7 @@ class _Reader:
         for line in self._lines[: self._skip_comments()]:
             match = _META.match(line.strip())
             if match:
-                meta[match[1]] = match[2].strip()
+                meta[match[1]] = (match[2] or "").strip()
         return meta
 
     def _read_border(self) -> Border:
@@ -102,10 +104,17 @@ class _Reader:
         return int(fields[0]), ShapeType(int(fields[1])), int(fields[2]), unescape(fields[3]), ext
 
     def _ext(self, number: int, text: str) -> dict[str, str]:
-        pairs = [pair.partition("=") for pair in text.split(",") if pair]
-        if not all(equals for _, equals, _ in pairs):
-            self._fail_at(number, "'key=value,...;' after the semantics", text)
-        return {unescape(key): unescape(value) for key, _, value in pairs}
+        pairs: list[tuple[str, str]] = []
+        for piece in text.split(","):
+            key, equals, value = piece.partition("=")
+            if equals:
+                pairs.append((key, value))
+            elif pairs:
+                # A value may hold commas, as the normal n=nx,ny,nz does.
+                pairs[-1] = (pairs[-1][0], f"{pairs[-1][1]},{piece}")
+            elif text:
+                self._fail_at(number, "'key=value,...;' after the semantics", text)
+        return {unescape(key): unescape(value) for key, value in pairs}
 
     def _segment(self) -> Segment:
         a, b = self._point(), self._point()
@@ -114,8 +123,9 @@ class _Reader:
         if len(fields) not in (3, 4) or fields[1] not in ("0", "1"):
             self._fail_at(number, expected, self._lines[number].strip())
         height = self._number(number, fields[0], expected)
+        ext = self._ext(number, fields[3]) if len(fields) == 4 else {}
         self._separator()
-        return a, b, height, fields[1] == "1", unescape(fields[2])
+        return a, b, height, fields[1] == "1", unescape(fields[2]), ext
 
     def _point(self) -> tuple[float, float]:
         expected = "a point such as '4.53;12.10;'"
@@ -133,7 +143,7 @@ class _Reader:
     def _fields(self, expected: str) -> tuple[int, list[str]]:
         """Return the next line's number and what stands before each of its semicolons."""
         number, content = self._line(expected)
-        fields = [value.strip() for value in content.split(";")]
+        fields = [value.strip(_BLANKS) for value in content.split(";")]
         if fields.pop():
             self._fail_at(number, f"{expected}, closed by ';'", self._lines[number].strip())
         return number, fields
@@ -149,25 +159,35 @@ class _Reader:
     def _line(self, expected: str) -> tuple[int, str]:
         number = self._skip_comments()
         if number >= len(self._lines):
-            raise TextError(
-                f"line {len(self._lines)}: the text ends in {self._place} where {expected} should follow; "
-                "it was cut off, so get the map once more"
-            )
+            self._fail_cut_off(expected)
         self._next = number + 1
-        return number, self._lines[number].partition("%")[0].strip()
+        return number, self._content(number)
 
     def _skip_comments(self) -> int:
         """Return the number of the next line that says something, and go there."""
         number = self._next
-        while number < len(self._lines) and not self._lines[number].partition("%")[0].strip():
+        while number < len(self._lines) and not self._content(number):
             number += 1
         return number
 
+    def _content(self, number: int) -> str:
+        """Return what a line says apart from its comment."""
+        return self._lines[number].partition("%")[0].strip(_BLANKS)
+
     def _at_obstacle_or_end(self) -> bool:
         number = self._skip_comments()
-        return number >= len(self._lines) or self._lines[number].partition("%")[0].strip() == "obstacle;"
+        return number >= len(self._lines) or self._content(number) == "obstacle;"
+
+    def _fail_cut_off(self, expected: str) -> NoReturn:
+        raise TextError(
+            f"line {len(self._lines)}: the text ends in {self._place} where {expected} should follow; "
+            "it was cut off, so get the map once more"
+        )
 
     def _fail_at(self, number: int, expected: str, found: str) -> NoReturn:
+        # A last line without a line break is half a line, not a wrong one.
+        if number == len(self._lines) - 1 and not self._lines[number].endswith("\n"):
+            self._fail_cut_off(expected)
         raise TextError(f"line {number + 1}: in {self._place}, expected {expected}, found {found[:80]!r}")
 
     def _warn_of_repeated_ids(self, obstacles: list[Obstacle]) -> None:
@@ -178,6 +198,13 @@ class _Reader:
             seen.add(obstacle.id)
 
 
+def _column(values: list[Any], dtype: type) -> NDArray[Any]:
+    """Return an array that cannot be written to: the obstacle is written back as it was read."""
+    column: NDArray[Any] = np.array(values, dtype=dtype)
+    column.flags.writeable = False
+    return column
+
+
 def _obstacle(
     id: int, shape_type: ShapeType, semantics: str, ext: dict[str, str], segments: list[Segment]
 ) -> Obstacle:
@@ -185,10 +212,11 @@ def _obstacle(
         id=id,
         shape_type=shape_type,
         semantics=semantics,
-        a=np.array([s[0] for s in segments], dtype=np.float64).reshape(-1, 2),
-        b=np.array([s[1] for s in segments], dtype=np.float64).reshape(-1, 2),
-        height=np.array([s[2] for s in segments], dtype=np.float64),
-        outdoor=np.array([s[3] for s in segments], dtype=bool),
+        a=_column([s[0] for s in segments], float).reshape(-1, 2),
+        b=_column([s[1] for s in segments], float).reshape(-1, 2),
+        height=_column([s[2] for s in segments], float),
+        outdoor=_column([s[3] for s in segments], bool),
         segment_semantics=tuple(s[4] for s in segments),
         ext=ext,
+        segment_ext=tuple(s[5] for s in segments) if any(s[5] for s in segments) else (),
     )
