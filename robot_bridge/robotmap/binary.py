@@ -34,6 +34,11 @@ _LARGEST_WINDOW = 1 << 27
 def encode(content: RobotMap | str) -> bytes:
     """Return a map, or a map's text, in the binary format; raises MissingCodecError without zstandard."""
     raw = (content if isinstance(content, str) else write_text(content)).encode()
+    if len(raw) > LARGEST_TEXT:
+        raise BinaryError(
+            f"size check: the text has {len(raw)} bytes, a reader accepts {LARGEST_TEXT}; "
+            "choose a smaller window"
+        )
     body = _zstandard().ZstdCompressor(level=_LEVEL).compress(raw)
     digest = hashlib.sha256(raw).digest()
     return _ENVELOPE.pack(MAGIC, VERSION, CODEC_ZSTD_TEXT, 0, len(raw), digest) + bytes(body)

@@ -11,13 +11,11 @@ from numpy.typing import NDArray
 from .errors import WindowError
 from .model import Border, Obstacle, RobotMap, ShapeType
 from .outlines import Outlines
-from .segments import Segments, clip, in_centimetres, is_closed, oriented_segments, signed_areas
+from .segments import Segments, clip, is_closed, oriented_segments, without_vanished
+from .usable import closed_rings, usable_outlines
 from .window import Window
 
 __all__ = ["Window", "build_map"]
-
-SMALLEST_AREA = 1e-4
-"""m² below which a ring encloses nothing at the precision of a map."""
 
 _WHEN_CUT = {
     ShapeType.CLOSED_POLYGON: ShapeType.OPEN_POLYGON,
@@ -33,12 +31,15 @@ def build_map(
     An outline that the window cuts becomes open chains, each an obstacle. Obstacles are grouped by the
     first word of their semantics; the id of an outline is its row plus one in every window, further chains
     of it get ids after the last row. ``ext`` names the source. Outlines that are no obstacle (fewer than two
-    different points, a ring that encloses nothing, coordinates that are not finite) are left out with a
-    warning. Raises WindowError when there is neither a window nor an outline.
+    different points, a ring that encloses nothing, coordinates that are not finite) are left out and rings
+    that do not close are closed, each with a warning if it lies in the window or nowhere at all. Raises
+    WindowError when there is neither a window nor an outline.
     """
-    usable, warnings = _usable(outlines)
-    border = window.border if window is not None else _bounds(outlines, usable)
-    segments = in_centimetres(clip(oriented_segments(outlines, usable), border))
+    border = window.border if window is not None else None
+    outlines, closed = closed_rings(outlines, border)
+    usable, left_out = usable_outlines(outlines, border)
+    border = border or _bounds(outlines, usable)
+    segments = without_vanished(clip(oriented_segments(outlines, usable), border))
     chains = list(_chains(segments, outlines))
     obstacles = sorted(
         _numbered(chains, len(outlines)), key=lambda item: (_group(outlines, item[2]), item[2], item[0])
@@ -47,32 +48,8 @@ def build_map(
         border=border,
         obstacles=tuple(_obstacle(outlines, segments, *item) for item in obstacles),
         meta=dict(meta or {}),
-        warnings=tuple(warnings),
+        warnings=(*closed, *left_out),
     )
-
-
-def _usable(outlines: Outlines) -> tuple[NDArray[Any], list[str]]:
-    lengths = np.diff(outlines.offsets)
-    row = np.repeat(np.arange(len(outlines)), lengths)
-    finite = np.ones(len(outlines), dtype=bool)
-    finite[row[~np.isfinite(outlines.coordinates).all(axis=1)]] = False
-    finite &= np.isfinite(outlines.height)
-    short = lengths < np.where(is_closed(outlines.shape_type), 4, 2)
-    odd = (outlines.shape_type == ShapeType.STAIRS) & (lengths % 2 == 1)
-    with np.errstate(invalid="ignore"):
-        flat = is_closed(outlines.shape_type) & (np.abs(signed_areas(outlines)) < SMALLEST_AREA)
-    reasons = (
-        (~finite, "has a coordinate or a height that is not a finite number"),
-        (finite & short, "has too few points"),
-        (finite & ~short & flat, "is a ring that encloses nothing"),
-        (finite & ~short & odd, "is a flight of stairs whose risers are not pairs of points"),
-    )
-    warnings = [
-        f"{outlines.source[k]}: {reason}; it is left out"
-        for bad, reason in reasons
-        for k in np.flatnonzero(bad)
-    ]
-    return finite & ~short & ~flat & ~odd, warnings
 
 
 def _bounds(outlines: Outlines, usable: NDArray[Any]) -> Border:
@@ -81,7 +58,11 @@ def _bounds(outlines: Outlines, usable: NDArray[Any]) -> Border:
     if not len(points):
         raise WindowError("window: there is no obstacle to take the extent from; give a window")
     (x_min, y_min), (x_max, y_max) = points.min(axis=0), points.max(axis=0)
-    return Window.from_bounds(float(x_min), float(y_min), float(x_max), float(y_max)).border
+    # A single straight wall has no width; the map still needs a border with an inside.
+    x_spare, y_spare = max(0.0, 0.5 - (x_max - x_min) / 2), max(0.0, 0.5 - (y_max - y_min) / 2)
+    return Window.from_bounds(
+        float(x_min - x_spare), float(y_min - y_spare), float(x_max + x_spare), float(y_max + y_spare)
+    ).border
 
 
 def _chains(segments: Segments, outlines: Outlines) -> Iterator[tuple[int, NDArray[Any], bool]]:
@@ -97,14 +78,17 @@ def _chains(segments: Segments, outlines: Outlines) -> Iterator[tuple[int, NDArr
             continue
         breaks = np.flatnonzero(~segments.joined[start:end]) + start
         runs = np.split(np.arange(start, end), breaks[1:] - start)
-        yield from _joined_runs(segments, outline, runs, bool(closed[outline]))
+        corner = np.round(outlines.coordinates[outlines.offsets[outline]], 2)
+        yield from _joined_runs(segments, outline, runs, bool(closed[outline]), corner)
 
 
 def _joined_runs(
-    segments: Segments, outline: int, runs: list[NDArray[Any]], ring: bool
+    segments: Segments, outline: int, runs: list[NDArray[Any]], ring: bool, corner: NDArray[Any]
 ) -> Iterator[tuple[int, NDArray[Any], bool]]:
     """Yield the runs of one outline; in a ring the last may go on in the first."""
-    meets = ring and bool((segments.b[runs[-1][-1]] == segments.a[runs[0][0]]).all())
+    # Not any two cuts that fall on one point: the ring's own first corner.
+    ends = np.array([segments.b[runs[-1][-1]], segments.a[runs[0][0]]])
+    meets = ring and bool((ends == corner).all())
     if meets and len(runs) == 1:
         yield outline, runs[0], True
         return
@@ -143,7 +127,7 @@ def _obstacle(
         semantics=outlines.semantics[outline],
         a=segments.a[indices],
         b=segments.b[indices],
-        height=segments.height[indices],
+        height=np.round(segments.height[indices], 2),
         outdoor=np.full(len(indices), outlines.outdoor[outline]),
         segment_semantics=("",) * len(indices),
         ext={"src": outlines.source[outline]} if outlines.source[outline] else {},

@@ -11,6 +11,9 @@ from numpy.typing import NDArray
 from .model import Border, ShapeType
 from .outlines import Outlines
 
+_ON_BORDER = 1e-9
+"""metres; what a cut coordinate may be off the border that it was cut at by floating point."""
+
 CLOSED_TYPES = (ShapeType.CLOSED_POLYGON, ShapeType.CLOSED_CURVE, ShapeType.RAMP)
 
 
@@ -54,23 +57,40 @@ def signed_areas(outlines: Outlines) -> NDArray[Any]:
 def oriented_segments(outlines: Outlines, usable: NDArray[Any]) -> Segments:
     """Return the segments of the outlines marked in ``usable``, (K,) bool.
 
-    Solid rings run counter-clockwise, courtyards clockwise: free space is to the right of a→b. Lines and
-    stairs keep the direction they were drawn in; each riser of stairs is a segment, the last of height 0.
+    Solid rings run counter-clockwise, courtyards clockwise: free space is to the right of a→b. Lines keep the
+    direction they were drawn in. Each riser of stairs is a segment, the last of height 0; the way up is on
+    its left, so that it is seen from below (paper 1, section II). Coordinates are rounded to centimetres
+    here, before any clipping, so that a corner is the same in every window.
     """
+    coordinates = np.round(outlines.coordinates, 2)
     lengths = np.diff(outlines.offsets)
     row = np.repeat(np.arange(len(outlines)), lengths)
     index = np.arange(len(row)) - outlines.offsets[:-1][row]
     stairs = outlines.shape_type == ShapeType.STAIRS
     begins = (index < lengths[row] - 1) & (~stairs[row] | (index % 2 == 0)) & usable[row]
     start = np.flatnonzero(begins)
-    a, b, outline = outlines.coordinates[start], outlines.coordinates[start + 1], row[start]
+    a, b, outline = coordinates[start], coordinates[start + 1], row[start]
     height = outlines.height[outline].astype(np.float64)
     height[stairs[outline] & (index[start] >= lengths[outline] - 2)] = 0.0
     joined = np.zeros(len(start), dtype=bool)
     joined[1:] = (outline[1:] == outline[:-1]) & ~stairs[outline[1:]]
-    segments = Segments(a, b, height, outline, joined)
+    turn = _seen_from_above(outlines, a, b, outline)[:, None]
+    segments = Segments(np.where(turn, b, a), np.where(turn, a, b), height, outline, joined)
     backwards = is_closed(outlines.shape_type) & ((signed_areas(outlines) > 0) == outlines.courtyard)
     return _turned_round(segments, backwards) if backwards.any() else segments
+
+
+def _seen_from_above(
+    outlines: Outlines, a: NDArray[Any], b: NDArray[Any], outline: NDArray[Any]
+) -> NDArray[Any]:
+    """Tell which segments are risers with the way up on their right."""
+    stairs = outlines.shape_type[outline] == ShapeType.STAIRS
+    first, last = outlines.offsets[outline], outlines.offsets[outline + 1] - 1
+    points = outlines.coordinates
+    top = points[np.maximum(last - 1, first)] + points[last]
+    up, along = top - points[first] - points[np.minimum(first + 1, last)], b - a
+    above: NDArray[Any] = stairs & (along[:, 0] * up[:, 1] - along[:, 1] * up[:, 0] < 0)
+    return above
 
 
 def _turned_round(segments: Segments, backwards: NDArray[Any]) -> Segments:
@@ -88,7 +108,8 @@ def _turned_round(segments: Segments, backwards: NDArray[Any]) -> Segments:
 def clip(segments: Segments, border: Border) -> Segments:
     """Return what of the segments lies inside ``border`` (Liang and Barsky's clipping, 1984).
 
-    Segments are cut one by one, so no wall is invented along the border.
+    Segments are cut one by one, so no wall is invented along the border. Where one is cut is rounded to
+    centimetres.
     """
     direction = segments.b - segments.a
     enter, leave = np.zeros(len(segments.a)), np.ones(len(segments.a))
@@ -103,7 +124,7 @@ def clip(segments: Segments, border: Border) -> Segments:
             enter = np.where(p < 0, np.maximum(enter, t), enter)
             leave = np.where(p > 0, np.minimum(leave, t), leave)
             outside |= (p == 0) & (q < 0)
-    return _between(segments, direction, enter, leave, ~outside & (enter < leave))
+    return _between(segments, direction, enter, leave, ~outside & (enter < leave), border)
 
 
 def _between(
@@ -112,6 +133,7 @@ def _between(
     enter: NDArray[Any],
     leave: NDArray[Any],
     inside: NDArray[Any],
+    border: Border,
 ) -> Segments:
     """Return the segments marked in ``inside``, each from ``enter`` to ``leave`` of its length (0 to 1)."""
     kept = np.flatnonzero(inside)
@@ -120,17 +142,31 @@ def _between(
     joined[1:] &= (kept[1:] == kept[:-1] + 1) & (leave[:-1] == 1)
     joined[:1] = False
     return Segments(
-        a=np.where((enter > 0)[:, None], a + enter[:, None] * step, a),
-        b=np.where((leave < 1)[:, None], a + leave[:, None] * step, segments.b[kept]),
+        a=np.where((enter > 0)[:, None], _cut_point(a + enter[:, None] * step, border), a),
+        b=np.where((leave < 1)[:, None], _cut_point(a + leave[:, None] * step, border), segments.b[kept]),
         height=segments.height[kept],
         outline=segments.outline[kept],
         joined=joined,
     )
 
 
-def in_centimetres(segments: Segments) -> Segments:
-    """Return the segments with coordinates rounded to centimetres, without those that vanish by it."""
-    a, b = np.round(segments.a, 2), np.round(segments.b, 2)
+def _cut_point(points: NDArray[Any], border: Border) -> NDArray[Any]:
+    """Return ``points``, (n, 2) on the border, in centimetres.
+
+    A coordinate that is near another side of the border and not on it stays off it: rounded onto it, the
+    stub that a segment leaves in a corner would become a wall along the border.
+    """
+    low, high = np.array([border.x_min, border.y_min]), np.array([border.x_max, border.y_max])
+    rounded = np.clip(np.round(points, 2), low, high)
+    step_in = 0.01
+    rounded = np.where((rounded == low) & (points > low + _ON_BORDER), low + step_in, rounded)
+    rounded = np.where((rounded == high) & (points < high - _ON_BORDER), high - step_in, rounded)
+    return np.round(rounded, 2)
+
+
+def without_vanished(segments: Segments) -> Segments:
+    """Return the segments that have a length in centimetres."""
+    a, b = segments.a, segments.b
     kept = (a != b).any(axis=1)
     # A chain goes on across a segment that vanished: the run it belongs to is what counts.
     run = np.cumsum(~segments.joined)[kept]

@@ -8,6 +8,9 @@ from dataclasses import dataclass
 from .errors import WindowError
 from .model import Border
 
+SMALLEST_SIDE = 0.02
+"""metres; a map is in centimetres, and anything smaller has no inside at that precision."""
+
 
 @dataclass(frozen=True)
 class Window:
@@ -23,9 +26,10 @@ class Window:
             if not math.isfinite(getattr(self, name)):
                 raise WindowError(f"window: {name} is {getattr(self, name)}; give a finite number of metres")
         for name in ("width", "height"):
-            if getattr(self, name) <= 0:
+            if getattr(self, name) < SMALLEST_SIDE:
                 raise WindowError(
-                    f"window: {name} is {getattr(self, name):g} m, so it encloses nothing; give more than 0"
+                    f"window: {name} is {getattr(self, name):g} m, so it encloses nothing; "
+                    f"give at least {SMALLEST_SIDE} m, such as 100"
                 )
 
     @classmethod

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import struct
 import sys
 
@@ -11,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robot_bridge.robotmap.binary import decode, decode_text, encode
-from robot_bridge.robotmap.errors import BinaryError, MissingCodecError, RobotMapError
+from robot_bridge.robotmap.errors import BinaryError, MissingCodecError, RobotMapError, TextError
 from robot_bridge.robotmap.text import read_text
 
 
@@ -77,3 +78,20 @@ def test_without_zstandard_it_says_what_to_install(monkeypatch, fig_2):
     monkeypatch.setitem(sys.modules, "zstandard", None)
     with pytest.raises(MissingCodecError, match="pip install zstandard"):
         encode(fig_2)
+
+
+def test_a_reader_can_set_a_lower_limit(fig_2):
+    with pytest.raises(BinaryError, match=r"^size check"):
+        decode(encode(fig_2), limit=20)
+
+
+def test_a_text_that_is_no_map_is_an_error_of_the_text():
+    with pytest.raises(TextError, match="border;"):
+        decode(encode("hello\n"))
+
+
+def test_a_text_that_is_no_utf_8_is_refused():
+    raw = b"border;\xff"
+    head = struct.pack("<4sBBHQ32s", b"RMAP", 1, 1, 0, len(raw), hashlib.sha256(raw).digest())
+    with pytest.raises(BinaryError, match="UTF-8"):
+        decode(head + zstandard.compress(raw))
