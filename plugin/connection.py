@@ -16,6 +16,7 @@ from .errors import NotSentError
 from .websocket_library import websocket_library
 
 STOP_WITHIN_MS = 3000
+CANCEL_WITHIN = 0.3
 
 
 class Connection(QObject):
@@ -146,4 +147,14 @@ class _Worker(QThread):
         finally:
             with self._lock:
                 self._stopping, self._loop, self._task = True, None, None
+            _end_tasks(loop)
             loop.close()
+
+
+def _end_tasks(loop: asyncio.AbstractEventLoop) -> None:
+    """Cancel what a library left running, such as the pings of a link that would not close."""
+    left = asyncio.all_tasks(loop)
+    for task in left:
+        task.cancel()
+    if left:
+        loop.run_until_complete(asyncio.wait(left, timeout=CANCEL_WITHIN))

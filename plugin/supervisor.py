@@ -24,8 +24,10 @@ class FleetSupervisor:
         return self._window
 
     def initProcessing(self):
-        self._provider = FleetProvider()
-        QgsApplication.processingRegistry().addProvider(self._provider)
+        provider = FleetProvider()
+        # The registry deletes a provider that it does not take, as when two copies of the plugin are loaded.
+        if QgsApplication.processingRegistry().addProvider(provider):
+            self._provider = provider
 
     def initGui(self):
         self.initProcessing()

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from qgis.core import Qgis, QgsMessageLog
 from qgis.gui import QgsMessageBar, QgsMessageBarItem
-from qgis.PyQt.QtCore import QObject
+from qgis.PyQt.QtCore import QObject, QRect, Qt
+from qgis.PyQt.QtWidgets import QLabel, QSizePolicy
 
 TITLE = "Fleet Supervisor"
 SECONDS = {Qgis.MessageLevel.Info: 6, Qgis.MessageLevel.Success: 5, Qgis.MessageLevel.Warning: 12}
 """How long a text stays; what is critical stays until it is closed."""
+BESIDE_TEXT = 190
+"""Pixels of the bar's width that its icons, counter and buttons take."""
 
 
 class Notices(QObject):
@@ -32,6 +35,10 @@ class Notices(QObject):
         """Say what happened."""
         self._show(text, Qgis.MessageLevel.Info)
 
+    def texts(self) -> list[str]:
+        """Return what hangs there now."""
+        return list(self._shown)
+
     def withdraw(self) -> None:
         """Take down whatever still hangs there."""
         self._bar.widgetRemoved.disconnect(self._removed)
@@ -43,9 +50,23 @@ class Notices(QObject):
         if text in self._shown:
             return
         QgsMessageLog.logMessage(text, TITLE, level, False)
-        item = QgsMessageBarItem(TITLE, text, level, SECONDS.get(level, 0))
+        item = QgsMessageBarItem(_label(text, self._bar), level, SECONDS.get(level, 0))
         self._shown[text] = item
         self._bar.pushItem(item)
 
     def _removed(self, item: QgsMessageBarItem) -> None:
         self._shown = {text: shown for text, shown in self._shown.items() if shown is not item}
+
+
+def _label(text: str, bar: QgsMessageBar) -> QLabel:
+    """Return ``text`` on as many lines as it needs; an item of QGIS's own cuts it after one and a half."""
+    label = QLabel(f"{TITLE}: {text}", bar)
+    label.setObjectName("fleet_notice")
+    label.setTextFormat(Qt.TextFormat.PlainText)
+    label.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
+    label.setWordWrap(True)
+    label.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Preferred)
+    room = QRect(0, 0, max(200, bar.width() - BESIDE_TEXT), 1000)
+    needed = label.fontMetrics().boundingRect(room, Qt.TextFlag.TextWordWrap, label.text())
+    label.setMinimumHeight(needed.height() + 4)
+    return label

@@ -15,7 +15,7 @@ from .glyphs import state_icon
 from .picture import STATES, RobotView
 
 COLUMNS = ("Robot", "State", "Task", "Speed", "Batt.", "Age", "Link")
-WIDEST = ("robot-0", "offline", "", "0.0 m/s", "100%", "00.0 s", "websock")
+WIDEST = ("robot-0", "offline", "", "0.0 m/s", "Batt.", "00.0 s", "websocket")
 TASK = COLUMNS.index("Task")
 SORT_ROLE = Qt.ItemDataRole.UserRole
 REFRESH_EVERY = 500 // PULL_EVERY_MS
@@ -204,5 +204,6 @@ def _task_in_words(task: CommandReport | None, view: RobotView) -> str:
     if task is None:
         return view.report.status or ("stopped" if view.report.stopped else "")
     what = {SetPosEnd.__name__: "cone" if task.params.get("cone") else "target", SetPath.__name__: "route"}
-    doing = "under way" if task.state is CommandState.ACKNOWLEDGED else task.state.value
-    return f"{what.get(task.op, task.op)} {doing}"
+    if task.state is CommandState.ACKNOWLEDGED:
+        return "on its route" if task.op == SetPath.__name__ else f"to its {what.get(task.op, task.op)}"
+    return f"{what.get(task.op, task.op)} {task.state.value}"

@@ -19,13 +19,15 @@ from .select_tool import SelectTool
 from .wire.status import Phase
 
 MENU = "Fleet Supervisor"
+DOCK_WIDTH = 440
 
 
 class DeskWindow(QObject):
     """Everything of the desk that hangs in the QGIS window. :meth:`remove` undoes the constructor."""
 
     def __init__(self, iface: QgisInterface):
-        super().__init__()
+        # A child of the main window, so that scripts find its actions there by their object names.
+        super().__init__(iface.mainWindow())
         self._iface = iface
         self._told = ""
         canvas = iface.mapCanvas()
@@ -69,12 +71,15 @@ class DeskWindow(QObject):
             if action in (self.actions.connect, self.actions.cancel, self.actions.follow):
                 self.toolbar.addSeparator()
         self._iface.addDockWidget(Qt.DockWidgetArea.RightDockWidgetArea, self.dock)
+        self._iface.mainWindow().resizeDocks([self.dock], [DOCK_WIDTH], Qt.Orientation.Horizontal)
 
     def _wire_actions(self) -> None:
         actions, desk = self.actions, self.desk
         for action, tool in self._tools.items():
             tool.setAction(action)
-            action.triggered.connect(lambda on, tool=tool: self._use(tool, on))
+            action.triggered.connect(lambda _, tool=tool: self._iface.mapCanvas().setMapTool(tool))
+            # A click on the button of the tool in hand keeps it, as QGIS's own do.
+            action.triggered.connect(lambda _, action=action: action.setChecked(True))
         actions.connect.triggered.connect(self._connect_or_not)
         actions.send.triggered.connect(desk.send_draft)
         actions.cancel.triggered.connect(lambda: desk.drafts.put(None))
@@ -85,12 +90,6 @@ class DeskWindow(QObject):
         desk.failed.connect(self.notices.error)
         desk.complained.connect(self.notices.warning)
         desk.link_changed.connect(self._show_link)
-
-    def _use(self, tool: QgsMapTool, on: bool) -> None:
-        if on:
-            self._iface.mapCanvas().setMapTool(tool)
-        else:
-            self._put_away(tool)
 
     def _put_away(self, tool: QgsMapTool) -> None:
         canvas = self._iface.mapCanvas()

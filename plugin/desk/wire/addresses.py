@@ -80,8 +80,8 @@ def _closed(error: Exception, place: str) -> LinkError:
     received = getattr(error, "rcvd", None)
     if received is None:
         return LinkError(
-            f"The link to the gateway at {place} broke off. It is tried again by itself; if that goes on, "
-            "check that the gateway runs and the network holds."
+            f"The link to the gateway at {place} broke off. It is tried again by itself; if it does not come "
+            "back, check the gateway and the network."
         )
     why = f": {received.reason}" if received.reason else ""
     return LinkError(

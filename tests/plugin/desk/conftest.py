@@ -23,8 +23,9 @@ from qgis.gui import QgsMapCanvas, QgsMapToolPan, QgsMessageBar
 from qgis.PyQt import sip
 from qgis.PyQt.QtCore import QCoreApplication, QEvent, QPoint, Qt
 from qgis.PyQt.QtTest import QTest
-from qgis.PyQt.QtWidgets import QAction, QApplication, QMainWindow
+from qgis.PyQt.QtWidgets import QAction, QApplication, QLabel, QMainWindow
 from websockets.asyncio.server import serve
+from websockets.exceptions import ConnectionClosed
 
 ORIGIN = (488000.0, 5190000.0)
 
@@ -141,6 +142,8 @@ class SmallGateway:
                     robots = [to_json(robot) for robot in self.robots.values()]
                     params = {"t": time.time(), "robots": robots}
                     await socket.send(json.dumps({"jsonrpc": "2.0", "method": "positions", "params": params}))
+        except ConnectionClosed:
+            pass
         finally:
             self._sockets.discard(socket)
 
@@ -232,7 +235,7 @@ class Window(QMainWindow):
 
     def texts(self) -> list[str]:
         """What hangs in the message bar."""
-        return [item.text() for item in self.bar.items()]
+        return [label.text() for label in self.bar.findChildren(QLabel, "fleet_notice")]
 
     def look_at(self, x_min, y_min, x_max, y_max) -> None:
         """Show a part of the site, in metres from its origin, when it is not rotated."""

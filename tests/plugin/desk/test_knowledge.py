@@ -1,0 +1,222 @@
+"""What the desk knows without Qt: waits, orders, ageing, trails, commands, what the gateway says."""
+
+from __future__ import annotations
+
+import json
+import math
+
+import numpy as np
+import pytest
+from fleet_supervisor.plugin.desk.command_book import CommandBook, in_words
+from fleet_supervisor.plugin.desk.picture import STATES, RobotPicture
+from fleet_supervisor.plugin.desk.trails import Trails
+from fleet_supervisor.plugin.desk.wire.backoff import Backoff
+from fleet_supervisor.plugin.desk.wire.mailbox import MOST_COMMANDS, Mailbox, Sighting
+from fleet_supervisor.plugin.desk.wire.outbox import Order, Outbox
+from fleet_supervisor.plugin.desk.wire.protocol import DeskProtocol
+from fleet_supervisor.plugin.errors import LinkError
+from fleet_supervisor.robot_bridge.messages import (
+    CommandReport,
+    CommandState,
+    CommandStep,
+    RobotState,
+    to_json,
+)
+from hypothesis import given
+from hypothesis import strategies as st
+
+
+@given(st.lists(st.floats(0.0, 1.0, exclude_max=True), min_size=1, max_size=40))
+def test_every_wait_lies_between_half_a_second_and_fifteen(chances):
+    chance = iter(chances)
+    backoff = Backoff(chance=lambda: next(chance))
+    waits = [backoff.next_wait() for _ in chances]
+    assert all(0.5 <= wait <= 15.0 for wait in waits)
+
+
+def test_waits_double_up_to_the_longest_and_begin_anew_after_a_success():
+    backoff = Backoff(chance=lambda: 0.0)
+    assert [backoff.next_wait() for _ in range(6)] == [1.0, 2.0, 4.0, 8.0, 15.0, 15.0]
+    backoff.reset()
+    assert backoff.next_wait() == 1.0
+
+
+def test_desks_do_not_come_back_in_the_same_moment():
+    early, late = Backoff(chance=lambda: 0.999), Backoff(chance=lambda: 0.0)
+    assert early.next_wait() < 0.6 * late.next_wait()
+
+
+def test_the_same_order_is_kept_once_and_answered_once():
+    outbox = Outbox()
+    assert outbox.put(Order("a", "send"))
+    assert not outbox.put(Order("a", "send"))
+    assert outbox.answered("a").key == "a"
+    assert outbox.answered("a") is None
+
+
+def test_orders_are_repeated_in_the_order_in_which_they_were_asked():
+    outbox = Outbox()
+    for number in range(5):
+        outbox.put(Order(f"order {number}", "send", asked_at=float(number)))
+    again, too_old = outbox.renew(now=32.5)
+    assert [order.key for order in again] == ["order 3", "order 4"]
+    assert [order.key for order in too_old] == ["order 0", "order 1", "order 2"]
+    assert len(outbox) == 2
+
+
+def sighting(report, received=100.0):
+    return {report.robot: Sighting(report, received)}
+
+
+@pytest.mark.parametrize(
+    ("age", "stopped", "later", "state"),
+    [
+        (0.0, False, 2.9, RobotState.FRESH),
+        (0.0, False, 3.0, RobotState.STALE),
+        (2.0, False, 1.5, RobotState.STALE),
+        (0.0, False, 9.9, RobotState.STALE),
+        (0.0, False, 10.0, RobotState.LOST),
+        (0.0, True, 2.0, RobotState.FRESH),
+        (0.0, True, 60.0, RobotState.OFFLINE),
+    ],
+)
+def test_robots_age_by_this_computers_clock_when_nothing_comes(make_robot, age, stopped, later, state):
+    picture = RobotPicture(stale_after=3.0, lost_after=10.0)
+    picture.merge(sighting(make_robot(age=age, stopped=stopped)))
+    view = picture.view("r1", 100.0 + later)
+    assert view.state is state
+    assert view.age == pytest.approx(age + later)
+
+
+@pytest.mark.parametrize("told", [RobotState.STALE, RobotState.LOST, RobotState.OFFLINE])
+def test_a_state_that_the_gateway_knows_better_is_kept(make_robot, told):
+    picture = RobotPicture()
+    picture.merge(sighting(make_robot(state=told, age=0.5)))
+    assert picture.view("r1", 100.0).state is told
+
+
+def test_the_sites_own_limits_decide(make_robot):
+    picture = RobotPicture(stale_after=1.0, lost_after=2.0)
+    picture.merge(sighting(make_robot()))
+    assert [picture.view("r1", 100.0 + t).state for t in (0.5, 1.5, 2.5)] == list(STATES[:3])
+
+
+def test_an_older_sighting_does_not_replace_a_newer_one(make_robot):
+    picture = RobotPicture()
+    picture.merge(sighting(make_robot(x=2.0), received=101.0))
+    picture.merge(sighting(make_robot(x=1.0), received=100.0))
+    assert picture.view("r1", 101.0).report.x == 2.0
+
+
+def test_a_robot_without_a_pose_is_known_but_not_drawn(make_robot):
+    picture = RobotPicture()
+    picture.merge(sighting(make_robot("r2", x=None, y=None, theta=None, v=None)))
+    picture.merge(sighting(make_robot("r1", theta=None)))
+    arrays = picture.arrays(100.0)
+    assert len(picture.views(100.0)) == 2
+    assert arrays.names == ["r1"]
+    assert math.isnan(arrays.theta[0])
+
+
+def test_a_trail_grows_with_the_way_and_fades_with_time(make_robot):
+    trails = Trails(seconds=10.0)
+    for second in range(20):
+        trails.extend(sighting(make_robot(x=float(min(second, 15))), received=float(second)))
+    (trail,) = trails.arrays(now=19.0)
+    np.testing.assert_allclose(trail[:, 0], [9, 10, 11, 12, 13, 14, 15])
+    np.testing.assert_allclose(trail[:, 2], [10, 9, 8, 7, 6, 5, 4])
+    assert trails.arrays(now=40.0) == []
+
+
+def command(state=CommandState.QUEUED, steps=1, **more):
+    values = {"command": "c1234567", "robot": "r1", "op": "SetPosEnd", "operator": "anna"}
+    values["params"] = {"x": 12.3, "y": 40.0, "cone": True}
+    values.update(more)
+    return CommandReport(state=state, steps=[CommandStep(state, 1.0, "anna")] * steps, **values)
+
+
+def test_a_report_that_was_overtaken_does_not_set_a_command_back():
+    book = CommandBook()
+    book.merge([command(CommandState.ACKNOWLEDGED, steps=3)])
+    assert book.merge([command(CommandState.QUEUED, steps=1)]) == []
+    assert book.get("c1234567").state is CommandState.ACKNOWLEDGED
+
+
+def test_what_robots_do_is_their_newest_unfinished_target_or_path():
+    book = CommandBook()
+    book.merge(
+        [
+            command(CommandState.SUPERSEDED, command="c1000000"),
+            command(CommandState.DELIVERED, command="c2000000"),
+            command(CommandState.QUEUED, command="c3000000", op="Abort", params={}),
+            command(CommandState.REACHED, command="c4000000", robot="r2"),
+        ]
+    )
+    assert [report.command for report in book.under_way()] == ["c2000000"]
+
+
+def test_commands_are_told_in_words():
+    assert in_words(command()) == "cone at 12.30, 40.00"
+    assert in_words(command(op="SetPath", params={"points": [[0, 0], [1, 1]]})) == "route of 2 points"
+    assert in_words(command(op="Abort", params={})) == "abort"
+
+
+def test_a_window_that_does_not_look_costs_a_bounded_memory(make_robot):
+    mailbox = Mailbox()
+    for number in range(3 * MOST_COMMANDS):
+        mailbox.put_commands([command(command=f"command-{number}")])
+        mailbox.put_robots([make_robot(x=float(number))], float(number))
+    news = mailbox.take()
+    assert len(news.robots) == 1
+    assert list(news.commands)[-1] == f"command-{3 * MOST_COMMANDS - 1}"
+    assert len(news.commands) == MOST_COMMANDS
+    assert not mailbox.take().robots
+
+
+def greeted(site):
+    mailbox = Mailbox()
+    protocol = DeskProtocol("anna", 10.0, "ws://here/desk", mailbox, clock=lambda: 50.0)
+    (hello,) = protocol.begin()
+    answer = {"jsonrpc": "2.0", "id": json.loads(hello)["id"]}
+    sent = protocol.receive(json.dumps({**answer, "result": {"protocol": 1, "site": to_json(site)}}))
+    return protocol, mailbox, [json.loads(text) for text in sent]
+
+
+def test_after_the_greeting_the_desk_subscribes_and_asks_for_commands(site):
+    _, mailbox, sent = greeted(site)
+    assert [(request["method"], request["params"]) for request in sent] == [
+        ("subscribe", {"rate": 10.0}),
+        ("get_commands", {"limit": 200}),
+    ]
+    assert mailbox.take().site == site
+
+
+def test_commands_come_newest_first_and_are_kept_oldest_first(site):
+    protocol, mailbox, sent = greeted(site)
+    newest_first = [to_json(command(command=f"command-{n}")) for n in (3, 2, 1)]
+    answer = {"jsonrpc": "2.0", "id": sent[1]["id"], "result": {"commands": newest_first}}
+    protocol.receive(json.dumps(answer))
+    assert list(mailbox.take().commands) == ["command-1", "command-2", "command-3"]
+
+
+@pytest.mark.parametrize(
+    "params",
+    [
+        {},
+        {"robots": 5},
+        {"robots": [{}]},
+        {"robots": [{"robot": "r1", "state": "dancing", "age": 0, "link": "sql"}]},
+        {"robots": [{"robot": "r1", "state": "fresh", "age": "young", "link": "sql"}]},
+        {"robots": [{"robot": "r1", "state": "fresh", "age": 0, "link": "sql", "x": True, "y": 1}]},
+    ],
+)
+def test_positions_that_are_none_are_refused_in_words(site, params):
+    protocol, mailbox, _ = greeted(site)
+    with pytest.raises(LinkError, match="ws://here/desk"):
+        protocol.receive(json.dumps({"jsonrpc": "2.0", "method": "positions", "params": params}))
+    assert not mailbox.take().robots
+
+
+def test_what_a_newer_gateway_says_besides_is_passed_over(site):
+    protocol, _, _ = greeted(site)
+    assert protocol.receive('{"jsonrpc": "2.0", "method": "weather", "params": {"rain": true}}') == []
