@@ -100,9 +100,11 @@ class _LayerReader:
         if role and role not in OBSTACLE_ROLES:
             reading.warnings.append(f"Layer {name}: its role is {role}, yet it is exported as obstacles")
         if self._estimated:
+            count = len(self._estimated)
+            unknown = "1 height is" if count == 1 else f"{count} heights are"
             reading.warnings.append(
-                f"Layer {name}: {len(self._estimated)} heights are not known and estimated as "
-                f"{self._default_height:g} m ({_features(self._estimated)})"
+                f"Layer {name}: {unknown} not known and estimated as {self._default_height:g} m "
+                f"({_features(self._estimated)})"
             )
         if self._odd_for_role:
             wanted = "lines, one a riser" if role == STAIRS else "polygons"

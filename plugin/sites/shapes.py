@@ -44,7 +44,9 @@ def shapes_of(geometry: QgsGeometry, role: str = "") -> Shapes:
         geometry = QgsGeometry(geometry.constGet().segmentize(SAGITTA_M, maximum))
     parts = parts_of(geometry)
     if not parts.finite:
-        return Shapes([], ["has a coordinate that is not a finite number; it is left out"])
+        return Shapes(
+            [], ["has a coordinate that is no number or has no place in the site's CRS; it is left out"]
+        )
     # Valid as a whole is the rule and quickly told; GEOS takes a ring without points for valid, too.
     sound = parts.rings_have_points and geometry.isGeosValid()
     polygons, polygon_notes = (parts.polygons, []) if sound else sound_polygons(parts.polygons)

@@ -71,7 +71,8 @@ def _flat_note(number: int, k: int, ring: np.ndarray) -> str:
     place = f" at ({ring[0, 0]:.2f} {ring[0, 1]:.2f})" if len(ring) else ""
     count = len(np.unique(ring, axis=0))
     lost = "the part" if k == 0 else "the courtyard"
-    return f"{which}{place} has {count} different points and encloses nothing; {lost} is left out"
+    points = f"{count} different point{'' if count == 1 else 's'}"
+    return f"{which}{place} has {points} and encloses nothing; {lost} is left out"
 
 
 def _as_geometry(polygons: Sequence[list[np.ndarray]]) -> QgsGeometry:

@@ -1,0 +1,62 @@
+"""Layers in memory, made from what QGIS calls them: a type, a CRS, fields, and WKT with values."""
+
+from __future__ import annotations
+
+import pytest
+from fleet_supervisor.plugin.sites.obstacle_source import obstacle_sources
+from fleet_supervisor.plugin.sites.placing import SitePlacing
+from fleet_supervisor.plugin.sites.reading import read_outlines
+from fleet_supervisor.plugin.sites.roles import LayerExpressions
+from fleet_supervisor.robot_bridge.sites.frame import SiteFrame
+from qgis.core import (
+    QgsCoordinateReferenceSystem,
+    QgsCoordinateTransformContext,
+    QgsExpressionContext,
+    QgsFeature,
+    QgsFeedback,
+    QgsGeometry,
+    QgsVectorLayer,
+)
+
+
+def memory_layer(name="walls", kind="LineString", crs="EPSG:32633", fields="", features=()):
+    """Return a layer; each of ``features`` is (WKT or QgsGeometry or None, *values)."""
+    layer = QgsVectorLayer(f"{kind}?crs={crs}{fields}", name, "memory")
+    assert layer.isValid()
+    made = []
+    for shape, *values in features:
+        feature = QgsFeature(layer.fields())
+        if shape is not None:
+            feature.setGeometry(QgsGeometry.fromWkt(shape) if isinstance(shape, str) else shape)
+        feature.setAttributes(list(values))
+        made.append(feature)
+    ok, added = layer.dataProvider().addFeatures(made)
+    assert ok and len(added) == len(made)
+    layer.updateExtents()
+    return layer
+
+
+@pytest.fixture
+def make_layer(qgis_app):
+    return memory_layer
+
+
+@pytest.fixture
+def read(qgis_app):
+    """Read layers into a :class:`Reading`; the site frame is EPSG:32633 itself unless told otherwise."""
+
+    def run(*layers, crs="EPSG:32633", origin=(0.0, 0.0), rotation=0.0, local=False, feedback=None, **more):
+        site = SitePlacing(
+            QgsCoordinateReferenceSystem(crs),
+            SiteFrame(crs, origin, rotation),
+            QgsCoordinateTransformContext(),
+            local,
+        )
+        general = more.get("general", LayerExpressions())
+        sources = obstacle_sources(layers, general, QgsExpressionContext())
+        window = more.get("window", (-1e7, -1e7, 1e7, 1e7))
+        return read_outlines(
+            sources, site, window, more.get("default_height", 3.0), feedback or QgsFeedback()
+        )
+
+    return run

@@ -1,0 +1,149 @@
+"""Layers become outlines with heights and labels; nothing is lost without a word."""
+
+from __future__ import annotations
+
+import pytest
+from fleet_supervisor.plugin.sites.errors import ExpressionError, LayerTypeError
+from fleet_supervisor.plugin.sites.roles import (
+    KEEPOUT,
+    RAMP,
+    STAIRS,
+    LayerExpressions,
+    set_expressions,
+    set_role,
+)
+from fleet_supervisor.robot_bridge.robotmap.model import ShapeType
+from qgis.core import NULL, QgsFeedback
+
+LINE = "LineString(0 0, 4 0)"
+SQUARE = "Polygon((0 0, 10 0, 10 10, 0 10, 0 0))"
+HEIGHT = "&field=height:double"
+
+
+def heights(reading):
+    return [row.height for row in reading.rows]
+
+
+@pytest.mark.parametrize("field", ["height", "Height", "height_m"])
+def test_the_field_height_is_the_height_and_the_layers_name_is_the_label(make_layer, read, field):
+    (row,) = read(make_layer("gate", fields=f"&field={field}:double", features=[(LINE, 2.5)])).rows
+    assert (row.height, row.semantics, row.outdoor, row.source) == (2.5, "gate", True, "gate:1")
+
+
+def test_text_is_a_height_where_it_is_a_number_of_metres(make_layer, read):
+    texts = ["12", "12.5 m", "3,5", "2 storeys", "-4", "", NULL]
+    reading = read(make_layer(fields="&field=height:string", features=[(LINE, text) for text in texts]))
+    assert heights(reading) == [12, 12.5, 3.5, 3, 3, 3, 3]
+    assert reading.warnings == [
+        "Layer walls, feature 4: its height '2 storeys' is not a number of metres of 0 or more; "
+        "the default is used",
+        "Layer walls, feature 5: its height '-4' is not a number of metres of 0 or more; the default is used",
+        "Layer walls: 4 heights are not known and estimated as 3 m (features 4, 5, 6, 7)",
+    ]
+    assert reading.estimated == {"walls:4", "walls:5", "walls:6", "walls:7"}
+
+
+def test_expressions_see_the_feature_and_the_layer(make_layer, read):
+    general = LayerExpressions('"h" * 2', "@layer_name || ',' || $id", '"h" > 1.5')
+    layer = make_layer("wall", fields="&field=h:double", features=[(LINE, 1.0), (LINE, 2.0)])
+    rows = read(layer, general=general).rows
+    assert [(row.height, row.semantics, row.outdoor) for row in rows] == [
+        (2, "wall,1", False),
+        (4, "wall,2", True),
+    ]
+
+
+def test_a_layers_own_expressions_win_over_the_general_ones(make_layer, read):
+    own, other = (make_layer(name, features=[(LINE,)]) for name in ("own", "other"))
+    set_expressions(own, LayerExpressions(height="1", outdoor="false"))
+    rows = read(own, other, general=LayerExpressions("9", "'label'", "true")).rows
+    assert [(row.height, row.semantics, row.outdoor) for row in rows] == [
+        (1, "label", False),
+        (9, "label", True),
+    ]
+
+
+def test_an_expression_about_a_field_that_one_layer_lacks_is_one_warning_for_that_layer(make_layer, read):
+    with_field = make_layer("tall", fields="&field=h:double", features=[(LINE, 7.0)])
+    without = make_layer("flat", features=[(LINE,)] * 9)
+    reading = read(with_field, without, general=LayerExpressions(height='"h"'), default_height=2.0)
+    assert heights(reading) == [7] + [2] * 9
+    assert reading.warnings == [
+        "Layer flat: it has no field h, which the height expression '\"h\"' reads; "
+        "the default is used for all its features",
+        "Layer flat: 9 heights are not known and estimated as 2 m (features 1, 2, 3, 4, 5 and 4 more)",
+    ]
+
+
+def test_what_is_no_expression_is_refused_before_a_feature_is_read(make_layer, read):
+    with pytest.raises(ExpressionError, match=r"height expression '1 \+' for the layer walls is not one"):
+        read(make_layer(features=[(None,)]), general=LayerExpressions(height="1 +"))
+
+
+def test_an_expression_that_fails_on_a_feature_is_a_warning_with_its_id(make_layer, read):
+    reading = read(make_layer(features=[(LINE,)]), general=LayerExpressions(height="to_int('a')"))
+    assert reading.warnings[0].startswith("Layer walls, feature 1: the height expression fails: Cannot conv")
+    assert heights(reading) == [3]
+
+
+def test_an_outdoor_flag_that_is_neither_is_named(make_layer, read):
+    reading = read(
+        make_layer(fields=HEIGHT, features=[(LINE, 1.0)]), general=LayerExpressions(outdoor="'maybe'")
+    )
+    assert reading.rows[0].outdoor is True
+    assert reading.warnings == [
+        "Layer walls, feature 1: its outdoor flag 'maybe' is neither true nor false; true is used"
+    ]
+
+
+def test_a_feature_without_geometry_is_named_and_one_outside_the_window_is_not_read(make_layer, read):
+    features = [(None, 1.0), ("LineString(900 900, 950 900)", 1.0), (LINE, 1.0)]
+    reading = read(make_layer(fields=HEIGHT, features=features), window=(-5, -5, 5, 5))
+    assert [row.source for row in reading.rows] == ["walls:3"]
+    assert reading.warnings == ["Layer walls, feature 1: has no geometry; it is left out"]
+
+
+def test_layers_of_one_name_are_told_apart(make_layer, read):
+    rows = read(*(make_layer(features=[(LINE,)]) for _ in range(3))).rows
+    assert [row.source for row in rows] == ["walls:1", "walls (2):1", "walls (3):1"]
+
+
+def test_a_layer_of_points_is_refused_by_name(make_layer, read):
+    with pytest.raises(LayerTypeError, match=r"trees holds points.*leave it out.*Buffer"):
+        read(make_layer("trees", "Point", features=[("Point(1 1)",)]))
+
+
+def test_a_ramp_has_no_height_and_a_flight_of_stairs_the_height_of_a_riser(make_layer, read):
+    ramp = make_layer("ramp", "Polygon", fields=HEIGHT, features=[(SQUARE, 0.5)])
+    stairs = make_layer(
+        "steps",
+        "MultiLineString",
+        fields=HEIGHT,
+        features=[("MultiLineString((0 0, 4 0), (0 1, 4 1))", 0.17)],
+    )
+    set_role(ramp, RAMP)
+    set_role(stairs, STAIRS)
+    reading = read(ramp, stairs)
+    assert [(row.shape_type, row.height) for row in reading.rows] == [
+        (ShapeType.RAMP, 0.0),
+        (ShapeType.STAIRS, 0.17),
+    ]
+    assert reading.warnings == []
+
+
+def test_layers_whose_role_does_not_fit_are_named(make_layer, read):
+    area, stairs = (make_layer(n, "Polygon", fields=HEIGHT, features=[(SQUARE, 1.0)]) for n in ("no", "up"))
+    set_role(area, KEEPOUT)
+    set_role(stairs, STAIRS)
+    assert read(area, stairs).warnings == [
+        "Layer no: its role is keepout, yet it is exported as obstacles",
+        "Layer up: its role stairs wants lines, one a riser; other features are exported as plain "
+        "obstacles (feature 1)",
+    ]
+
+
+def test_a_cancel_stops_the_reading_at_once(make_layer, read):
+    feedback = QgsFeedback()
+    feedback.cancel()
+    reading = read(make_layer(features=[(LINE,)] * 3), feedback=feedback)
+    assert (reading.complete, reading.rows) == (False, [])
