@@ -14,8 +14,14 @@ VENDORED = "websockets"
 VENDOR = Path("plugin") / "vendor"
 VENDOR_NOTE = '"""Packages that come with the release, unchanged; each holds its own licence."""\n'
 
+KINDS = {
+    "plugin": {".py"},
+    "robot_bridge": {".py"},
+    "resources": {".gpkg", ".png", ".qgz", ".qm", ".qml", ".svg", ".tif", ".toml"},
+}
+"""What each part holds, by suffix; whatever else lies there (caches, backups, makers of resources) stays."""
+
 LEFT_OUT_FOLDERS = {"__pycache__", "vendor"}
-LEFT_OUT_SUFFIXES = {".pyc", ".pyo", ".so", ".pyd", ".gpkg-wal", ".gpkg-shm", ".qgz~", ".aux.xml"}
 
 
 class PackageError(Exception):
@@ -53,9 +59,7 @@ def _own_files(root: Path) -> Iterator[Path]:
 def _belongs(file: Path, root: Path) -> bool:
     path = file.relative_to(root)
     hidden = any(part.startswith(".") for part in path.parts)
-    maker = path.parts[0] == "resources" and path.suffix == ".py"
-    left_out = LEFT_OUT_FOLDERS & set(path.parts) or any(path.name.endswith(end) for end in LEFT_OUT_SUFFIXES)
-    return not (hidden or maker or left_out)
+    return not hidden and not LEFT_OUT_FOLDERS & set(path.parts) and path.suffix in KINDS[path.parts[0]]
 
 
 def _vendored_files() -> Iterator[tuple[str, bytes]]:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+import shutil
+import subprocess
 import zipfile
 from configparser import ConfigParser
 from pathlib import PurePosixPath
@@ -77,6 +79,31 @@ def test_the_metadata_agrees_with_the_rest(metadata, root, names):
 def test_the_sample_site_comes_along(names):
     site = "fleet_supervisor/resources/sample_site/"
     assert {f"{site}{name}" for name in ("site.toml", "site.gpkg", "sample_site.qgz")} <= set(names)
+
+
+def test_everything_of_the_repository_that_belongs_to_the_plugin_is_in_it(root, names):
+    parts = ["__init__.py", "metadata.txt", "LICENSE", "plugin", "robot_bridge", "resources"]
+    listed = subprocess.run(
+        ["git", "ls-files", *parts], cwd=root, stdout=subprocess.PIPE, text=True, check=False
+    )
+    if listed.returncode != 0:
+        pytest.skip("this is not a git checkout")
+    kept = {name for name in listed.stdout.splitlines() if (root / name).is_file()}
+    makers = {name for name in kept if name.startswith("resources/") and name.endswith(".py")}
+    assert {f"fleet_supervisor/{name}" for name in kept - makers} <= set(names)
+
+
+def test_what_lies_about_stays_out(root, tmp_path):
+    tree = tmp_path / "tree"
+    for part in ("plugin", "robot_bridge"):
+        shutil.copytree(root / part, tree / part, ignore=shutil.ignore_patterns("__pycache__"))
+    for part in ("__init__.py", "metadata.txt", "LICENSE", "CHANGELOG.md"):
+        shutil.copy(root / part, tree / part)
+    (tree / "resources").mkdir()
+    before = plugin_files(tree)
+    for stray in ("plugin/notes.txt", "robot_bridge/fleet.db", "robot_bridge/x.so", "plugin/.secret.py"):
+        (tree / stray).touch()
+    assert plugin_files(tree) == before
 
 
 def test_websockets_comes_along_as_pure_python_with_its_licence(names):
