@@ -40,7 +40,7 @@ def closed_rings(outlines: Outlines, border: Border | None) -> tuple[Outlines, l
 
 
 def usable_outlines(outlines: Outlines, border: Border | None) -> tuple[NDArray[Any], list[str]]:
-    """Return (K,) bool, and a warning for each outline that is left out though it touches ``border``.
+    """Return (K,) bool, true for outlines to cut at ``border``, and a warning for each other that touches it.
 
     An outline with no points, or with one that is not finite, touches everything.
     """
@@ -65,7 +65,7 @@ def usable_outlines(outlines: Outlines, border: Border | None) -> tuple[NDArray[
             f"{outlines.source[k]}: {reason}; it is left out" for k in np.flatnonzero(bad & usable & near)
         ]
         usable &= ~bad
-    return usable, warnings
+    return usable & near, warnings
 
 
 def _finite(outlines: Outlines) -> NDArray[Any]:
@@ -102,9 +102,11 @@ def _near(outlines: Outlines, border: Border | None) -> NDArray[Any]:
 def _boxes(coordinates: NDArray[Any], outlines: Outlines) -> tuple[NDArray[Any], NDArray[Any]]:
     """Return the lower and upper corners, (K, 2) each, of all outlines; without points, an inverted box."""
     low, high = np.full((len(outlines), 2), np.inf), np.full((len(outlines), 2), -np.inf)
-    row = _row(outlines)
-    np.minimum.at(low, row, coordinates)
-    np.maximum.at(high, row, coordinates)
+    filled = np.diff(outlines.offsets) > 0
+    if filled.any():
+        starts = outlines.offsets[:-1][filled]
+        low[filled] = np.minimum.reduceat(coordinates, starts)
+        high[filled] = np.maximum.reduceat(coordinates, starts)
     return low, high
 
 
