@@ -20,6 +20,8 @@ from typing import Any, ClassVar
 
 PROTOCOL_VERSION = 1
 ROBOT_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,62}")
+LARGEST_NUMBER = 2**63 - 1
+"""What an integer column of a database holds."""
 
 
 class MessageError(ValueError):
@@ -31,6 +33,13 @@ def check_finite(**numbers: float | None) -> None:
     for name, value in numbers.items():
         if value is not None and not math.isfinite(value):
             raise MessageError(f"{name} is {value}; give a finite number")
+
+
+def check_stored_number(**numbers: int | None) -> None:
+    """Refuse an integer that a database column cannot hold; raises MessageError naming the parameter."""
+    for name, value in numbers.items():
+        if value is not None and not 0 <= value <= LARGEST_NUMBER:
+            raise MessageError(f"{name} is {value}; give a whole number from 0 to {LARGEST_NUMBER}")
 
 
 def check_robot_name(name: str) -> str:
@@ -52,6 +61,9 @@ class Ready:
 
     magic: int
     acknowledged: ClassVar[bool] = True
+
+    def __post_init__(self) -> None:
+        check_stored_number(magic=self.magic)
 
 
 @dataclass(frozen=True)
@@ -81,6 +93,9 @@ class OpAck:
     magic: int | None = None
     robot: str | None = None
     acknowledged: ClassVar[bool] = False
+
+    def __post_init__(self) -> None:
+        check_stored_number(id=self.id, magic=self.magic)
 
 
 @dataclass(frozen=True)

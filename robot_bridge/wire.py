@@ -52,7 +52,7 @@ def parse_params(op: str, text: str | bytes | None) -> Any:
         return None
     try:
         return msgspec.json.decode(text)
-    except (msgspec.DecodeError, UnicodeDecodeError) as error:
+    except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
         raise MessageError(f"{op}: params is not JSON ({error}): {str(text)[:80]!r}") from None
 
 
