@@ -89,11 +89,17 @@ def open_engine(url: str) -> Engine:
 def _prepare_sqlite(connection: Any, _record: Any) -> None:
     # The driver would begin transactions late, when a reader can no longer become a writer.
     connection.isolation_level = None
+    # Anyone may write anything into RR: text that is no UTF-8 is to be refused row by row, not by the driver.
+    connection.text_factory = _decode_leniently
     cursor = connection.cursor()
     cursor.execute("PRAGMA journal_mode = WAL")
     # A command that an operator was told is queued must outlive a power cut, not only a crash.
     cursor.execute("PRAGMA synchronous = FULL")
     cursor.close()
+
+
+def _decode_leniently(text: bytes) -> str:
+    return text.decode(errors="replace")
 
 
 def _begin_immediate(connection: Connection) -> None:

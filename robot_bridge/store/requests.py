@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from sqlalchemy import Connection, delete, insert, select
+from sqlalchemy import Connection, Text, cast, delete, insert, select
 
 from .schema import rr
 
@@ -21,7 +21,9 @@ class RequestRow(NamedTuple):
 
 def read(connection: Connection, limit: int = 500) -> list[RequestRow]:
     """Return the oldest requests."""
-    query = select(rr.c.id, rr.c.robot, rr.c.op, rr.c.params).order_by(rr.c.id).limit(limit)
+    # SQLite keeps bytes in a text column as bytes, and one row of them must not hold up the others.
+    robot, op, params = (cast(column, Text) for column in (rr.c.robot, rr.c.op, rr.c.params))
+    query = select(rr.c.id, robot, op, params).order_by(rr.c.id).limit(limit)
     return [RequestRow(*row) for row in connection.execute(query)]
 
 
