@@ -129,19 +129,11 @@ class CommandBook:
         """Note a robot's OpAck: it took the message on, or (``ok`` false) will not do it, or gave it up."""
         async with self._lock:
             command = next((c for c in self._of(robot) if c.sa_id == ack.id), None)
-            if ack.id is not None:
-                await self._database.run(answers.remove_own, robot, ack.id)
-            if command is None:
-                return
-            if not ack.ok:
-                await self._save([self._step(command, CommandState.FAILED, robot, ack.reason)])
-            elif may_become(command.report.state, CommandState.ACKNOWLEDGED):
-                step = self._step(command, CommandState.ACKNOWLEDGED, robot)
-                await self._save([step, *self._ended_by(command)])
-            elif command.arrival is None:
-                report = note(command.report, self._clock(), robot, "acknowledged again")
-                arrival = judge(command.message, self._tolerance)
-                await self._save([dataclasses.replace(command, report=report, arrival=arrival)])
+            steps = [] if command is None else self._taken(command, robot, ack)
+            # One transaction: a message that is gone from SA with its step unsaved would be lost.
+            await self._database.run(_write_acknowledged, robot, ack.id, steps)
+            for step in steps:
+                self._apply(step)
 
     async def observe(self, robot: str, pose: SendPos) -> None:
         """Judge the robot's acknowledged commands by where it is now."""
@@ -160,12 +152,14 @@ class CommandBook:
             forgotten = [c for c in self._of(robot) if c.report.state is not CommandState.QUEUED]
             if not forgotten:
                 return
-            at = self._clock()
+            aborted = self._forgotten_and_aborted(robot)
+            gone = {command.report.command for command in aborted}
             again = [
-                dataclasses.replace(c, report=note(c.report, at, GATEWAY, reason), arrival=None)
-                for c in forgotten
+                self._anew(c, reason)
+                for c in self._of(robot)
+                if c.report.command not in gone and c.sa_id >= min(c.sa_id for c in forgotten)
             ]
-            for command in await self._database.run(_write_again, again):
+            for command in await self._database.run(_write_again, again, aborted):
                 self._apply(command)
             self._outbox_changed(robot)
 
@@ -195,6 +189,35 @@ class CommandBook:
             return dataclasses.replace(command, report=report)
         arrival = judge(command.message, self._tolerance)
         return dataclasses.replace(command, report=report, arrival=arrival)
+
+    def _taken(self, command: OpenCommand, robot: str, ack: OpAck) -> list[OpenCommand]:
+        """Return what a robot's OpAck of ``command`` changes."""
+        if not ack.ok:
+            return [self._step(command, CommandState.FAILED, robot, ack.reason)]
+        if may_become(command.report.state, CommandState.ACKNOWLEDGED):
+            return [self._step(command, CommandState.ACKNOWLEDGED, robot), *self._ended_by(command)]
+        if command.arrival is None:
+            report = note(command.report, self._clock(), robot, "acknowledged again")
+            arrival = judge(command.message, self._tolerance)
+            return [dataclasses.replace(command, report=report, arrival=arrival)]
+        return []
+
+    def _anew(self, command: OpenCommand, reason: str) -> OpenCommand:
+        """Return a command to be sent once more; one that was never fetched keeps its place behind."""
+        if command.report.state is CommandState.QUEUED:
+            reason = "behind what the robot is told once more"
+        report = note(command.report, self._clock(), GATEWAY, reason)
+        return dataclasses.replace(command, report=report, arrival=None)
+
+    def _forgotten_and_aborted(self, robot: str) -> list[OpenCommand]:
+        """Return the ends of what a robot that started anew forgot and an Abort of an operator gave up."""
+        mine = self._of(robot)
+        return [
+            self._step(c, CommandState.ABORTED, abort.report.operator, "the robot started anew")
+            for abort in mine
+            for c in mine
+            if not abort.is_motion and c.is_motion and c.sa_id < abort.sa_id
+        ]
 
     def _ended_by(self, abort: OpenCommand) -> list[OpenCommand]:
         """Return the commands that an acknowledged Abort ends: those that came before it."""
@@ -276,9 +299,20 @@ def _write_all(connection: Connection, steps: list[OpenCommand]) -> None:
         _write(connection, command)
 
 
-def _write_again(connection: Connection, again: list[OpenCommand]) -> list[OpenCommand]:
-    written = []
-    for command in again:
+def _write_acknowledged(
+    connection: Connection, robot: str, sa_id: int | None, steps: list[OpenCommand]
+) -> None:
+    if sa_id is not None:
+        answers.remove_own(connection, robot, sa_id)
+    _write_all(connection, steps)
+
+
+def _write_again(
+    connection: Connection, again: list[OpenCommand], ended: list[OpenCommand]
+) -> list[OpenCommand]:
+    _write_all(connection, ended)
+    written = list(ended)
+    for command in sorted(again, key=lambda c: c.sa_id):
         answers.remove(connection, [command.sa_id])
         sa_id = answers.add(connection, command.report.robot, command.message)
         renewed = dataclasses.replace(command, sa_id=sa_id)
