@@ -42,7 +42,7 @@ class WebSocketLink:
         former = self._sessions.get(name)
         self._sessions[name] = session
         if former is not None:
-            await former.replace()
+            former.replace()
         try:
             in_order = await session.run()
         finally:
@@ -64,19 +64,22 @@ class RobotSession:
         self._connection = connection
         self._robot = robot
         self._delivery: asyncio.Task[None] | None = None
+        self._closing: asyncio.Task[None] | None = None
 
-    async def replace(self) -> None:
-        """End this connection because the robot has connected anew."""
+    def replace(self) -> None:
+        """End this connection because the robot has connected anew; what still comes in is passed over."""
         if self._delivery is not None:
             self._delivery.cancel()
-        await self._connection.close(REPLACED, "the robot has connected anew")
+        # A connection whose robot is gone takes seconds to close, and the new one must not wait for it.
+        self._closing = asyncio.create_task(self._connection.close(REPLACED, "the robot has connected anew"))
 
     async def run(self) -> bool:
         """Serve the connection to its end; return true if the robot closed it in good order."""
         try:
             await self._connection.send(jsonrpc.call("Start", to_json(Start())))
             async for frame in self._connection:
-                await self._receive(frame)
+                if self._closing is None:
+                    await self._receive(frame)
         except ConnectionClosedOK:
             return True
         except ConnectionClosed:
@@ -119,10 +122,10 @@ class RobotSession:
     async def _receive_reply(self, reply: jsonrpc.Reply) -> None:
         if not isinstance(reply.id, int):
             return
-        ack = OpAck(id=reply.id, ok=reply.error is None, reason=reply.error)
         try:
+            ack = OpAck(id=reply.id, ok=reply.error is None, reason=reply.error)
             await self._fleet.receive(self._robot, NAME, ack, None)
-        except (NotReadyError, StoreError) as error:
+        except (MessageError, NotReadyError, StoreError) as error:
             log.warning("link websocket: robot %r: %s", self._robot, error)
 
     def _deliver_from_the_start(self) -> None:

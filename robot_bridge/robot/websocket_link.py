@@ -22,6 +22,8 @@ log = logging.getLogger(__name__)
 
 FIRST_WAIT = 0.5
 LONGEST_WAIT = 10.0
+REPLACED = 4001
+"""Close code of a gateway to which another robot has connected under the same name."""
 LARGEST_FRAME = 64 << 20
 """bytes; a whole city's map comes in one frame."""
 
@@ -51,7 +53,13 @@ class WebSocketLink:
                 reason = "the gateway closed the connection"
             except InvalidURI as error:
                 raise BridgeError(f"{error}; write the URL as ws://127.0.0.1:8765/robot") from None
-            except (OSError, InvalidHandshake, ConnectionClosed) as error:
+            except ConnectionClosed as error:
+                if error.rcvd is not None and error.rcvd.code == REPLACED:
+                    raise BridgeError(
+                        f"{self._url}: another robot has connected under this name; give each its own --name"
+                    ) from None
+                reason = str(error)
+            except (OSError, InvalidHandshake) as error:
                 reason = str(error)
             log.warning("%s: %s; trying again in %.1f s", self._url, reason, wait)
             await asyncio.sleep(wait * random.uniform(0.8, 1.2))
@@ -78,7 +86,11 @@ class WebSocketLink:
             return
 
     async def _receive(self, connection: ClientConnection, agent: Agent, frame: str | bytes) -> None:
-        message = jsonrpc.decode(frame)
+        try:
+            message = jsonrpc.decode(frame)
+        except jsonrpc.FrameError as error:
+            log.error("%s: %s", self._url, error)
+            return
         if isinstance(message, jsonrpc.Reply):
             if message.error is not None:
                 log.error("the gateway refused request %s: %s", message.id, message.error)
@@ -94,9 +106,9 @@ class WebSocketLink:
 
 
 def _answer(call: jsonrpc.Call) -> Any:
-    params = dict(call.params or {})
-    payload = decode_map(params.pop("map")) if call.method == "SetMap" and "map" in params else None
-    return decode_answer(call.method, params, payload)
+    if call.method != "SetMap" or not isinstance(call.params, dict) or "map" not in call.params:
+        return decode_answer(call.method, call.params)
+    return decode_answer(call.method, None, decode_map(call.params["map"]))
 
 
 def _reply(id: int, ack: OpAck) -> str:
