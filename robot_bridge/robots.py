@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from .arrival import standing
 from .errors import NotReadyError
@@ -65,6 +65,9 @@ class Robots:
         started = robot is None or robot.magic != magic
         if robot is None:
             robot = self._robots[name] = Robot(name, magic, link, now)
+        if started and robot.pose is not None:
+            # A robot that started anew may have a clock that did so too.
+            robot.pose = replace(robot.pose, t=None)
         robot.magic, robot.link = magic, link
         self.heard(name, link, now)
         return started
