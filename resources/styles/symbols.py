@@ -164,7 +164,7 @@ def _hatch(colour: str, angle: float, distance: float, width: float) -> QgsLineP
 def _labels(text: str, size: float, colour: str) -> QgsVectorLayerSimpleLabeling:
     red, green, blue = (int(part) for part in colour.split(","))
     letters = QgsTextFormat()
-    letters.setFont(QFont("Open Sans", weight=QFont.Weight.DemiBold))
+    letters.setFont(QFont("Sans Serif", weight=QFont.Weight.DemiBold))
     letters.setSize(size)
     letters.setSizeUnit(QgsUnitTypes.RenderUnit.RenderPoints)
     letters.setColor(QColor(red, green, blue))
