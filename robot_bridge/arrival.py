@@ -47,7 +47,9 @@ class PathArrival:
     """Judges SetPath: the robot followed the path and stands within ``tolerance`` metres of its end.
 
     A path may end where it began, so standing at the end counts only after the whole of it was driven.
-    With ``under_way`` the first pose may be anywhere along the path.
+    With ``under_way`` the first pose may be anywhere along the path; where the path passes a place twice,
+    the later time counts, since a robot may have come to its end unseen. After poses were missed the robot
+    is looked for on all of the path that is left.
     """
 
     def __init__(self, path: SetPath, tolerance: float, *, under_way: bool = False) -> None:
@@ -56,6 +58,7 @@ class PathArrival:
         self._stations = np.concatenate([[0.0], np.cumsum(steps)])
         self._tolerance = tolerance
         self._seek = under_way
+        self._last: SendPos | None = None
         self.driven = 0.0
 
     def deviation(self, pose: SendPos) -> float | None:
@@ -73,12 +76,19 @@ class PathArrival:
         foot = start + along[:, None] * step
         off = np.hypot(foot[:, 0] - pose.x, foot[:, 1] - pose.y)
         station = self._stations[:-1] + along * np.sqrt(length2)
-        reach = LOOK_AHEAD + LOOK_AHEAD_TIME * abs(pose.v)
-        ahead = (station > self.driven) & (station <= self.driven + reach)
-        near = (off <= CORRIDOR) & (ahead | self._seek)
-        if near.any():
+        near = (off <= CORRIDOR) & (station > self.driven) & (station <= self.driven + self._reach(pose))
+        if self._seek and (off <= CORRIDOR).any():
             self._seek = False
+            self.driven = float(station[off <= off.min() + self._tolerance].max())
+        elif near.any():
             self.driven = float(station[near][np.argmin(off[near])])
+
+    def _reach(self, pose: SendPos) -> float:
+        """Return how many metres of path ahead the robot may be since its last pose."""
+        last, self._last = self._last or pose, pose
+        reach = LOOK_AHEAD + LOOK_AHEAD_TIME * max(abs(pose.v), abs(last.v))
+        missed = math.hypot(pose.x - last.x, pose.y - last.y) > reach
+        return math.inf if missed else reach
 
 
 class AbortArrival:
