@@ -67,21 +67,21 @@ def test_what_is_not_json_is_a_parse_error(frame):
     ],
 )
 def test_json_that_is_no_json_rpc_object_and_batches_are_invalid_requests(frame):
-    with pytest.raises(FrameError, match='must hold "jsonrpc": "2.0"') as caught:
+    with pytest.raises(FrameError, match='must hold "jsonrpc"') as caught:
         jsonrpc.decode(frame)
     assert caught.value.code == jsonrpc.INVALID_REQUEST
 
 
 @pytest.mark.parametrize("id", [True, False, 1.5, [1], {"a": 1}])
 def test_an_id_is_a_number_or_a_string(id):
-    with pytest.raises(FrameError, match="id is .*; give a number or a string") as caught:
+    with pytest.raises(FrameError, match=r"id is .*; give a number or a string") as caught:
         jsonrpc.decode(json.dumps({"jsonrpc": "2.0", "method": "Alive", "id": id}))
     assert caught.value.code == jsonrpc.INVALID_REQUEST
 
 
 @pytest.mark.parametrize("method", [None, 5, ["Alive"], {}])
 def test_a_method_is_a_string_and_the_refusal_carries_the_id(method):
-    with pytest.raises(FrameError, match="method is .*; give a string") as caught:
+    with pytest.raises(FrameError, match=r"method is .*; give a string") as caught:
         jsonrpc.decode(json.dumps({"jsonrpc": "2.0", "method": method, "id": 9}))
     assert caught.value.id == 9
 

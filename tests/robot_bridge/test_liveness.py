@@ -22,9 +22,5 @@ def test_a_robot_that_ended_in_order_is_offline_and_never_lost(age, state):
 
 def test_the_limits_are_the_sites():
     limits = {"stale_after": 0.5, "lost_after": 1.0, "ended_in_order": False}
-    assert [liveness(age, **limits).value for age in (0.4, 0.5, 0.9, 1.0)] == [
-        "fresh",
-        "stale",
-        "stale",
-        "lost",
-    ]
+    states = [liveness(age, **limits).value for age in (0.4, 0.5, 0.9, 1.0)]
+    assert states == ["fresh", "stale", "stale", "lost"]

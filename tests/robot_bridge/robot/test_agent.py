@@ -1,0 +1,131 @@
+"""What the reference robot says and does when messages come, come twice, or cannot be read."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from robot_bridge.messages import (
+    Abort,
+    Alive,
+    OpAck,
+    Ready,
+    SendPos,
+    SetMap,
+    SetPath,
+    SetPosEnd,
+    Start,
+    Stopped,
+)
+from robot_bridge.robot.agent import Agent, AgentSettings
+from robot_bridge.robot.body import BodyLimits
+from robot_bridge.robotmap.binary import encode
+from robot_bridge.robotmap.builder import Window, build_map
+from robot_bridge.robotmap.outlines import Outlines
+
+DT = 0.05
+
+
+class Robot:
+    """An agent and what it said."""
+
+    def __init__(self, **settings):
+        self.said = []
+        limits = BodyLimits(speed=3.0)
+        values = {"magic": 42, "pose": (0.0, 0.0, 0.0), "limits": limits, "rate": 5.0, **settings}
+        self.agent = Agent(AgentSettings(**values), self.said.append)
+
+    def live(self, seconds):
+        for _ in range(round(seconds / DT)):
+            self.agent.step(DT)
+
+    def heard(self, kind):
+        return [message for message in self.said if isinstance(message, kind)]
+
+    @property
+    def distance(self):
+        return math.hypot(*self.agent.pose[:2])
+
+
+@pytest.fixture
+def robot() -> Robot:
+    return Robot()
+
+
+def test_start_makes_it_say_ready_with_its_magic_number(robot):
+    assert robot.agent.receive(Start(), 3) == OpAck(id=3)
+    assert robot.agent.receive(Start(), None) is None
+    assert robot.said == [Ready(42), Ready(42)]
+
+
+def test_an_acknowledgement_is_not_acknowledged(robot):
+    assert robot.agent.receive(OpAck(id=1), 2) is None
+
+
+def test_it_drives_to_a_target_then_says_where_it_is_and_that_it_stopped(robot):
+    assert robot.agent.receive(SetPosEnd(3.0, 1.0), 1) == OpAck(id=1)
+    robot.live(15)
+    assert math.hypot(robot.agent.pose[0] - 3, robot.agent.pose[1] - 1) < 0.06
+    assert len(robot.heard(Stopped)) == 1
+    assert isinstance(robot.said[robot.said.index(Stopped()) - 1], SendPos)
+
+
+def test_a_repeated_message_is_acknowledged_twice_and_done_once(robot):
+    assert robot.agent.receive(SetPosEnd(3.0, 0.0), 1) == OpAck(id=1)
+    robot.live(10)
+    assert robot.agent.receive(Abort(), 2) == OpAck(id=2)
+    place = robot.agent.pose
+    assert robot.agent.receive(SetPosEnd(3.0, 0.0), 1) == OpAck(id=1)
+    robot.agent.receive(SetPosEnd(0.0, 0.0), 3)
+    robot.live(0.5)
+    assert robot.agent.receive(Abort(), 2) == OpAck(id=2)
+    robot.live(10)
+    assert robot.distance < 0.1 < math.hypot(*place[:2])
+
+
+def test_abort_stops_it_and_it_stays(robot):
+    robot.agent.receive(SetPath([(0.0, 0.0), (50.0, 0.0)]), 1)
+    robot.live(3)
+    assert robot.heard(SendPos)[-1].v > 1.0
+    robot.agent.receive(Abort(), 2)
+    robot.live(3)
+    stood = robot.agent.pose
+    assert robot.heard(SendPos)[-1].v == 0.0
+    assert robot.heard(Stopped)
+    robot.live(3)
+    assert robot.agent.pose == stood
+
+
+def test_a_map_is_taken_and_a_broken_one_refused_with_the_reason(robot):
+    assert robot.agent.map is None
+    good = encode(build_map(Outlines.from_rows([]), Window(15.0, 15.0, 30.0, 30.0)))
+    assert robot.agent.receive(SetMap(good), 1) == OpAck(id=1)
+    assert robot.agent.map.border.area == 900
+    refusal = robot.agent.receive(SetMap(good[:-5]), 2)
+    assert refusal.id == 2
+    assert refusal.ok is False
+    assert refusal.reason.startswith("the map cannot be read: ")
+    assert robot.agent.map.border.area == 900
+
+
+def test_it_says_its_position_at_its_rate_with_noise_by_seed():
+    first, same, other = Robot(seed=1), Robot(seed=1), Robot(seed=2)
+    for robot in (first, same, other):
+        robot.live(4)
+    assert 19 <= len(first.heard(SendPos)) <= 21
+    assert first.said == same.said
+    assert first.said != other.said
+    spread = np.std([(p.x, p.y) for p in first.heard(SendPos)])
+    assert 0.003 < spread < 0.03
+    exact = Robot(noise=0.0)
+    exact.live(1)
+    assert {(p.x, p.y) for p in exact.heard(SendPos)} == {(0.0, 0.0)}
+
+
+def test_it_says_stopped_when_it_leaves(robot):
+    robot.agent.receive(SetPosEnd(3.0, 0.0), 1)
+    robot.agent.stop()
+    robot.agent.alive()
+    assert robot.said == [Stopped(), Alive()]

@@ -1,0 +1,83 @@
+"""The simulated body keeps its limits, and the driver brings it where it was told."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from robot_bridge.robot.body import Body, BodyLimits
+from robot_bridge.robot.driver import Driver
+
+DT = 0.05
+angles = st.floats(-math.pi, math.pi)
+places = st.floats(-15, 15)
+
+
+def drive(pose, points, theta=None, limits=None, seconds=120.0):
+    """Drive until the driver says it is done; return the body and every pose on the way."""
+    limits = limits or BodyLimits()
+    body, driver, trace = Body(pose, limits), Driver(points, theta, limits), [pose]
+    for _ in range(round(seconds / DT)):
+        motion = driver.steer(body.pose)
+        body.drive(*(motion or (0.0, 0.0)))
+        body.step(DT)
+        trace.append(body.pose)
+        if motion is None and abs(body.v) < 0.01:
+            return body, trace
+    raise AssertionError(f"not done after {seconds:g} s, at {body.pose}")
+
+
+@settings(deadline=None, max_examples=50)
+@given(
+    st.lists(st.tuples(st.floats(-100, 100), st.floats(-100, 100)), min_size=1, max_size=30),
+    st.floats(0.05, 20),
+    st.floats(0.05, 10),
+)
+def test_the_body_keeps_its_limits_whatever_it_is_asked(wishes, speed, turn_rate):
+    limits = BodyLimits(speed=speed, turn_rate=turn_rate)
+    body = Body((0.0, 0.0, 0.0), limits)
+    for wish in wishes:
+        v, turn = body.v, body.turn_rate
+        x, y, theta = body.pose
+        body.drive(*wish)
+        body.step(DT)
+        assert abs(body.v) <= speed
+        assert abs(body.turn_rate) <= turn_rate
+        assert abs(body.v - v) <= limits.acceleration * DT + 1e-9
+        assert abs(body.turn_rate - turn) <= limits.turn_acceleration * DT + 1e-9
+        assert math.hypot(body.pose[0] - x, body.pose[1] - y) == pytest.approx(abs(body.v) * DT)
+        assert abs(math.remainder(body.pose[2] - theta, math.tau)) <= turn_rate * DT + 1e-9
+
+
+@settings(deadline=None, max_examples=40)
+@given(places, places, angles, st.sampled_from([0.5, 1.5, 5.0]))
+def test_the_robot_arrives_within_5_cm_from_anywhere(x, y, theta, speed):
+    body, _ = drive((x, y, theta), [(2.0, 3.0)], limits=BodyLimits(speed=speed))
+    assert math.hypot(body.pose[0] - 2.0, body.pose[1] - 3.0) <= 0.05 + 0.01
+
+
+@settings(deadline=None, max_examples=20)
+@given(places, places, angles, angles)
+def test_the_robot_ends_in_the_heading_it_was_told(x, y, theta, wanted):
+    body, _ = drive((x, y, theta), [(2.0, 3.0)], wanted)
+    assert abs(math.remainder(body.pose[2] - wanted, math.tau)) < 0.1
+
+
+def test_the_robot_follows_a_loop_all_round_and_ends_where_it_began():
+    angle = np.linspace(0, math.tau, 60)
+    loop = [(10 * math.cos(a), 10 * math.sin(a)) for a in angle]
+    body, trace = drive((10.0, 0.0, math.pi / 2), loop)
+    radii = np.hypot(*np.array(trace)[:, :2].T)
+    assert abs(radii - 10).max() < 0.3
+    driven = np.hypot(*np.diff(np.array(trace)[:, :2], axis=0).T).sum()
+    assert driven == pytest.approx(math.tau * 10, rel=0.05)
+    assert math.hypot(body.pose[0] - 10, body.pose[1]) < 0.1
+
+
+def test_the_robot_turns_on_the_spot_before_it_drives_back():
+    _, trace = drive((0.0, 0.0, 0.0), [(-5.0, 0.0)])
+    assert max(x for x, _, _ in trace) < 0.05
