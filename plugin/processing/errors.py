@@ -11,6 +11,10 @@ from ...robot_bridge.robotmap.errors import RobotMapError
 from ..errors import FleetError
 
 
+class ParameterError(FleetError):
+    """A parameter of an algorithm cannot be used."""
+
+
 @contextmanager
 def shown_by_processing() -> Iterator[None]:
     """Turn errors of the plugin and of robot maps into what Processing shows without a traceback."""

@@ -6,8 +6,6 @@ from dataclasses import replace
 from pathlib import Path
 
 from qgis.core import (
-    QgsCoordinateReferenceSystem,
-    QgsMapLayer,
     QgsProcessing,
     QgsProcessingAlgorithm,
     QgsProcessingOutputNumber,
@@ -18,38 +16,32 @@ from qgis.core import (
     QgsProcessingParameterFileDestination,
     QgsProcessingParameterMultipleLayers,
     QgsProcessingParameterNumber,
-    QgsProcessingUtils,
-    QgsProviderRegistry,
-    QgsVectorLayer,
 )
 from qgis.PyQt.QtGui import QIcon
 
 from ...robot_bridge.robotmap.binary import encode
 from ...robot_bridge.robotmap.builder import Window, build_map
+from ...robot_bridge.robotmap.errors import RobotMapError
 from ...robot_bridge.robotmap.model import RobotMap
 from ...robot_bridge.robotmap.text import write_text
-from ..sites.errors import LayerTypeError
-from ..sites.obstacle_source import obstacle_sources
-from ..sites.placing import SitePlacing
+from ..errors import FleetError
 from ..sites.reading import Reading, read_outlines
-from ..sites.roles import LayerExpressions
-from ..sites.site_crs import site_crs_for
 from .errors import shown_by_processing
 from .export_help import HELP
-from .map_window import (
-    LOCAL,
-    SITE_CRS,
-    ParameterError,
-    map_window,
-    site_frame,
-    window_parameters,
-    window_problem,
+from .export_plan import (
+    DEFAULT_HEIGHT,
+    HEIGHT_EXPRESSION,
+    OBSTACLES,
+    OUTDOOR_EXPRESSION,
+    OUTPUT,
+    SEMANTICS_EXPRESSION,
+    plan_of,
+    unopened_layer,
 )
-from .whole_file import OutputError, write_whole
+from .map_window import window_parameters, window_problem
+from .whole_file import write_whole
 
-OBSTACLES, FORMAT, STRICT, OUTPUT = "OBSTACLES", "FORMAT", "STRICT", "OUTPUT"
-HEIGHT_EXPRESSION, DEFAULT_HEIGHT = "HEIGHT_EXPRESSION", "DEFAULT_HEIGHT"
-SEMANTICS_EXPRESSION, OUTDOOR_EXPRESSION = "SEMANTICS_EXPRESSION", "OUTDOOR_EXPRESSION"
+FORMAT, STRICT = "FORMAT", "STRICT"
 TEXT, BINARY = "text", "binary"
 NUMBERS = {
     "OBSTACLE_COUNT": "Obstacles",
@@ -119,101 +111,46 @@ class ExportRobotMap(QgsProcessingAlgorithm):
             self.addOutput(QgsProcessingOutputNumber(name, description))
 
     def checkParameterValues(self, parameters, context):
-        problem = window_problem(parameters)
+        # Before QGIS's own checks, which say that a value is wrong and not why.
+        problem = window_problem(parameters) or unopened_layer(parameters, context)
         if problem:
             return False, problem
-        return super().checkParameterValues(parameters, context)
+        fine, message = super().checkParameterValues(parameters, context)
+        return (False, message) if not fine else self._check_plan(parameters, context)
 
     def prepareAlgorithm(self, parameters, context, feedback):
         with shown_by_processing():
-            layers = self._layers(parameters, context)
-            self._target = self._output(parameters, context, layers)
-            self._default_height = self._default_height_of(parameters, context)
-            crs = self._site_crs(parameters, context, layers)
-            frame = site_frame(self, parameters, context, crs)
-            self._window = map_window(self, parameters, context, crs, frame)
-            local = self.parameterAsBool(parameters, LOCAL, context)
-            self._site = SitePlacing(crs, frame, context.transformContext(), local)
-            general = LayerExpressions(
-                height=self.parameterAsExpression(parameters, HEIGHT_EXPRESSION, context),
-                semantics=self.parameterAsExpression(parameters, SEMANTICS_EXPRESSION, context),
-                outdoor=self.parameterAsExpression(parameters, OUTDOOR_EXPRESSION, context),
-            )
-            scope = self.createExpressionContext(parameters, context)
-            self._sources = obstacle_sources(layers, general, scope)
+            self._plan = plan_of(self, parameters, context)
         return True
 
     def processAlgorithm(self, parameters, context, feedback):
         with shown_by_processing():
-            border = self._window.border
-            reading = read_outlines(self._sources, self._site, border, self._default_height, feedback)
+            plan = self._plan
+            border = plan.window.border
+            reading = read_outlines(plan.sources, plan.site, border, plan.default_height, feedback)
             if not reading.complete:
                 return {}
-            robot_map = _marked(build_map(reading.outlines(), self._window, self._meta()), reading.estimated)
+            robot_map = _marked(build_map(reading.outlines(), plan.window, plan.meta), reading.estimated)
             text = write_text(robot_map, strict=self.parameterAsBool(parameters, STRICT, context))
             binary = self.parameterAsEnumString(parameters, FORMAT, context) == BINARY
             content = encode(text) if binary else text.encode()
             if feedback.isCanceled():
                 return {}
-            write_whole(self._target, content)
+            write_whole(plan.target, content)
             warnings = _reported(reading, robot_map, feedback)
-            _report_size(self._window, robot_map, text, content, feedback)
+            _report_size(plan.window, robot_map, text, content, feedback)
         feedback.setProgress(100)
         counts = (len(robot_map.obstacles), robot_map.segment_count, len(content))
         figures = (*counts, len(content) / border.area, warnings)
-        return {OUTPUT: str(self._target), **dict(zip(NUMBERS, figures, strict=True))}
+        return {OUTPUT: str(plan.target), **dict(zip(NUMBERS, figures, strict=True))}
 
-    def _layers(self, parameters, context) -> list[QgsVectorLayer]:
-        """Return the obstacle layers; Processing itself passes over in silence those it cannot open."""
-        values = parameters[OBSTACLES]
-        for value in values if isinstance(values, (list, tuple)) else [values]:
-            if isinstance(value, str) and QgsProcessingUtils.mapLayerFromString(value, context) is None:
-                raise LayerTypeError(
-                    f"The obstacle layer {value} cannot be opened: check the file, and the layer's name "
-                    "after '|layername='."
-                )
-        layers = self.parameterAsLayerList(parameters, OBSTACLES, context)
-        for layer in layers:
-            if not isinstance(layer, QgsVectorLayer):
-                raise LayerTypeError(f"The layer {layer.name()} is no vector layer: leave it out.")
-        return layers
-
-    def _output(self, parameters, context, layers: list[QgsMapLayer]) -> Path:
-        target = Path(self.parameterAsFileOutput(parameters, OUTPUT, context))
-        for layer in layers:
-            path = QgsProviderRegistry.instance().decodeUri(layer.providerType(), layer.source()).get("path")
-            if path and target.exists() and Path(path).exists() and target.samefile(path):
-                raise OutputError(
-                    f"OUTPUT {target} is the file of the layer {layer.name()}: choose another one."
-                )
-        return target
-
-    def _default_height_of(self, parameters, context) -> float:
-        height = self.parameterAsDouble(parameters, DEFAULT_HEIGHT, context)
-        if not 0 <= height < float("inf"):
-            raise ParameterError(f"DEFAULT_HEIGHT is {height}: give a number of metres of 0 or more.")
-        return height
-
-    def _site_crs(self, parameters, context, layers) -> QgsCoordinateReferenceSystem:
-        chosen = self.parameterAsCrs(parameters, SITE_CRS, context)
-        if parameters.get(SITE_CRS) and not chosen.isValid():
-            raise ParameterError(
-                f"SITE_CRS {parameters[SITE_CRS]} is no CRS that QGIS knows: write a code such as EPSG:32633."
-            )
-        project = context.project()
-        project_crs = project.crs() if project is not None else QgsCoordinateReferenceSystem()
-        return site_crs_for(chosen, project_crs, [layer.crs() for layer in layers])
-
-    def _meta(self) -> dict[str, str]:
-        """Return the leading lines, spelled as those of a published site are."""
-        frame = self._site.frame
-        if not self._site.crs.isValid():
-            return {}
-        return {
-            "crs": frame.crs,
-            "origin": f"{frame.origin[0]:.3f},{frame.origin[1]:.3f}",
-            "rotation": f"{frame.rotation:.9f}",
-        }
+    def _check_plan(self, parameters, context) -> tuple[bool, str]:
+        """Make the plan once before the run: the dialog and scripts are told what is wrong with it."""
+        try:
+            plan_of(self, parameters, context)
+        except (FleetError, RobotMapError) as error:
+            return False, str(error)
+        return True, ""
 
 
 def _value_parameters() -> list[QgsProcessingParameterDefinition]:

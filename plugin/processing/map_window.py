@@ -21,19 +21,15 @@ from qgis.core import (
 
 from ...robot_bridge.robotmap.builder import Window
 from ...robot_bridge.sites.frame import SiteFrame
-from ..errors import FleetError
 from ..sites.project_site import frame_in_project
 from ..sites.site_crs import crs_name
+from .errors import ParameterError
 
 CENTER, WIDTH, HEIGHT, EXTENT = "CENTER", "WIDTH", "HEIGHT", "EXTENT"
 SITE_CRS, ORIGIN, ROTATION, LOCAL = "SITE_CRS", "ORIGIN", "ROTATION", "LOCAL"
 PAPERS_SIDE_M = 100.0
 
 _REAL = QgsProcessingParameterNumber.Type.Double
-
-
-class ParameterError(FleetError):
-    """A parameter cannot be used."""
 
 
 def window_parameters() -> list[QgsProcessingParameterDefinition]:
@@ -57,6 +53,9 @@ def window_problem(parameters: Mapping[str, Any]) -> str:
             "Neither CENTER nor EXTENT is given: give the centre of the window with WIDTH and HEIGHT in "
             "metres, or an extent."
         )
+    for side in (WIDTH, HEIGHT):
+        if not _is_number(parameters.get(side, PAPERS_SIDE_M)):
+            return f"{side} is {parameters[side]}: give a finite number of metres."
     return ""
 
 
@@ -139,6 +138,14 @@ def _advanced(parameter: QgsProcessingParameterDefinition) -> QgsProcessingParam
 def _given(parameters: Mapping[str, Any], name: str) -> bool:
     value = parameters.get(name)
     return value is not None and value != ""
+
+
+def _is_number(value: Any) -> bool:
+    try:
+        return math.isfinite(float(value))
+    except (TypeError, ValueError):
+        # None is the default, and QGIS knows more kinds of values than numbers, such as properties.
+        return not isinstance(value, str)
 
 
 def _rounded(corner: np.ndarray) -> list[float]:

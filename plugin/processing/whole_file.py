@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from contextlib import suppress
 from pathlib import Path
 
 from ..errors import FleetError
@@ -22,7 +23,8 @@ def write_whole(target: Path, content: bytes) -> None:
         part.write_bytes(content)
         part.replace(target)
     except OSError as error:
-        part.unlink(missing_ok=True)
+        with suppress(OSError):
+            part.unlink()
         raise OutputError(
             f"The robot map cannot be written to {target}: {error.strerror or error}. "
             "Choose a file in a folder that exists and may be written to."

@@ -1,0 +1,137 @@
+"""What an export will do, settled and checked before it starts."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from qgis.core import (
+    QgsCoordinateReferenceSystem,
+    QgsMapLayer,
+    QgsProcessingAlgorithm,
+    QgsProcessingContext,
+    QgsProcessingUtils,
+    QgsProviderRegistry,
+    QgsVectorLayer,
+)
+
+from ...robot_bridge.robotmap.builder import Window
+from ..sites.errors import LayerTypeError
+from ..sites.obstacle_source import ObstacleSource, obstacle_sources
+from ..sites.placing import SitePlacing
+from ..sites.roles import LayerExpressions
+from ..sites.site_crs import site_crs_for
+from .errors import ParameterError
+from .map_window import LOCAL, SITE_CRS, map_window, site_frame
+from .whole_file import OutputError
+
+OBSTACLES, OUTPUT = "OBSTACLES", "OUTPUT"
+HEIGHT_EXPRESSION, DEFAULT_HEIGHT = "HEIGHT_EXPRESSION", "DEFAULT_HEIGHT"
+SEMANTICS_EXPRESSION, OUTDOOR_EXPRESSION = "SEMANTICS_EXPRESSION", "OUTDOOR_EXPRESSION"
+
+Parameters = Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class ExportPlan:
+    """Everything that is needed of the parameters and layers; usable from any thread."""
+
+    sources: list[ObstacleSource]
+    site: SitePlacing
+    window: Window
+    default_height: float
+    target: Path
+
+    @property
+    def meta(self) -> dict[str, str]:
+        """The leading lines of the map, spelled as those of a published site are."""
+        frame = self.site.frame
+        if not self.site.crs.isValid():
+            return {}
+        return {
+            "crs": frame.crs,
+            "origin": f"{frame.origin[0]:.3f},{frame.origin[1]:.3f}",
+            "rotation": f"{frame.rotation:.9f}",
+        }
+
+
+def plan_of(
+    algorithm: QgsProcessingAlgorithm, parameters: Parameters, context: QgsProcessingContext
+) -> ExportPlan:
+    """Return the plan for ``parameters``; to be called in the main thread.
+
+    :raises FleetError: when a parameter or a layer cannot be used.
+    :raises WindowError: when the window encloses nothing.
+    """
+    layers = _layers(algorithm, parameters, context)
+    crs = _site_crs(algorithm, parameters, context, layers)
+    frame = site_frame(algorithm, parameters, context, crs)
+    local = algorithm.parameterAsBool(parameters, LOCAL, context)
+    # As strings: parameterAsExpression replaces what is no expression by the default, in silence.
+    names = (HEIGHT_EXPRESSION, SEMANTICS_EXPRESSION, OUTDOOR_EXPRESSION)
+    general = LayerExpressions(*(algorithm.parameterAsString(parameters, name, context) for name in names))
+    return ExportPlan(
+        sources=obstacle_sources(layers, general, algorithm.createExpressionContext(parameters, context)),
+        site=SitePlacing(crs, frame, context.transformContext(), local),
+        window=map_window(algorithm, parameters, context, crs, frame),
+        default_height=_default_height(algorithm, parameters, context),
+        target=_target(algorithm, parameters, context, layers),
+    )
+
+
+def unopened_layer(parameters: Parameters, context: QgsProcessingContext) -> str:
+    """Return what is wrong with the first obstacle layer that cannot be opened, or nothing.
+
+    Where there are others, Processing itself passes over such a layer in silence.
+    """
+    values = parameters.get(OBSTACLES)
+    for value in values if isinstance(values, (list, tuple)) else [values]:
+        if isinstance(value, str) and QgsProcessingUtils.mapLayerFromString(value, context) is None:
+            return (
+                f"The obstacle layer {value} cannot be opened: check the file, and the layer's name after "
+                "'|layername='."
+            )
+    return ""
+
+
+def _layers(algorithm, parameters: Parameters, context) -> list[QgsVectorLayer]:
+    problem = unopened_layer(parameters, context)
+    if problem:
+        raise LayerTypeError(problem)
+    layers = algorithm.parameterAsLayerList(parameters, OBSTACLES, context)
+    for layer in layers:
+        if not isinstance(layer, QgsVectorLayer):
+            raise LayerTypeError(f"The layer {layer.name()} is no vector layer: leave it out.")
+    return layers
+
+
+def _site_crs(
+    algorithm, parameters: Parameters, context, layers: Sequence[QgsMapLayer]
+) -> QgsCoordinateReferenceSystem:
+    chosen = algorithm.parameterAsCrs(parameters, SITE_CRS, context)
+    if parameters.get(SITE_CRS) and not chosen.isValid():
+        raise ParameterError(
+            f"SITE_CRS {parameters[SITE_CRS]} is no CRS that QGIS knows: write a code such as EPSG:32633."
+        )
+    project = context.project()
+    project_crs = project.crs() if project is not None else QgsCoordinateReferenceSystem()
+    return site_crs_for(chosen, project_crs, [layer.crs() for layer in layers])
+
+
+def _default_height(algorithm, parameters: Parameters, context) -> float:
+    height = algorithm.parameterAsDouble(parameters, DEFAULT_HEIGHT, context)
+    if not 0 <= height < math.inf:
+        raise ParameterError(f"DEFAULT_HEIGHT is {height}: give a number of metres of 0 or more.")
+    return height
+
+
+def _target(algorithm, parameters: Parameters, context, layers: Sequence[QgsMapLayer]) -> Path:
+    target = Path(algorithm.parameterAsFileOutput(parameters, OUTPUT, context))
+    for layer in layers:
+        path = QgsProviderRegistry.instance().decodeUri(layer.providerType(), layer.source()).get("path")
+        if path and target.exists() and Path(path).exists() and target.samefile(path):
+            raise OutputError(f"OUTPUT {target} is the file of the layer {layer.name()}: choose another one.")
+    return target

@@ -1,0 +1,204 @@
+"""The algorithm inside this QGIS, and ``qgis_process`` as the process that a script starts."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shutil
+import subprocess
+import sysconfig
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+from fleet_supervisor.plugin.processing.provider import FleetProvider
+from fleet_supervisor.robot_bridge.robotmap.binary import decode_text
+from fleet_supervisor.robot_bridge.robotmap.model import RobotMap
+from fleet_supervisor.robot_bridge.robotmap.text import read_text
+from qgis.core import (
+    QgsApplication,
+    QgsFeature,
+    QgsGeometry,
+    QgsProcessingContext,
+    QgsProcessingFeedback,
+    QgsProject,
+    QgsVectorLayer,
+)
+
+INI = "[PythonPlugins]\nfleet_supervisor=true\nprocessing=true\n"
+
+
+@dataclass(frozen=True)
+class Export:
+    """One finished export: its outputs, its file, and everything it said."""
+
+    results: dict
+    file: Path
+    warnings: list[str]
+    log: str
+
+    @property
+    def text(self) -> str:
+        content = self.file.read_bytes()
+        return decode_text(content) if content.startswith(b"RMAP") else content.decode()
+
+    @property
+    def map(self) -> RobotMap:
+        return read_text(self.text)
+
+
+class Listener(QgsProcessingFeedback):
+    """Keeps what an algorithm says."""
+
+    def __init__(self):
+        super().__init__(False)
+        self.warnings: list[str] = []
+        self.infos: list[str] = []
+
+    def pushWarning(self, warning):
+        self.warnings.append(warning)
+
+    def pushInfo(self, info):
+        self.infos.append(info)
+
+
+@pytest.fixture
+def cancels_at(qgis_app):
+    """Return a feedback that cancels when the progress reaches ``percent``."""
+
+    def make(percent: float) -> Listener:
+        listener = Listener()
+        listener.progressChanged.connect(lambda value: listener.cancel() if value >= percent else None)
+        return listener
+
+    return make
+
+
+@pytest.fixture
+def make_layer(qgis_app):
+    """Return a layer in memory; each of ``features`` is (WKT or None, *values)."""
+
+    def make(name="walls", kind="LineString", crs="EPSG:32633", fields="&field=height:double", features=()):
+        layer = QgsVectorLayer(f"{kind}?crs={crs}{fields}", name, "memory")
+        made = []
+        for wkt, *values in features:
+            feature = QgsFeature(layer.fields())
+            if wkt is not None:
+                feature.setGeometry(QgsGeometry.fromWkt(wkt))
+            feature.setAttributes(list(values))
+            made.append(feature)
+        assert layer.dataProvider().addFeatures(made)[0]
+        layer.updateExtents()
+        return layer
+
+    return make
+
+
+@pytest.fixture(scope="session")
+def provider(qgis_app, qgis_processing):
+    """The provider, registered as the plugin registers it."""
+    made = FleetProvider()
+    assert QgsApplication.processingRegistry().addProvider(made)
+    return made
+
+
+@pytest.fixture
+def export(provider, tmp_path):
+    """Run the algorithm on ``layers`` by ``processing.run``, in an empty project unless given one."""
+    import processing
+
+    def run(*layers, feedback=None, project=None, **parameters) -> Export:
+        listener = feedback or Listener()
+        context = QgsProcessingContext()
+        context.setProject(project or QgsProject())
+        everything = {"OBSTACLES": list(layers), "OUTPUT": str(tmp_path / "map.txt"), **parameters}
+        results = processing.run(
+            "fleet:exportrobotmap", everything, context=context, feedback=listener, is_child_algorithm=True
+        )
+        return Export(results, Path(everything["OUTPUT"]), listener.warnings, "\n".join(listener.infos))
+
+    return run
+
+
+@dataclass(frozen=True)
+class Finished:
+    """A ``qgis_process`` that has ended."""
+
+    status: int
+    stdout: str
+    stderr: str
+
+    @property
+    def said(self) -> str:
+        return self.stdout + self.stderr
+
+    @property
+    def warnings(self) -> list[str]:
+        return re.findall(r"WARNING:\s*(.*)", self.said)
+
+    def result(self, name: str) -> float:
+        return float(re.search(rf"^{name}:\s*(\S+)$", self.stdout, re.MULTILINE)[1])
+
+
+@pytest.fixture(scope="session")
+def qgis_process(root, tmp_path_factory):
+    """Run ``qgis_process`` with the plugin in a profile of its own and no display."""
+    program = shutil.which("qgis_process.bin") or shutil.which("qgis_process")
+    assert program, "qgis_process is not on the path: run make setup"
+    home = tmp_path_factory.mktemp("qgis_process")
+    (home / "plugins").mkdir()
+    (home / "plugins" / "fleet_supervisor").symlink_to(root)
+    ini = home / "cfg" / "profiles" / "default" / "QGIS" / "QGIS3.ini"
+    ini.parent.mkdir(parents=True)
+    ini.write_text(INI, encoding="utf-8")
+    (home / "run").mkdir(mode=0o700)
+    environment = {name: value for name, value in os.environ.items() if name not in ("DISPLAY", "PYTHONPATH")}
+    environment |= {
+        "QT_QPA_PLATFORM": "offscreen",
+        "XDG_RUNTIME_DIR": str(home / "run"),
+        "QGIS_PLUGINPATH": str(home / "plugins"),
+        "QGIS_CUSTOM_CONFIG_PATH": str(home / "cfg"),
+    }
+
+    def run(*words, packages=True) -> Finished:
+        """``packages`` shows it the packages of this environment, such as zstandard."""
+        seen = {"PYTHONPATH": sysconfig.get_path("purelib")} if packages else {}
+        done = subprocess.run(
+            [program, *map(str, words)],
+            env={**environment, **seen},
+            capture_output=True,
+            text=True,
+            timeout=120,
+            check=False,
+        )
+        return Finished(done.returncode, done.stdout, done.stderr)
+
+    return run
+
+
+@pytest.fixture
+def export_by_process(qgis_process, tmp_path):
+    """Run the algorithm by ``qgis_process``; ``layers`` are what QGIS calls sources."""
+
+    def run(*layers, output="map.txt", packages=True, **parameters) -> tuple[Finished, Path]:
+        words = [f"OBSTACLES={layer}" for layer in layers]
+        words += [f"{name}={value}" for name, value in parameters.items()]
+        file = tmp_path / output
+        arguments = ("run", "fleet:exportrobotmap", "--", *words, f"OUTPUT={file}")
+        return qgis_process(*arguments, packages=packages), file
+
+    return run
+
+
+@pytest.fixture
+def geojson_layer(tmp_path):
+    """Write a GeoJSON file, which QGIS reads as EPSG:4326, and return its path."""
+
+    def write(name: str, *geometries: dict) -> Path:
+        features = [{"type": "Feature", "properties": {}, "geometry": geometry} for geometry in geometries]
+        file = tmp_path / f"{name}.geojson"
+        file.write_text(json.dumps({"type": "FeatureCollection", "features": features}), encoding="utf-8")
+        return file
+
+    return write

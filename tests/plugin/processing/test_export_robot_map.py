@@ -1,0 +1,169 @@
+"""What each parameter of ``fleet:exportrobotmap`` does, inside QGIS."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from fleet_supervisor.plugin.sites.roles import LayerExpressions, set_expressions
+from fleet_supervisor.robot_bridge.robotmap.model import ShapeType
+from qgis.core import QgsCoordinateReferenceSystem, QgsExpressionContextUtils, QgsProject
+
+SQUARE = "Polygon((10 10, 20 10, 20 20, 10 20, 10 10))"
+WALL = "LineString(0 5, 50 5)"
+
+
+@pytest.fixture
+def house(make_layer):
+    return make_layer("house", "Polygon", features=[(SQUARE, 4.0)])
+
+
+@pytest.fixture
+def wall(make_layer):
+    return make_layer("wall", features=[(WALL, 1.5)])
+
+
+def lines(obstacle):
+    return [(*a, *b) for a, b in zip(obstacle.a.tolist(), obstacle.b.tolist(), strict=True)]
+
+
+def test_polygons_and_lines_come_out_oriented_grouped_and_measured(export, house, wall):
+    done = export(wall, house, CENTER="20,20", WIDTH=80, HEIGHT=60)
+    first, second = done.map.obstacles
+    assert (first.shape_type, first.semantics, first.ext) == (1, "house", {"src": "house:1"})
+    assert lines(first) == [(10, 10, 20, 10), (20, 10, 20, 20), (20, 20, 10, 20), (10, 20, 10, 10)]
+    assert (second.shape_type, second.semantics, lines(second)) == (2, "wall", [(0, 5, 50, 5)])
+    assert first.height.tolist() == [4.0] * 4 and second.height.tolist() == [1.5]
+    assert done.map.border == (-20, -10, 60, 50)
+    assert (done.results["OBSTACLE_COUNT"], done.results["SEGMENT_COUNT"]) == (2, 5)
+    assert done.results["BYTES"] == len(done.text) == done.file.stat().st_size
+    assert done.results["BYTES_PER_M2"] == pytest.approx(len(done.text) / 4800)
+    assert (done.results["WARNING_COUNT"], done.warnings) == (0, [])
+
+
+def test_the_log_says_bytes_and_bytes_per_square_metre_next_to_the_papers(export, house):
+    done = export(house, CENTER="20,20", WIDTH=100, HEIGHT=50)
+    size = done.results["BYTES"]
+    assert f"{size} bytes of text, {size / 5000:.2f} bytes/m² (paper 1: about 3 bytes/m²" in done.log
+    assert "Window 100 m x 50 m = 5000 m²" in done.log
+
+
+def test_an_extent_is_a_window_too_and_cuts_without_inventing_walls(export, house):
+    done = export(house, EXTENT="15,40,0,15 [EPSG:32633]")
+    assert done.map.border == (15, 0, 40, 15)
+    (chain,) = done.map.obstacles
+    assert chain.shape_type == ShapeType.OPEN_POLYGON
+    assert lines(chain) == [(15, 10, 20, 10), (20, 10, 20, 15)]
+
+
+def test_a_centre_in_degrees_is_found_in_the_site_frame(export, make_layer):
+    layer = make_layer(crs="EPSG:4326", features=[("LineString(15 46, 15.0001 46)", 1.0)])
+    done = export(layer, CENTER="15,46 [EPSG:4326]", SITE_CRS="EPSG:32633", WIDTH=20, HEIGHT=20)
+    x_min, y_min, x_max, y_max = done.map.border
+    assert ((x_min + x_max) / 2, (y_min + y_max) / 2) == pytest.approx((500000, 5094047.49), abs=0.01)
+    assert done.results["SEGMENT_COUNT"] == 1
+    assert done.map.meta["crs"] == "EPSG:32633"
+
+
+def test_origin_and_rotation_make_the_site_frame(export, wall):
+    done = export(wall, CENTER="0,5", ORIGIN="0,5", ROTATION=90, WIDTH=200, HEIGHT=200)
+    (obstacle,) = done.map.obstacles
+    assert lines(obstacle) == [(0, 0, 0, -50)]
+    assert done.map.meta == {
+        "crs": "EPSG:32633",
+        "origin": "0.000,5.000",
+        "rotation": f"{math.pi / 2:.9f}",
+    }
+
+
+def test_a_project_lends_its_site_frame_unless_another_is_given(export, wall):
+    project = QgsProject()
+    project.setCrs(QgsCoordinateReferenceSystem("EPSG:32633"))
+    for name, value in (("site_crs", "EPSG:32633"), ("origin_x", 10), ("origin_y", 5), ("rotation_deg", 0)):
+        QgsExpressionContextUtils.setProjectVariable(project, f"fleet_{name}", value)
+    window = {"CENTER": "10,5", "WIDTH": 200, "HEIGHT": 200}
+    assert lines(export(wall, project=project, **window).map.obstacles[0]) == [(-10, 0, 40, 0)]
+    assert lines(export(wall, project=project, ORIGIN="0,0", **window).map.obstacles[0]) == [(0, 5, 50, 5)]
+
+
+def test_a_rotated_site_gets_the_smallest_window_that_holds_the_extent(export, wall):
+    done = export(wall, EXTENT="0,50,0,10 [EPSG:32633]", ROTATION=90)
+    assert done.map.border == (0, -50, 10, 0)
+
+
+def test_expressions_give_height_label_and_place_and_the_layers_own_win(export, house, wall):
+    set_expressions(wall, LayerExpressions(semantics="'wall,brick'"))
+    done = export(
+        house,
+        wall,
+        CENTER="20,20",
+        HEIGHT_EXPRESSION='"height" + 1',
+        SEMANTICS_EXPRESSION="@layer_name || ',' || $id",
+        OUTDOOR_EXPRESSION="@layer_name = 'wall'",
+    )
+    first, second = done.map.obstacles
+    assert (first.semantics, first.height[0], first.outdoor[0]) == ("house,1", 5.0, False)
+    assert (second.semantics, second.height[0], second.outdoor[0]) == ("wall,brick", 2.5, True)
+
+
+def test_an_estimated_height_is_marked_in_the_map_and_said_once_for_the_layer(export, make_layer):
+    layer = make_layer(features=[(WALL, 1.5), ("LineString(0 8, 50 8)", None)])
+    done = export(layer, CENTER="20,20", DEFAULT_HEIGHT=2.2)
+    known, estimated = done.map.obstacles
+    assert (known.ext, estimated.ext) == ({"src": "walls:1"}, {"src": "walls:2", "h": "est"})
+    assert estimated.height.tolist() == [2.2]
+    assert done.warnings == ["Layer walls: 1 height is not known and estimated as 2.2 m (feature 2)"]
+
+
+def test_strict_writes_what_fig_2_has_and_nothing_else(export, wall):
+    done = export(wall, CENTER="20,20", WIDTH=20, HEIGHT=40, STRICT=True)
+    assert done.text == "border;\n10;40;\n30;0;\n#\nobstacle;\n1;2;1;wall;\n#\n10;5;\n30;5;\n1.5;1;;\n#\n"
+
+
+@pytest.mark.parametrize("strict", [False, True])
+def test_binary_holds_the_very_text(export, house, strict):
+    parameters = {"CENTER": "20,20", "STRICT": strict}
+    text = export(house, FORMAT="text", **parameters).text
+    done = export(house, FORMAT="binary", **parameters)
+    assert done.file.read_bytes().startswith(b"RMAP")
+    assert done.text == text
+    assert done.results["BYTES"] == done.file.stat().st_size
+    assert f"{done.results['BYTES']} bytes in binary" in done.log
+
+
+def test_local_layers_need_no_crs_at_all(export, make_layer):
+    done = export(make_layer(crs="", features=[(WALL, 1.0)]), LOCAL=True, CENTER="20,20")
+    assert lines(done.map.obstacles[0]) == [(0, 5, 50, 5)]
+    assert done.map.meta == {}
+
+
+def test_a_broken_feature_is_a_warning_with_layer_and_id_and_the_rest_is_exported(export, make_layer):
+    bow = "Polygon((0 0, 10 10, 10 0, 0 10, 0 0))"
+    flat = "Polygon((1 1, 2 2, 1 1))"
+    layer = make_layer("houses", "Polygon", features=[(bow, 1.0), (flat, 1.0), (None, 1.0), (SQUARE, 1.0)])
+    done = export(layer, CENTER="10,10")
+    assert {obstacle.ext["src"] for obstacle in done.map.obstacles} == {"houses:1", "houses:4"}
+    assert [warning.split(":")[0] for warning in done.warnings] == [
+        "Layer houses, feature 1",
+        "Layer houses, feature 2",
+        "Layer houses, feature 3",
+    ]
+    assert done.results["WARNING_COUNT"] == 3
+
+
+def test_a_window_with_nothing_in_it_is_a_map_and_a_warning(export, house):
+    done = export(house, CENTER="5000,5000")
+    assert done.map.obstacles == ()
+    assert done.warnings == ["There is no obstacle in the window: check its place and the site CRS."]
+
+
+def test_the_toolbox_finds_help_and_icon(provider):
+    algorithm = provider.algorithm("exportrobotmap")
+    assert not algorithm.icon().isNull()
+    assert "site frame" in algorithm.shortHelpString()
+    assert algorithm.shortDescription()
+    described = {definition.name() for definition in algorithm.outputDefinitions()}
+    assert described == {
+        *("OUTPUT", "OBSTACLE_COUNT", "SEGMENT_COUNT"),
+        *("BYTES", "BYTES_PER_M2", "WARNING_COUNT"),
+    }
