@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import sys
 
 import pytest
@@ -54,6 +55,18 @@ def start_loop(tmp_path):
 def loop(start_loop, root):
     """A gateway on the sample site."""
     return start_loop(root / "resources" / "sample_site")
+
+
+@pytest.fixture
+def impatient_loop(start_loop, root, tmp_path):
+    """A gateway on the sample site, where robots are stale after 1 s and lost after 3 s."""
+    site = tmp_path / "site"
+    site.mkdir()
+    sample = root / "resources" / "sample_site"
+    shutil.copy(sample / "site.gpkg", site)
+    settings = (sample / "site.toml").read_text().partition("[liveness]")[0]
+    (site / "site.toml").write_text(f"{settings}\n[liveness]\nstale_after_s = 1.0\nlost_after_s = 3.0\n")
+    return start_loop(site)
 
 
 class Operator(OperatorAtDesk):

@@ -15,7 +15,7 @@ from qgis.core import QgsProject
 
 EVERY = 6
 """Every sixth of the recorded poses is clicked: about 15 m apart."""
-POINTS = 7
+POINTS = 5
 CRS = "EPSG:32633"
 ORIGIN = np.array([639988.0, 5193408.4])
 

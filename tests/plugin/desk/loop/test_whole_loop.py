@@ -72,7 +72,7 @@ def test_abort_all_stops_every_robot(loop, operator):
 
 
 def test_a_drawn_route_is_driven_to_its_end(loop, operator):
-    loop.start_robot("r1", (20, 8, 0))
+    loop.start_robot("r1", (20, 8, 0), speed=5)
     operator.connect_to(loop, ["r1"])
     operator.select("r1")
     operator.choose("fleet_draw_route")
@@ -84,8 +84,9 @@ def test_a_drawn_route_is_driven_to_its_end(loop, operator):
     assert off(operator.report("r1"), *command.params["points"][-1]) <= TOLERANCE
 
 
-def test_a_killed_gateway_ages_the_robots_and_its_return_repeats_nothing(loop, operator):
-    loop.start_robot("r1", (20, 8, 0))
+def test_a_killed_gateway_ages_the_robots_and_its_return_repeats_nothing(impatient_loop, operator):
+    loop = impatient_loop
+    loop.start_robot("r1", (20, 8, 0), speed=5)
     operator.connect_to(loop, ["r1"])
     operator.set_cone("r1", 60.0, 8.0)
     operator.wait_for_state("r1", "SetPosEnd", CommandState.ACKNOWLEDGED)
