@@ -1,0 +1,146 @@
+"""Tables RR and SA as the gateway serves them: what robots write is answered, whatever it is."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from robot_bridge.messages import Alive, GetMap, OpAck, Ready, SendPos, SetMap, Stopped
+from robot_bridge.robotmap.binary import decode
+
+
+async def hello(yard, robot="r1", magic=7):
+    yard.ask(robot, Ready(magic))
+    await yard.link.poll()
+    yard.sql("delete from sa where robot = ?", robot)
+
+
+async def test_ready_is_answered_with_the_magic_number_the_name_and_the_map_of_the_site(yard):
+    yard.ask("r1", Ready(4711))
+    await yard.link.poll()
+    rows = yard.sql("select op, params, payload from sa where robot = 'r1' order by id")
+    assert [row[0] for row in rows] == ["OpAck", "SetMap"]
+    assert json.loads(rows[0][1]) == {"id": 1, "ok": True, "magic": 4711, "robot": "r1"}
+    assert decode(rows[1][2]).border == (0.0, 0.0, 200.0, 160.0)
+    assert yard.sql("select count(*) from rr") == [(0,)]
+
+
+async def test_get_map_is_answered_with_a_square(yard):
+    await hello(yard)
+    yard.ask("r1", GetMap(60.0, 90.0, 2500.0))
+    await yard.link.poll()
+    rows = yard.sql("select op, payload from sa order by id")
+    assert [op for op, _ in rows] == ["OpAck", "SetMap"]
+    cut = decode(rows[1][1])
+    assert cut.border == (35.0, 65.0, 85.0, 115.0)
+    assert cut.segment_count > 0
+
+
+async def test_a_newer_map_takes_the_place_of_one_that_was_not_read(yard):
+    await hello(yard)
+    for area in (100.0, 400.0):
+        yard.ask("r1", GetMap(60.0, 90.0, area))
+        await yard.link.poll()
+    ((content,),) = yard.sql("select payload from sa where op = 'SetMap'")
+    assert decode(content).border.area == 400
+
+
+async def test_positions_and_alive_are_not_acknowledged_and_stopped_is(yard):
+    await hello(yard)
+    for request in (SendPos(1.0, 2.0, 0.0, 0.0), Alive(), Stopped()):
+        yard.ask("r1", request)
+    await yard.link.poll()
+    ((op, params),) = yard.sql("select op, params from sa")
+    assert (op, json.loads(params)["id"]) == ("OpAck", 4)
+    (report,) = yard.fleet.reports()
+    assert (report.x, report.stopped, report.link) == (1.0, True, "sql")
+
+
+async def test_a_robot_that_reads_and_deletes_its_row_has_been_delivered_the_command(yard):
+    await hello(yard)
+    await yard.send("a")
+    await yard.link.poll()
+    assert await yard.states() == {"a": "queued"}
+    ((id,),) = yard.sql("select id from sa where op = 'SetPosEnd'")
+    yard.sql("delete from sa where id = ?", id)
+    await yard.link.poll()
+    assert await yard.states() == {"a": "delivered"}
+    yard.ask("r1", OpAck(id=id))
+    await yard.link.poll()
+    assert await yard.steps("a") == ["queued", "delivered", "acknowledged"]
+
+
+async def test_a_robot_that_never_said_ready_is_told_start_once(yard):
+    for _ in range(3):
+        yard.ask("r5", SendPos(1.0, 2.0, 0.0, 0.0))
+        await yard.link.poll()
+    assert yard.waiting("r5") == ["Start"]
+    assert yard.fleet.reports() == []
+    await hello(yard, "r5")
+    assert yard.waiting("r5") == []
+
+
+async def test_robots_on_sql_are_told_start_when_the_gateway_starts_anew(yard):
+    await hello(yard)
+    await yard.ready("r2")
+    await yard.restart()
+    assert (yard.waiting("r1"), "Start" in yard.waiting("r2")) == (["Start"], False)
+
+
+JUNK = [
+    ("'r1', 'SendPos', '{\"x\": 1'", "SendPos: params is not JSON"),
+    ('\'r1\', \'SendPos\', \'{"x": NaN, "y": 1, "theta": 0, "v": 0}\'', "SendPos: params is not JSON"),
+    ('\'r1\', \'SendPos\', \'{"x": 1e400, "y": 1, "theta": 0, "v": 0}\'', "SendPos: params is not JSON"),
+    ("'r1', 'SendPos', '[1, 2, 3, 4]'", "SendPos: params is list"),
+    ("'r1', 'SendPos', null", "SendPos: Object missing required field `x`"),
+    ("'r1', 'SendPos', 17", "SendPos: params is int"),
+    ("'r1', 'SendPos', x'ff00'", "SendPos: params is not JSON"),
+    ("'r1', 'SendPos', cast(x'ff41' as text)", "SendPos: params is not JSON"),
+    ("'r1', 'SendPos', replace(hex(zeroblob(50000)), '0', '[')", "SendPos: params is not JSON"),
+    ("'r1', 'Ready', '{\"magic\": 1000000000000000000000000000000}'", "Ready: magic is 1000"),
+    ("'r1', 'OpAck', '{\"id\": 1000000000000000000000000000000}'", "OpAck: id is 1000"),
+    ("'r1', 'GetMap', '{\"x\": 1, \"y\": 1, \"area\": 0}'", "GetMap: area is 0"),
+    ("'r1', 'Fly', null", "unknown operation 'Fly'; known are Ready"),
+    ("'r1', 'GetPath', null", "unknown operation 'GetPath'"),
+    ("'r1', x'ff00', null", "unknown operation"),
+    ("'', 'Alive', null", "robot name '' cannot be used"),
+    ("'r 1', 'Alive', null", "robot name 'r 1' cannot be used"),
+    ("x'ff00', 'Alive', null", "cannot be used"),
+    ("cast(x'ff41' as text), 'Alive', null", "cannot be used"),
+]
+
+
+@pytest.mark.parametrize(("values", "reason"), JUNK)
+async def test_junk_is_answered_with_the_reason_and_removed_and_holds_up_nobody(yard, values, reason):
+    await hello(yard)
+    yard.sql(f"insert into rr (robot, op, params) values ({values})")
+    yard.ask("r1", SendPos(5.0, 6.0, 0.0, 0.0))
+    await yard.link.poll()
+    ((op, params),) = yard.sql("select op, params from sa")
+    answer = json.loads(params)
+    assert (op, answer["id"], answer["ok"]) == ("OpAck", 2, False)
+    assert reason in answer["reason"]
+    assert yard.sql("select count(*) from rr") == [(0,)]
+    (report,) = yard.fleet.reports()
+    assert report.x == 5.0
+
+
+async def test_a_request_and_its_answer_are_one_transaction(yard):
+    await hello(yard)
+    yard.sql("create trigger full before insert on sa begin select raise(abort, 'disk is full'); end")
+    yard.ask("r1", Stopped())
+    with pytest.raises(Exception, match="disk is full"):
+        await yard.link.poll()
+    assert yard.sql("select op from rr") == [("Stopped",)]
+    yard.sql("drop trigger full")
+    await yard.link.poll()
+    assert (yard.sql("select op from rr"), yard.waiting()) == ([], ["OpAck"])
+
+
+async def test_a_map_goes_as_the_payload_and_not_as_a_parameter(yard):
+    outcome = await yard.fleet.receive("r1", "sql", Ready(1), 1)
+    assert isinstance(outcome.answer, SetMap)
+    await yard.fleet.finish([outcome], [], acks=True)
+    ((params, kind),) = yard.sql("select params, typeof(payload) from sa where op = 'SetMap'")
+    assert (params, kind) == ("{}", "blob")
