@@ -74,8 +74,8 @@ class LayerCheck:
         if not off:
             return Findings()
         x, y = points[off[0]]
-        more = f" and {len(off) - 1} more" if len(off) > 1 else ""
-        return Findings(warnings=(f"({x:.2f}, {y:.2f}) m{more} is not on a road surface.",))
+        where = f"({x:.2f}, {y:.2f}) m is" if len(off) == 1 else f"{len(off)} of {len(points)} points are"
+        return Findings(warnings=(f"{where} not on a road surface.",))
 
     def _layers(self, role: str) -> Iterator[QgsVectorLayer]:
         for layer in layers_with_role(self._project, role):

@@ -34,7 +34,7 @@ STOP_STYLE = (
 
 
 class FleetDock(QgsDockWidget):
-    """Lays the parts out so that a panel of 400 pixels shows all of them uncut."""
+    """Lays the parts out so that a panel of 420 pixels shows all of them uncut."""
 
     def __init__(self, desk: Desk, actions: Actions, parent: QWidget | None = None):
         super().__init__("Fleet", parent)
@@ -59,7 +59,7 @@ class FleetDock(QgsDockWidget):
         rows.addWidget(split, 1)
         rows.addWidget(_stop_button(actions.abort_all))
         self.setWidget(body)
-        body.setMinimumWidth(400)
+        body.setMinimumWidth(420)
         self.setToggleVisibilityAction(actions.panel)
         desk.pulled.connect(self._show_link)
         desk.link_changed.connect(self._show_link)

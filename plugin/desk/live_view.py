@@ -17,6 +17,8 @@ from .scene import Scene, Target, placed
 
 FRAME_MS = 15
 LAYER_EVERY = 1000 // PULL_EVERY_MS
+FEWER_FRAMES_FROM = 300
+"""With that many robots a frame takes long enough that every second pull, then every third, has to do."""
 FOLLOW_INSIDE = 0.5
 """The part of the view, about its middle, that a followed robot moves in before the view moves."""
 ZOOM_METRES = 30.0
@@ -87,8 +89,9 @@ class LiveView(QObject):
             )
 
     def _pulled(self) -> None:
-        self._frame.start()
         self._pulls += 1
+        if self._pulls % (1 + len(self._desk.picture) // FEWER_FRAMES_FROM) == 0:
+            self._frame.start()
         if self._pulls % LAYER_EVERY == 0:
             self._write_layer()
             if self.following:

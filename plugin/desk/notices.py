@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from qgis.core import Qgis, QgsMessageLog
 from qgis.gui import QgsMessageBar, QgsMessageBarItem
-from qgis.PyQt.QtCore import QObject, QRect, Qt
+from qgis.PyQt.QtCore import QObject, Qt
+from qgis.PyQt.QtGui import QResizeEvent
 from qgis.PyQt.QtWidgets import QLabel, QSizePolicy
 
 TITLE = "Fleet Supervisor"
@@ -50,7 +51,7 @@ class Notices(QObject):
         if text in self._shown:
             return
         QgsMessageLog.logMessage(text, TITLE, level, False)
-        item = QgsMessageBarItem(_label(text, self._bar), level, SECONDS.get(level, 0))
+        item = QgsMessageBarItem(NoticeLabel(text, self._bar), level, SECONDS.get(level, 0))
         self._shown[text] = item
         self._bar.pushItem(item)
 
@@ -58,15 +59,18 @@ class Notices(QObject):
         self._shown = {text: shown for text, shown in self._shown.items() if shown is not item}
 
 
-def _label(text: str, bar: QgsMessageBar) -> QLabel:
-    """Return ``text`` on as many lines as it needs; an item of QGIS's own cuts it after one and a half."""
-    label = QLabel(f"{TITLE}: {text}", bar)
-    label.setObjectName("fleet_notice")
-    label.setTextFormat(Qt.TextFormat.PlainText)
-    label.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
-    label.setWordWrap(True)
-    label.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Preferred)
-    room = QRect(0, 0, max(200, bar.width() - BESIDE_TEXT), 1000)
-    needed = label.fontMetrics().boundingRect(room, Qt.TextFlag.TextWordWrap, label.text())
-    label.setMinimumHeight(needed.height() + 4)
-    return label
+class NoticeLabel(QLabel):
+    """A text on as many lines as it needs; an item of QGIS's own cuts it after one and a half."""
+
+    def __init__(self, text: str, bar: QgsMessageBar):
+        super().__init__(f"{TITLE}: {text}", bar)
+        self.setObjectName("fleet_notice")
+        self.setTextFormat(Qt.TextFormat.PlainText)
+        self.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
+        self.setWordWrap(True)
+        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+        self.setFixedHeight(self.heightForWidth(max(200, bar.width() - BESIDE_TEXT)))
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self.setFixedHeight(self.heightForWidth(self.width()))

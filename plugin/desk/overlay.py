@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 from qgis.core import QgsPointXY
 from qgis.gui import QgsMapCanvas, QgsMapCanvasItem
 from qgis.PyQt.QtCore import QRectF
 from qgis.PyQt.QtGui import QPainter
 
-from .painting import ScenePainter
+from .painting import ScenePainter, ToPixels
 from .scene import PlacedScene
 
-Points = npt.NDArray[np.float64]
 NEAR = 18.0
 """Pixels within which a click means a robot."""
 
@@ -45,25 +43,25 @@ class FleetOverlay(QgsMapCanvasItem):
         ratio = painter.device().devicePixelRatioF() if painter.device() else 1.0
         painter.save()
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        self._painter.paint(painter, self._placed, self._to_pixels, ratio)
+        self._painter.paint(painter, self._placed, self._to_pixels(), ratio)
         painter.restore()
 
     def robot_at(self, x: float, y: float) -> str | None:
         """Return the robot nearest to pixel (x, y), None when there is none nearby."""
         if self._placed is None or len(self._placed.robots) == 0:
             return None
-        away = np.hypot(*(self._to_pixels(self._placed.robots) - (x, y)).T)
+        away = np.hypot(*(self._to_pixels()(self._placed.robots) - (x, y)).T)
         nearest = int(away.argmin())
         return self._placed.scene.robots.names[nearest] if away[nearest] <= NEAR else None
 
-    def _to_pixels(self, xy: Points) -> Points:
-        """Return (n, 2) map coordinates as logical pixels of the viewport, panning and rotation included."""
+    def _to_pixels(self) -> ToPixels:
+        """Return what takes (n, 2) map coordinates to logical pixels, panning and rotation included."""
         centre = self._canvas.center()
         unit = self._canvas.mapUnitsPerPixel() * 1000.0
         corner = self.toCanvasCoordinates(centre)
         right = self.toCanvasCoordinates(QgsPointXY(centre.x() + unit, centre.y()))
         up = self.toCanvasCoordinates(QgsPointXY(centre.x(), centre.y() + unit))
-        axes = np.array(
-            [[right.x() - corner.x(), right.y() - corner.y()], [up.x() - corner.x(), up.y() - corner.y()]]
-        )
-        return (xy - (centre.x(), centre.y())) @ (axes / unit) + (corner.x(), corner.y())
+        origin = np.array([centre.x(), centre.y()])
+        pixel = np.array([corner.x(), corner.y()])
+        axes = np.array([[right.x(), right.y()], [up.x(), up.y()]]) - pixel
+        return lambda xy: (xy - origin) @ (axes / unit) + pixel

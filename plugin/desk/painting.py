@@ -17,11 +17,14 @@ from .labels import Labels
 from .picture import STATES
 from .scene import PlacedScene
 from .sprites import Sprites
+from .trails import LONGEST as TRAIL_SECONDS
+from .trails import MANY
 
 Points = npt.NDArray[np.float64]
 ToPixels = Callable[[Points], Points]
 FADES = 6
-TRAIL_SECONDS = 90.0
+APART = 4.0
+"""Pixels between the points of a trail that are painted."""
 
 
 class ScenePainter:
@@ -45,18 +48,14 @@ class ScenePainter:
         self._names(painter, placed, robots, ratio)
 
     def _trails(self, painter: QPainter, placed: PlacedScene, to_pixels: ToPixels) -> None:
+        if len(placed.trails) > MANY:
+            # One pixel wide, which costs Qt a tenth of a wider line.
+            painter.setPen(_flat_pen(TRAIL, 1.0))
+            for points in placed.trails:
+                painter.drawPolyline(_polygon(to_pixels(points)))
+            return
         for trail, points in zip(placed.scene.trails, placed.trails, strict=True):
-            pixels = to_pixels(points)
-            fade = np.clip((trail[:, 2] / TRAIL_SECONDS * FADES).astype(int), 0, FADES - 1)
-            for step in np.unique(fade):
-                (inside,) = np.nonzero(fade == step)
-                # One point more, so that the pieces meet.
-                piece = pixels[inside[0] : inside[-1] + 2]
-                strength = 1.0 - step / FADES
-                painter.setPen(_pen(CASING, 4.4, strength * 0.45))
-                painter.drawPolyline(_polygon(piece))
-                painter.setPen(_pen(TRAIL, 2.4, strength))
-                painter.drawPolyline(_polygon(piece))
+            _faded_trail(painter, *_thinned(to_pixels(points), trail[:, 2]))
 
     def _targets(self, painter: QPainter, placed: PlacedScene, robots: Points, targets: Points) -> None:
         names = placed.scene.robots.names
@@ -119,6 +118,31 @@ def _draft(painter: QPainter, placed: PlacedScene, robots: Points, points: Point
         _ring(painter, point, 3.5, colour)
 
 
+def _faded_trail(painter: QPainter, pixels: Points, age: npt.NDArray[np.float64]) -> None:
+    """Draw a trail, oldest point first, in pieces that grow paler with age."""
+    fade = np.clip((age / TRAIL_SECONDS * FADES).astype(int), 0, FADES - 1)
+    begins = np.flatnonzero(np.diff(fade, prepend=-1))
+    # Each piece has the next one's first point, so that they meet.
+    for first, last in zip(begins, [*begins[1:], len(fade) - 1], strict=True):
+        strength = 1.0 - fade[first] / FADES
+        piece = _polygon(pixels[first : last + 1])
+        painter.setPen(_flat_pen(CASING, 4.4, strength * 0.45))
+        painter.drawPolyline(piece)
+        painter.setPen(_flat_pen(TRAIL, 2.4, strength))
+        painter.drawPolyline(piece)
+
+
+def _thinned(pixels: Points, age: npt.NDArray[np.float64]) -> tuple[Points, npt.NDArray[np.float64]]:
+    """Return the points that lie some pixels apart along the way, and the last."""
+    if len(pixels) < 3:
+        return pixels, age
+    way = np.cumsum(np.hypot(*np.diff(pixels, axis=0, prepend=pixels[:1]).T)) // APART
+    keep = np.flatnonzero(np.diff(way, prepend=-1.0))
+    if keep[-1] != len(pixels) - 1:
+        keep = np.append(keep, len(pixels) - 1)
+    return pixels[keep], age[keep]
+
+
 def _route(painter: QPainter, pixels: Points, colour: QColor) -> None:
     painter.setPen(_pen(CASING, 5.6))
     painter.drawPolyline(_polygon(pixels))
@@ -148,6 +172,14 @@ def _ring(painter: QPainter, at: Points, radius: float, colour: QColor) -> None:
 
 def _polygon(pixels: Points) -> QPolygonF:
     return QPolygonF([QPointF(x, y) for x, y in pixels.tolist()])
+
+
+def _flat_pen(colour: QColor, width: float, strength: float = 1.0) -> QPen:
+    """Return a pen for long lines of many points, without the round joins that take half of the time."""
+    pen = _pen(colour, width, strength)
+    pen.setCapStyle(Qt.PenCapStyle.FlatCap)
+    pen.setJoinStyle(Qt.PenJoinStyle.BevelJoin)
+    return pen
 
 
 def _pen(colour: QColor, width: float, strength: float = 1.0) -> QPen:

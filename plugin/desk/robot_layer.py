@@ -9,7 +9,6 @@ from qgis.core import (
     QgsCategorizedSymbolRenderer,
     QgsCoordinateReferenceSystem,
     QgsFeature,
-    QgsField,
     QgsGeometry,
     QgsLayerTreeGroup,
     QgsMarkerSymbol,
@@ -19,7 +18,7 @@ from qgis.core import (
     QgsVectorLayer,
 )
 from qgis.PyQt import sip
-from qgis.PyQt.QtCore import QObject, QVariant, pyqtSignal
+from qgis.PyQt.QtCore import QObject, pyqtSignal
 
 from ...robot_bridge.messages import SiteReport
 from ...robot_bridge.sites.frame import SiteFrame
@@ -29,18 +28,17 @@ from .picture import STATES, RobotView
 GROUP = "Fleet"
 NAME = "Robots (live)"
 MARK = "fleet/live"
-TEXT, NUMBER = QVariant.Type.String, QVariant.Type.Double
 FIELDS = (
-    ("robot", TEXT),
-    ("state", TEXT),
-    ("theta", NUMBER),
-    ("heading_deg", NUMBER),
-    ("v", NUMBER),
-    ("battery", NUMBER),
-    ("status", TEXT),
-    ("age", NUMBER),
-    ("link", TEXT),
-    ("command", TEXT),
+    "robot:string",
+    "state:string",
+    "theta:double",
+    "heading_deg:double",
+    "v:double",
+    "battery:double",
+    "status:string",
+    "age:double",
+    "link:string",
+    "command:string",
 )
 
 
@@ -181,10 +179,9 @@ class RobotLayer(QObject):
 
 
 def _made(crs: QgsCoordinateReferenceSystem) -> QgsVectorLayer:
-    layer = QgsVectorLayer("Point", NAME, "memory")
+    fields = "&".join(f"field={field}" for field in FIELDS)
+    layer = QgsVectorLayer(f"Point?{fields}", NAME, "memory")
     layer.setCrs(crs)
-    layer.dataProvider().addAttributes([QgsField(name, kind) for name, kind in FIELDS])
-    layer.updateFields()
     layer.setDisplayExpression("\"robot\" || ' · ' || \"state\"")
     layer.setCustomProperty(MARK, True)
     # QGIS would ask on closing whether the layer's contents may be lost; they come anew each second.

@@ -17,6 +17,9 @@ from .picture import STATES, RobotView
 COLUMNS = ("Robot", "State", "Task", "Speed", "Batt.", "Age", "Link")
 WIDEST = ("robot-0", "offline", "", "0.0 m/s", "Batt.", "00.0 s", "websocket")
 TASK = COLUMNS.index("Task")
+_FLAGS = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
+# A number on Qt 5, an enum on Qt 6; a model has to hand out the number.
+TO_THE_RIGHT = int(getattr(_FLAGS, "value", _FLAGS))
 SORT_ROLE = Qt.ItemDataRole.UserRole
 REFRESH_EVERY = 500 // PULL_EVERY_MS
 
@@ -55,7 +58,7 @@ class RobotTableModel(QAbstractTableModel):
         if role == Qt.ItemDataRole.ToolTipRole:
             return self._tip(view)
         if role == Qt.ItemDataRole.TextAlignmentRole and column in ("Speed", "Batt.", "Age"):
-            return int(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
+            return TO_THE_RIGHT
         return None
 
     def show_views(self, views: list[RobotView]) -> None:

@@ -19,7 +19,6 @@ from .select_tool import SelectTool
 from .wire.status import Phase
 
 MENU = "Fleet Supervisor"
-DOCK_WIDTH = 440
 
 
 class DeskWindow(QObject):
@@ -71,7 +70,6 @@ class DeskWindow(QObject):
             if action in (self.actions.connect, self.actions.cancel, self.actions.follow):
                 self.toolbar.addSeparator()
         self._iface.addDockWidget(Qt.DockWidgetArea.RightDockWidgetArea, self.dock)
-        self._iface.mainWindow().resizeDocks([self.dock], [DOCK_WIDTH], Qt.Orientation.Horizontal)
 
     def _wire_actions(self) -> None:
         actions, desk = self.actions, self.desk
