@@ -22,6 +22,7 @@ from ...robot_bridge.robotmap.builder import Window
 from ..sites.errors import LayerTypeError
 from ..sites.obstacle_source import ObstacleSource, obstacle_sources
 from ..sites.placing import SitePlacing
+from ..sites.reading import check_sources
 from ..sites.roles import LayerExpressions
 from ..sites.site_crs import site_crs_for
 from .errors import ParameterError
@@ -67,15 +68,18 @@ def plan_of(
     :raises WindowError: when the window encloses nothing.
     """
     layers = _layers(algorithm, parameters, context)
-    crs = _site_crs(algorithm, parameters, context, layers)
-    frame = site_frame(algorithm, parameters, context, crs)
-    local = algorithm.parameterAsBool(parameters, LOCAL, context)
     # As strings: parameterAsExpression replaces what is no expression by the default, in silence.
     names = (HEIGHT_EXPRESSION, SEMANTICS_EXPRESSION, OUTDOOR_EXPRESSION)
     general = LayerExpressions(*(algorithm.parameterAsString(parameters, name, context) for name in names))
+    sources = obstacle_sources(layers, general, algorithm.createExpressionContext(parameters, context))
+    crs = _site_crs(algorithm, parameters, context, sources)
+    frame = site_frame(algorithm, parameters, context, crs)
+    local = algorithm.parameterAsBool(parameters, LOCAL, context)
+    site = SitePlacing(crs, frame, context.transformContext(), local)
+    check_sources(sources, site)
     return ExportPlan(
-        sources=obstacle_sources(layers, general, algorithm.createExpressionContext(parameters, context)),
-        site=SitePlacing(crs, frame, context.transformContext(), local),
+        sources=sources,
+        site=site,
         window=map_window(algorithm, parameters, context, crs, frame),
         default_height=_default_height(algorithm, parameters, context),
         target=_target(algorithm, parameters, context, layers),
@@ -109,7 +113,7 @@ def _layers(algorithm, parameters: Parameters, context) -> list[QgsVectorLayer]:
 
 
 def _site_crs(
-    algorithm, parameters: Parameters, context, layers: Sequence[QgsMapLayer]
+    algorithm, parameters: Parameters, context, sources: Sequence[ObstacleSource]
 ) -> QgsCoordinateReferenceSystem:
     chosen = algorithm.parameterAsCrs(parameters, SITE_CRS, context)
     if parameters.get(SITE_CRS) and not chosen.isValid():
@@ -118,7 +122,7 @@ def _site_crs(
         )
     project = context.project()
     project_crs = project.crs() if project is not None else QgsCoordinateReferenceSystem()
-    return site_crs_for(chosen, project_crs, [layer.crs() for layer in layers])
+    return site_crs_for(chosen, project_crs, [source.crs for source in sources])
 
 
 def _default_height(algorithm, parameters: Parameters, context) -> float:

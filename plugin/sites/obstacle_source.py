@@ -20,6 +20,7 @@ from qgis.core import (
 
 from .errors import LayerTypeError
 from .roles import LayerExpressions, expressions_of, role_of
+from .site_crs import stated_crs
 
 
 @dataclass(frozen=True)
@@ -56,16 +57,16 @@ def obstacle_sources(
 
 
 def _check(layer: QgsVectorLayer) -> None:
+    name = _plain_name(layer)
     if not layer.isValid():
         raise LayerTypeError(
-            f"The layer {layer.name()} cannot be opened ({layer.source()}): repair its data source or leave "
-            "it out."
+            f"The layer {name} cannot be opened ({layer.source()}): repair its data source or leave it out."
         )
     points = QgsWkbTypes.GeometryType.PointGeometry
     if not layer.isSpatial() or layer.geometryType() == points:
         held = "points" if layer.isSpatial() else "no geometry"
         raise LayerTypeError(
-            f"The layer {layer.name()} holds {held}, and only lines and polygons are obstacles: leave it "
+            f"The layer {name} holds {held}, and only lines and polygons are obstacles: leave it "
             "out, or give it an extent first (for example with Buffer)."
         )
 
@@ -79,7 +80,7 @@ def _source(
     return ObstacleSource(
         name=name,
         role=role_of(layer),
-        crs=layer.crs(),
+        crs=stated_crs(layer.crs()),
         fields=layer.fields(),
         count=layer.featureCount(),
         features=QgsVectorLayerFeatureSource(layer),

@@ -63,6 +63,12 @@ def read_outlines(
     return reading
 
 
+def check_sources(sources: Sequence[ObstacleSource], site: SitePlacing) -> None:
+    """Raise :class:`LayerReadingError` for what :func:`read_outlines` would refuse, without reading."""
+    for source in sources:
+        _LayerReader(source, site, (0.0, 0.0, 1.0, 1.0), 0.0)
+
+
 class _LayerReader:
     """Reads the features of one layer into a :class:`Reading`."""
 

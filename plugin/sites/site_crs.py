@@ -65,6 +65,15 @@ def is_engineering(crs: QgsCoordinateReferenceSystem) -> bool:
     return wkt.startswith(("ENGCRS", "ENGINEERINGCRS", "LOCAL_CS"))
 
 
+def stated_crs(crs: QgsCoordinateReferenceSystem) -> QgsCoordinateReferenceSystem:
+    """Return ``crs``, invalid where it only says that there is none.
+
+    A GeoPackage without a CRS comes as a local one in metres called "Undefined SRS" or the like.
+    """
+    undefined = crs.description().startswith("Undefined ") and is_engineering(crs)
+    return QgsCoordinateReferenceSystem() if undefined else crs
+
+
 def crs_name(crs: QgsCoordinateReferenceSystem) -> str:
     """Return the authority's code and the name of ``crs``, as far as it has them."""
     if crs.authid() and crs.description():

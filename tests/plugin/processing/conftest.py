@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import re
 import shutil
@@ -177,28 +176,15 @@ def qgis_process(root, tmp_path_factory):
     return run
 
 
-@pytest.fixture
-def export_by_process(qgis_process, tmp_path):
+@pytest.fixture(scope="session")
+def export_by_process(qgis_process, tmp_path_factory):
     """Run the algorithm by ``qgis_process``; ``layers`` are what QGIS calls sources."""
 
     def run(*layers, output="map.txt", packages=True, **parameters) -> tuple[Finished, Path]:
         words = [f"OBSTACLES={layer}" for layer in layers]
         words += [f"{name}={value}" for name, value in parameters.items()]
-        file = tmp_path / output
+        file = tmp_path_factory.mktemp("export") / output
         arguments = ("run", "fleet:exportrobotmap", "--", *words, f"OUTPUT={file}")
         return qgis_process(*arguments, packages=packages), file
 
     return run
-
-
-@pytest.fixture
-def geojson_layer(tmp_path):
-    """Write a GeoJSON file, which QGIS reads as EPSG:4326, and return its path."""
-
-    def write(name: str, *geometries: dict) -> Path:
-        features = [{"type": "Feature", "properties": {}, "geometry": geometry} for geometry in geometries]
-        file = tmp_path / f"{name}.geojson"
-        file.write_text(json.dumps({"type": "FeatureCollection", "features": features}), encoding="utf-8")
-        return file
-
-    return write

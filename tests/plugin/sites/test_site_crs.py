@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 from fleet_supervisor.plugin.sites.errors import SiteCrsError
-from fleet_supervisor.plugin.sites.site_crs import check_site_crs, is_engineering, site_crs_for
+from fleet_supervisor.plugin.sites.site_crs import check_site_crs, is_engineering, site_crs_for, stated_crs
 from fleet_supervisor.robot_bridge.sites.errors import CrsError
 from fleet_supervisor.robot_bridge.sites.frame import check_site_crs as check_in_bridge
 from qgis.core import QgsCoordinateReferenceSystem
@@ -78,3 +78,10 @@ def test_layers_in_one_engineering_crs_do_not_need_the_project_to_be_in_it(qgis_
     assert site_crs_for(none, web, [engineering(), engineering()]) == engineering()
     with pytest.raises(SiteCrsError, match="EPSG:3857"):
         site_crs_for(none, web, [engineering(), engineering(name="other")])
+
+
+@pytest.mark.parametrize("name", ["Undefined SRS", "Undefined Cartesian SRS"])
+def test_a_crs_that_says_it_is_undefined_is_none(qgis_app, name):
+    assert not stated_crs(engineering(name=name)).isValid()
+    assert stated_crs(engineering()) == engineering()
+    assert stated_crs(crs_of("EPSG:32633")) == crs_of("EPSG:32633")
