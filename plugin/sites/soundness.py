@@ -46,7 +46,11 @@ def lines_with_length(lines: Sequence[np.ndarray]) -> tuple[list[np.ndarray], li
 
 
 def risers_of(lines: Sequence[np.ndarray]) -> tuple[np.ndarray, list[str]]:
-    """Return the two ends of each line, (2 n, 2), and a note for each line that is not straight."""
+    """Return the two ends of each line, (2 n, 2), and a note for each line that is not straight.
+
+    ``lines`` are two or more risers, bottom first. Seen from the bottom each runs from left to right,
+    whichever way it was drawn (paper 1, section II).
+    """
     notes = []
     for number, line in enumerate(lines, 1):
         along = line[-1] - line[0]
@@ -54,7 +58,13 @@ def risers_of(lines: Sequence[np.ndarray]) -> tuple[np.ndarray, list[str]]:
         off = along[0] * (line[:, 1] - line[0, 1]) - along[1] * (line[:, 0] - line[0, 0])
         if np.abs(off).max() / length > STRAIGHT_M or length == 1e-9:
             notes.append(f"riser {number} is bent; the straight line between its ends is used")
-    return np.concatenate([line[[0, -1]] for line in lines]), notes
+    ends = np.array([line[[0, -1]] for line in lines])
+    middle = ends.mean(axis=1)
+    climb = np.diff(middle, axis=0, append=middle[-1:] * 2 - middle[-2:-1])
+    along = ends[:, 1] - ends[:, 0]
+    backwards = along[:, 1] * climb[:, 0] - along[:, 0] * climb[:, 1] > 0
+    ends[backwards] = ends[backwards, ::-1]
+    return ends.reshape(-1, 2), notes
 
 
 def _encloses_nothing(ring: np.ndarray) -> bool:

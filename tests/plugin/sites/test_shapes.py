@@ -112,6 +112,16 @@ def test_the_lines_of_a_stairs_feature_are_one_flight_bottom_first(qgis_app):
     assert flight.points.tolist() == [[0, 0], [4, 0], [0, 1], [4, 1], [0, 2], [4, 2]]
 
 
+@pytest.mark.parametrize(
+    "drawn", ["(0 0, 4 0), (4 1, 0 1), (0 2, 4 2)", "(4 0, 0 0), (4 1, 0 1), (4 2, 0 2)"]
+)
+def test_risers_run_from_left_to_right_seen_from_the_bottom(qgis_app, drawn):
+    (flight,), _ = shapes(f"MultiLineString({drawn})", STAIRS)
+    assert flight.points.tolist() == [[0, 0], [4, 0], [0, 1], [4, 1], [0, 2], [4, 2]]
+    (down,), _ = shapes("MultiLineString((0 2, 4 2), (0 1, 4 1), (0 0, 4 0))", STAIRS)
+    assert down.points.tolist() == [[4, 2], [0, 2], [4, 1], [0, 1], [4, 0], [0, 0]]
+
+
 def test_a_bent_riser_is_named(qgis_app):
     _, notes = shapes("MultiLineString((0 0, 4 0), (0 1, 2 1.5, 4 1))", STAIRS)
     assert notes == ["riser 2 is bent; the straight line between its ends is used"]
