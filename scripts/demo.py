@@ -32,8 +32,8 @@ from robot_bridge.sites.site import Site
 FOLDER = Path(os.environ.get("FLEET_DEMO_FOLDER") or ROOT / "build" / "demo")
 SCREEN = (1440, 900)
 EXTENT = (0.0, 0.0, 130.0, 112.0)
-CONE = (58.0, 8.0)
-ROUTE = [(46.0, 84.0), (66.0, 84.0), (71.0, 82.0), (72.0, 76.0)]
+CONE = (46.0, 8.0)
+ROUTE = [(54.0, 84.0), (68.0, 84.0), (71.5, 82.0), (72.0, 76.0)]
 FAR = (44.0, 22.0)
 ERRANDS = (Errand("r1", CONE, "reached"), Errand("r2", ROUTE[-1], "reached"), Errand("r3", FAR, "aborted"))
 DESK_TIMEOUT = 240.0

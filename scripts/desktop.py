@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import argparse
 import getpass
+import os
 import sys
 from pathlib import Path
 
@@ -23,13 +24,13 @@ from stage.session import follow, start_qgis
 
 from robot_bridge.sites.publication import read_site
 
-FOLDER = ROOT / "build" / "desktop"
+FOLDER = Path(os.environ.get("FLEET_DESKTOP_FOLDER") or ROOT / "build" / "desktop")
 WINDOW = (1360, 850)
 PICTURE_TIMEOUT = 120.0
 EXTENT = (0.0, 0.0, 140.0, 130.0)
 ERRANDS = {
     "r1": [(104.0, 8.0)],
-    "r2": [(46.0, 84.0), (70.0, 84.0), (72.0, 82.0), (72.0, 76.0)],
+    "r2": [(54.0, 84.0), (88.0, 84.0), (118.0, 84.0)],
     "r3": [(60.0, 22.0), (44.0, 22.0), (28.0, 22.0)],
 }
 """For the picture: where each robot is sent, site frame, metres; one place is a cone target."""
@@ -67,7 +68,7 @@ def display_for(processes: Processes, picture: Path | None) -> str | None:
     display = virtual_screen(processes, *WINDOW)
     if picture is None:
         print(f"There is no display here: QGIS opens on the virtual screen {display}. Ctrl-C ends it.")
-        print("To see how it looks: make screenshots")
+        print("To see how it looks: make screenshots", flush=True)
     return display
 
 

@@ -106,6 +106,11 @@ make_venv() {
         rm -rf $VENV
     fi
     [ -x $VENV/bin/python ] || "$1" -m venv --system-site-packages $VENV
+    # A distribution's pyproj looks for PROJ's data below the environment, and warns when it is not there.
+    if [ -d /usr/share/proj ]; then
+        mkdir -p $VENV/share
+        ln -sfn /usr/share/proj $VENV/share/proj
+    fi
     say "installing the Python packages of pyproject.toml into $VENV"
     $VENV/bin/python -m pip install -q --disable-pip-version-check -e '.[test,lint]' || stop \
         "pip could not install the Python packages: see the lines above." \

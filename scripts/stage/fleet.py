@@ -26,7 +26,7 @@ class Start:
 
 STARTS = (
     Start("r1", (20.0, 8.0, 0.0)),
-    Start("r2", (40.0, 84.0, 0.0), over_sql=True),
+    Start("r2", (48.0, 84.0, 0.0), over_sql=True),
     Start("r3", (92.0, 22.0, math.pi)),
 )
 """On the straight, on the campus road, and on the handling loop."""

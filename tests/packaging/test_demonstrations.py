@@ -1,0 +1,98 @@
+"""`make demo` and `make desktop`, as real programs: what they show really happened, and nothing is left."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from stage.fleet import STARTS
+
+from robot_bridge.robotmap.binary import decode_text
+
+
+@pytest.fixture
+def environment(tmp_path) -> dict[str, str]:
+    """The environment of a user without a display, with a folder of its own for what is left behind."""
+    kept = {name: value for name, value in os.environ.items() if name not in ("DISPLAY", "WAYLAND_DISPLAY")}
+    return {
+        **kept,
+        "FLEET_DEMO_FOLDER": str(tmp_path / "demo"),
+        "FLEET_DESKTOP_FOLDER": str(tmp_path / "desktop"),
+    }
+
+
+def left_running(folder: Path) -> set[int]:
+    """Return the processes that inherited an environment that names ``folder``."""
+    found = set()
+    for file in Path("/proc").glob("[0-9]*/environ"):
+        try:
+            if str(folder).encode() in file.read_bytes():
+                found.add(int(file.parent.name))
+        except OSError:
+            continue
+    return found
+
+
+def test_the_demo_does_what_it_says(root, tmp_path, environment):
+    done = subprocess.run(
+        [sys.executable, root / "scripts" / "demo.py"],
+        env=environment,
+        capture_output=True,
+        text=True,
+        timeout=240,
+        check=False,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert len(done.stdout.splitlines()) <= 20
+    folder = tmp_path / "demo"
+    report = (folder / "report.md").read_text(encoding="utf-8")
+    for robot, how in (("r1", "reached"), ("r2", "reached"), ("r3", "aborted")):
+        assert any(line.startswith(f"| {robot} |") and f"| {how} |" in line for line in report.splitlines())
+    text = (folder / "site.map").read_text(encoding="utf-8")
+    assert decode_text((folder / "site.bin").read_bytes()) == text
+    assert f"| {len(text.encode())} |" in report
+    assert (folder / "canvas.png").stat().st_size > 100_000, "an empty canvas is a small file"
+    assert not left_running(tmp_path)
+
+
+def test_the_demo_fails_when_a_program_is_missing_and_leaves_nothing_running(root, tmp_path, environment):
+    script = root / "scripts" / "demo.py"
+    done = subprocess.run(
+        [sys.executable, script],
+        env={**environment, "PATH": str(tmp_path)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 1
+    assert "demo: error: qgis_process is not on the path; run: make setup" in done.stderr
+    assert not (tmp_path / "demo" / "report.md").exists()
+    assert not left_running(tmp_path)
+
+
+def test_the_desktop_opens_connected_and_takes_everything_with_it_when_it_is_ended(
+    root, tmp_path, environment
+):
+    script = root / "scripts" / "desktop.py"
+    with subprocess.Popen(
+        [sys.executable, script], env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    ) as desktop:
+        try:
+            told = [desktop.stdout.readline() for _ in range(3)]
+            assert told[0].startswith("There is no display here: QGIS opens on the virtual screen :")
+            assert told[2].startswith("QGIS is open and connected to ws://127.0.0.1:"), desktop.stderr.read()
+            assert len(left_running(tmp_path)) >= 7, "the script, Xvfb, the gateway, three robots, QGIS"
+            logs = {file.stem for file in (tmp_path / "desktop" / "logs").iterdir()}
+            assert logs == {"gateway", "qgis", "xvfb", *(start.name for start in STARTS)}
+        finally:
+            desktop.send_signal(signal.SIGINT)
+        assert desktop.wait(30) == 130
+    until = time.monotonic() + 5
+    while left_running(tmp_path) and time.monotonic() < until:
+        time.sleep(0.1)
+    assert not left_running(tmp_path)
