@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import shutil
 import sys
 from pathlib import Path
 
 import pytest
 
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "scripts"))
 sys.path.insert(0, str(Path(__file__).with_name("rig")))
 
 
@@ -14,3 +17,37 @@ sys.path.insert(0, str(Path(__file__).with_name("rig")))
 def sample_site(root) -> Path:
     """The folder of the published sample site: 200 m × 160 m, reached within 0.20 m."""
     return root / "resources" / "sample_site"
+
+
+@pytest.fixture(scope="module")
+def impatient_site(sample_site, tmp_path_factory) -> Path:
+    """The same site, on which a robot is stale after 0.8 s and lost after 1.6 s."""
+    folder = tmp_path_factory.mktemp("impatient")
+    shutil.copy(sample_site / "site.gpkg", folder)
+    text = (sample_site / "site.toml").read_text(encoding="utf-8")
+    text = text.replace("stale_after_s = 3.0", "stale_after_s = 0.8")
+    text = text.replace("lost_after_s = 10.0", "lost_after_s = 1.6")
+    (folder / "site.toml").write_text(text, encoding="utf-8")
+    return folder
+
+
+@pytest.fixture(scope="module")
+def start_bridge(tmp_path_factory):
+    """Start a gateway on a site: ``start_bridge(site)``; all that runs ends with the module."""
+    from bridge_programs import Bridge
+    from stage.processes import Processes
+
+    folder = tmp_path_factory.mktemp("bridge")
+    with Processes(folder / "logs") as processes:
+        bridges = []
+
+        def start(site) -> Bridge:
+            bridge = Bridge(processes, site, folder / f"fleet-{len(bridges)}.db")
+            bridges.append(bridge)
+            bridge.start_gateway()
+            return bridge
+
+        yield start
+        for bridge in bridges:
+            bridge.hang_up()
+            assert "Traceback" not in bridge.output(), bridge.output()

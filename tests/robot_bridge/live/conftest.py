@@ -1,0 +1,1 @@
+"""The tests in this folder run the real programs as processes."""

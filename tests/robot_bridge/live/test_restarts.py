@@ -1,0 +1,152 @@
+"""Programs that are killed: nothing is lost, nothing done twice, everybody comes back by himself."""
+
+from __future__ import annotations
+
+import json
+import math
+
+import pytest
+from bridge_programs import wait_until
+
+
+@pytest.fixture
+def bridge(start_bridge, sample_site):
+    return start_bridge(sample_site)
+
+
+def steps(command):
+    return [step["state"] for step in command["steps"]]
+
+
+def watch(bridge):
+    """Return an operator's connection that hears of everything."""
+    desk = bridge.desk()
+    desk.ask("subscribe", {"rate": 20})
+    return desk
+
+
+def test_a_gateway_killed_while_robots_drive_goes_on_where_it_stopped(bridge):
+    bridge.start_robot("ws", (20.0, 20.0, 0.0))
+    bridge.start_robot("sql", (40.0, 40.0, 0.0), sql=True)
+    idle = bridge.robot("idle")
+    idle.plug_in(5)
+    desk = watch(bridge)
+    desk.wait_for_robots("ws", "sql")
+    for robot, x, y in (("ws", 34.0, 20.0), ("sql", 54.0, 40.0), ("idle", 10.0, 10.0)):
+        desk.send(f"target-{robot}", robot, "SetPosEnd", x=x, y=y)
+    for robot in ("ws", "sql"):
+        desk.wait_for_step(f"target-{robot}", "acknowledged")
+    first = idle.wait_for("SetPosEnd")
+    desk.wait_for_step("target-idle", "delivered")
+    desk.until(lambda: desk.robots["ws"]["v"] > 1 and desk.robots["sql"]["v"] > 1)
+
+    bridge.kill_gateway()
+    bridge.start_gateway()
+
+    desk = watch(bridge)
+    found = {c["command"]: c for c in desk.ask("get_commands")["commands"]}
+    assert found["target-idle"]["state"] == "delivered"
+    for robot in ("ws", "sql"):
+        assert desk.wait_for_step(f"target-{robot}", "reached", 20)
+        assert steps(desk.commands[f"target-{robot}"]) == ["queued", "delivered", "acknowledged", "reached"]
+    idle = bridge.robot("idle")
+    idle.ask("Ready", {"magic": 5})
+    again = idle.wait_for("SetPosEnd")
+    assert again == first  # the same message under the same id: a robot that did it does nothing
+    idle.say(again["id"])
+    desk.wait_for_step("target-idle", "acknowledged")
+    assert bridge.sql("select robot, op from sa where op <> 'SetMap' and op <> 'OpAck'") == []
+
+
+def test_a_robot_that_is_killed_and_started_again_is_sent_its_task_again(bridge):
+    robot = bridge.start_robot("r1", (20.0, 20.0, 0.0))
+    desk = watch(bridge)
+    desk.wait_for_robots("r1")
+    desk.send("target-1", "r1", "SetPosEnd", x=30.0, y=20.0)
+    desk.wait_for_step("target-1", "acknowledged")
+    desk.until(lambda: desk.robots["r1"]["v"] > 1)
+    robot.kill()
+    robot.wait(5)
+    bridge.start_robot("r1", (27.0, 20.0, 0.0))
+    command = desk.wait_for_step("target-1", "reached")
+    assert steps(command) == ["queued", "delivered", *["acknowledged"] * 3, "reached"]
+    reasons = [step.get("reason") for step in command["steps"]]
+    assert reasons[3:5] == ["robot r1 started anew; sent once more", "acknowledged again"]
+    assert math.hypot(desk.robots["r1"]["x"] - 30.0, desk.robots["r1"]["y"] - 20.0) <= 0.2
+
+
+def test_a_robot_that_is_killed_and_then_aborted_does_not_drive_on_when_it_comes_back(bridge):
+    robot = bridge.start_robot("r1", (20.0, 20.0, 0.0), sql=True)
+    desk = watch(bridge)
+    desk.wait_for_robots("r1")
+    desk.send("target-1", "r1", "SetPosEnd", x=90.0, y=20.0)
+    desk.wait_for_step("target-1", "acknowledged")
+    robot.kill()
+    robot.wait(5)
+    desk.send("abort-of-1", "r1", "Abort")
+    bridge.start_robot("r1", (26.0, 20.0, 0.0), sql=True)
+    desk.wait_for_step("abort-of-1", "reached")
+    assert desk.commands["target-1"]["state"] == "aborted"
+    desk.listen(0.5)
+    assert abs(desk.robots["r1"]["x"] - 26.0) < 0.2
+
+
+def test_a_second_robot_of_the_same_name_replaces_the_first(bridge):
+    first = bridge.robot("r1")
+    first.plug_in(1)
+    first.tell("SendPos", {"x": 1.0, "y": 1.0, "theta": 0.0, "v": 0.0})
+    second = bridge.robot("r1")
+    second.plug_in(2)
+    second.tell("SendPos", {"x": 2.0, "y": 2.0, "theta": 0.0, "v": 0.0})
+    wait_until(lambda: first.connection.close_code is not None or _drain(first))
+    assert (first.connection.close_code, first.connection.close_reason) == (
+        4001,
+        "the robot has connected anew",
+    )
+    desk = watch(bridge)
+    desk.send("target-1", "r1", "SetPosEnd", x=5.0, y=5.0)
+    assert second.wait_for("SetPosEnd")["params"]["x"] == 5.0
+    desk.until(lambda: desk.robots["r1"]["x"] == 2.0)
+    assert desk.robots["r1"]["state"] == "fresh"
+
+
+def _drain(wire):
+    """Read what is there, so that a close can be seen."""
+    from websockets.exceptions import ConnectionClosed
+
+    try:
+        wire.connection.recv(0.1)
+    except (TimeoutError, ConnectionClosed):
+        return False
+
+
+def test_a_robot_process_whose_name_another_takes_says_so_and_ends(bridge):
+    robot = bridge.start_robot("r1", (20.0, 20.0, 0.0))
+    desk = watch(bridge)
+    desk.wait_for_robots("r1")
+    bridge.robot("r1").plug_in(9)
+    assert robot.wait(5) == 1
+    assert "another robot has connected under this name; give each its own --name" in bridge.output()
+
+
+def test_robots_wait_for_a_gateway_that_is_not_there_yet(bridge):
+    bridge.kill_gateway()
+    bridge.start_robot("ws", (20.0, 20.0, 0.0))
+    bridge.start_robot("sql", (40.0, 40.0, 0.0), sql=True)
+    wait_until(lambda: "trying again in" in bridge.output())
+    wait_until(lambda: bridge.sql("select op from rr where robot = 'sql' and op = 'SendPos'"))
+    bridge.start_gateway()
+    watch(bridge).wait_for_robots("ws", "sql")
+
+
+def test_what_robots_wrote_while_the_gateway_was_away_is_dealt_with(bridge):
+    bridge.kill_gateway()
+    params = {"x": 3.0, "y": 4.0, "theta": 0.0, "v": 0.0}
+    for op, values in (("Ready", {"magic": 3}), ("SendPos", params), ("Stopped", {})):
+        bridge.sql("insert into rr (robot, op, params) values ('late', ?, ?)", op, json.dumps(values))
+    bridge.start_gateway()
+    desk = watch(bridge)
+    desk.wait_for_robots("late")
+    assert (desk.robots["late"]["x"], desk.robots["late"]["stopped"]) == (3.0, True)
+    wait_until(lambda: bridge.sql("select count(*) from rr") == [(0,)])
+    assert [op for (op,) in bridge.sql("select op from sa order by id")] == ["OpAck", "SetMap", "OpAck"]

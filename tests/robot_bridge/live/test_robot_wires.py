@@ -1,0 +1,233 @@
+"""How a robot connects, by WebSocket and by plain SQL: plug and play, maps, targets, and what is refused."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import socket
+import sqlite3
+import time
+
+import pytest
+from bridge_programs import wait_until
+from bridge_wires import RefusedError, RobotWire, map_bytes
+from websockets.exceptions import InvalidStatus
+from websockets.sync.client import connect
+
+from robot_bridge.robotmap.binary import decode
+
+SITE_BORDER = (0.0, 0.0, 200.0, 160.0)
+POSE = {"x": 1.0, "y": 2.0, "theta": 0.5, "v": 0.0}
+
+
+@pytest.fixture(scope="module")
+def bridge(start_bridge, sample_site):
+    return start_bridge(sample_site)
+
+
+# --- WebSocket --------------------------------------------------------------------------------------------
+
+
+def test_plug_and_play_over_websocket(bridge):
+    robot = bridge.robot("ws1")
+    robot.wait_for("Start")
+    ack = robot.ask("Ready", {"magic": 4711})
+    assert ack == {"id": 1, "ok": True, "magic": 4711, "robot": "ws1"}
+    call = robot.wait_for("SetMap")
+    assert decode(map_bytes(call)).border == SITE_BORDER
+    robot.say(call["id"])
+    wait_until(lambda: bridge.sql("select id from sa where robot = 'ws1'") == [])
+
+
+def test_a_robot_without_a_name_is_given_one(bridge):
+    first, second = bridge.robot(), bridge.robot()
+    names = [first.ask("Ready", {"magic": 1})["robot"], second.ask("Ready", {"magic": 2})["robot"]]
+    assert names == ["robot-1", "robot-2"]
+
+
+def test_get_map_over_websocket_is_answered_with_a_square_map(bridge):
+    robot = bridge.robot("ws2")
+    robot.plug_in(1)
+    assert robot.ask("GetMap", {"x": 60.0, "y": 90.0, "area": 2500.0})["ok"] is True
+    cut = decode(map_bytes(robot.wait_for("SetMap")))
+    assert cut.border == (35.0, 65.0, 85.0, 115.0)
+    assert cut.segment_count > 0
+
+
+def test_who_has_not_said_ready_is_told_to(bridge):
+    robot = bridge.robot("ws3")
+    with pytest.raises(RefusedError, match=r"robot 'ws3' has not said Ready .*; send Ready first") as caught:
+        robot.ask("SendPos", POSE)
+    assert caught.value.code == -32001
+
+
+@pytest.mark.parametrize(
+    ("op", "params", "code", "text"),
+    [
+        ("SendPos", {"x": 1, "y": 2, "theta": 0}, -32602, "SendPos: Object missing required field `v`"),
+        ("SendPos", {**POSE, "x": "here"}, -32602, r"SendPos: .*\$\.x"),
+        ("SendPos", [1, 2, 3, 4], -32602, "SendPos: params is list"),
+        ("GetMap", {"x": 1, "y": 2, "area": -1}, -32602, "GetMap: area is -1"),
+        ("Ready", {"magic": 10**30}, -32602, "Ready: magic is 1000"),
+        ("Fly", {}, -32601, "unknown operation 'Fly'; known are Ready, Stopped"),
+        ("GetPosEnd", {}, -32601, "unknown operation 'GetPosEnd'"),
+    ],
+)
+def test_a_wrong_request_is_refused_and_the_robot_stays_connected(bridge, op, params, code, text):
+    robot = bridge.robot("ws4")
+    robot.plug_in(1)
+    with pytest.raises(RefusedError, match=text) as caught:
+        robot.ask(op, params)
+    assert caught.value.code == code
+    assert robot.ask("SendPos", POSE)["ok"] is True
+
+
+def test_a_robot_that_refuses_a_command_fails_it_with_its_reason(bridge):
+    robot, desk = bridge.robot("ws5"), bridge.desk()
+    robot.plug_in(1)
+    desk.send("target-ws5", "ws5", "SetPosEnd", x=1.0, y=2.0, theta=0.5)
+    call = robot.wait_for("SetPosEnd")
+    assert call["params"] == {"x": 1.0, "y": 2.0, "theta": 0.5, "cone": False}
+    robot.say(call["id"], error="battery empty")
+    command = desk.wait_for_step("target-ws5", "failed")
+    assert command["steps"][-1]["reason"] == "battery empty"
+
+
+def test_a_robot_that_reconnects_need_not_wait_for_its_dead_connection(bridge):
+    with _mute_connection(bridge, "/robot?robot=ws6"):
+        began = time.monotonic()
+        bridge.robot("ws6").plug_in(1)
+        assert time.monotonic() - began < 2.0
+
+
+@contextlib.contextmanager
+def _mute_connection(bridge, path):
+    """Open a WebSocket that never reads what it is sent and never closes, as a robot out of reach."""
+    with socket.create_connection(("127.0.0.1", bridge.port)) as link:
+        key = "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n"
+        upgrade = f"Host: x\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n{key}\r\n"
+        link.sendall(f"GET {path} HTTP/1.1\r\n{upgrade}".encode())
+        assert b"101" in link.recv(12)
+        yield link
+
+
+# --- plain SQL --------------------------------------------------------------------------------------------
+
+
+class SqlRobot:
+    """A robot that knows nothing but two tables, as the paper's does."""
+
+    def __init__(self, file, name):
+        self.connection = sqlite3.connect(file, timeout=5, isolation_level=None)
+        self.name = name
+
+    def say(self, op, **params):
+        cursor = self.connection.execute(
+            "insert into rr (robot, op, params) values (?, ?, ?)", (self.name, op, json.dumps(params))
+        )
+        return cursor.lastrowid
+
+    def read(self, op, seconds=10.0):
+        """Wait for an answer, delete it, and return its id, parameters and payload."""
+        query = "select id, params, payload from sa where robot = ? and op = ? order by id limit 1"
+        row = wait_until(lambda: self.connection.execute(query, (self.name, op)).fetchone(), seconds, op)
+        self.connection.execute("delete from sa where id = ?", (row[0],))
+        return row[0], json.loads(row[1] or "{}"), row[2]
+
+
+@pytest.fixture
+def sql_robot(bridge):
+    robots = []
+
+    def make(name):
+        robots.append(SqlRobot(bridge.file, name))
+        return robots[-1]
+
+    yield make
+    for robot in robots:
+        robot.connection.close()
+
+
+def test_plug_and_play_over_plain_sql(bridge, sql_robot):
+    robot, desk = sql_robot("sql1"), bridge.desk()
+    ready = robot.say("Ready", magic=4711)
+    _, ack, _ = robot.read("OpAck")
+    assert ack == {"id": ready, "ok": True, "magic": 4711, "robot": "sql1"}
+    map_id, _, payload = robot.read("SetMap")
+    assert decode(payload).border == SITE_BORDER
+    robot.say("OpAck", id=map_id)
+    robot.say("SendPos", **POSE)
+    desk.ask("subscribe", {"rate": 20})
+    desk.until(lambda: desk.robots.get("sql1", {}).get("x") == 1.0)
+
+    desk.send("target-sql1", "sql1", "SetPosEnd", x=5.0, y=2.0)
+    id, params, _ = robot.read("SetPosEnd")
+    assert params == {"x": 5.0, "y": 2.0, "cone": False}
+    desk.wait_for_step("target-sql1", "delivered")
+    robot.say("OpAck", id=id)
+    desk.wait_for_step("target-sql1", "acknowledged")
+    robot.say("SendPos", x=4.9, y=2.0, theta=0.0, v=0.0)
+    command = desk.wait_for_step("target-sql1", "reached")
+    assert command["deviation"] == pytest.approx(0.1)
+    robot.say("Stopped")
+    robot.read("OpAck")
+    desk.until(lambda: desk.robots["sql1"]["stopped"])
+    assert bridge.sql("select count(*) from sa where robot = 'sql1'") == [(0,)]
+
+
+def test_get_map_over_plain_sql_is_answered_with_a_square_map(sql_robot):
+    robot = sql_robot("sql2")
+    robot.say("Ready", magic=1)
+    robot.read("SetMap")
+    asked = robot.say("GetMap", x=60.0, y=90.0, area=2500.0)
+    wait_until(lambda: robot.read("OpAck")[1]["id"] == asked)
+    assert decode(robot.read("SetMap")[2]).border == (35.0, 65.0, 85.0, 115.0)
+
+
+def test_junk_in_rr_is_answered_and_removed(bridge, sql_robot):
+    robot = sql_robot("sql3")
+    robot.say("Ready", magic=1)
+    robot.read("OpAck")
+    for name, op, params, reason in (
+        ("sql3", "SendPos", "{", "SendPos: params is not JSON"),
+        ("sql3", "Fly", None, "unknown operation 'Fly'"),
+        ("no robot", "Alive", None, "robot name 'no robot' cannot be used"),
+    ):
+        bridge.sql("insert into rr (robot, op, params) values (?, ?, ?)", name, op, params)
+        _, ack, _ = SqlRobot(bridge.file, name).read("OpAck")
+        assert ack["ok"] is False
+        assert reason in ack["reason"]
+    wait_until(lambda: bridge.sql("select id from rr where robot in ('sql3', 'no robot')") == [])
+
+
+# --- who is not let in ------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("path", "status", "text"),
+    [
+        ("/", 404, "/ is not served here; robots connect to /robot, operators to /desk"),
+        ("/robots", 404, "/robots is not served here"),
+        ("/robot?robot=r%201", 400, "robot name 'r 1' cannot be used"),
+    ],
+)
+def test_a_wrong_address_is_answered_with_text(bridge, path, status, text):
+    with pytest.raises(InvalidStatus) as caught:
+        connect(f"{bridge.address}{path}")
+    assert caught.value.response.status_code == status
+    assert text in caught.value.response.body.decode()
+
+
+@pytest.mark.parametrize("path", ["/robot", "/desk"])
+def test_a_web_page_is_not_let_in(bridge, path):
+    with pytest.raises(InvalidStatus) as caught:
+        connect(f"{bridge.address}{path}", origin="http://localhost:8000")
+    assert caught.value.response.status_code == 403
+
+
+def test_a_connection_that_speaks_no_websocket_harms_nobody(bridge):
+    with socket.create_connection(("127.0.0.1", bridge.port)) as link:
+        link.sendall(b"\x00\xff nonsense\r\n\r\n")
+        link.settimeout(5)
+        assert b"Traceback" not in link.recv(4096)
+    assert RobotWire(f"{bridge.address}/robot").ask("Ready", {"magic": 1})["ok"] is True

@@ -1,0 +1,96 @@
+"""The real programs: a gateway and reference robots, each a process of its own."""
+
+from __future__ import annotations
+
+import contextlib
+import itertools
+import socket
+import sqlite3
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from subprocess import Popen
+from typing import Any
+
+from bridge_wires import Desk, RobotWire
+from stage.processes import Processes
+
+RUNS = itertools.count(1)
+
+
+def wait_until(condition: Callable[[], Any], seconds: float = 10.0, what: str = "") -> Any:
+    """Return what ``condition`` returns once that is true; fail after ``seconds``."""
+    until = time.monotonic() + seconds
+    while not (found := condition()):
+        assert time.monotonic() < until, f"not within {seconds:g} s: {what or condition}"
+        time.sleep(0.02)
+    return found
+
+
+class Bridge:
+    """One gateway on one site and one database file, its robots, and who talks to it."""
+
+    def __init__(self, processes: Processes, site: Path, file: Path):
+        self.site, self.file = site, file
+        self.database = f"sqlite:///{file}"
+        self.address, self.port = "", 0
+        self._processes = processes
+        self._names: list[str] = []
+        self._wires: list[Any] = []
+
+    def start_gateway(self) -> None:
+        """Start the gateway, on the port it had if it ran before; return once it listens."""
+        options = ["--site", self.site, "--port", str(self.port), "--database", self.database]
+        name = self._run("gateway", ["serve", *options])
+        found = self._processes.wait_for_line(name, r"listening on (ws://\S+:(\d+))", 20)
+        self.address, self.port = found.group(1), int(found.group(2))
+
+    def start_robot(self, name: str, pose: tuple[float, float, float], *, sql: bool = False) -> Popen[bytes]:
+        """Start a fast reference robot."""
+        way = ["--database", self.database] if sql else ["--url", f"{self.address}/robot"]
+        where = ",".join(str(number) for number in pose)
+        options = ["--name", name, f"--pose={where}", "--speed", "5", "--turn-rate", "3", "--rate", "20"]
+        self._run(name, ["robot", *way, *options])
+        return self.process
+
+    def _run(self, name: str, command: list[Any]) -> str:
+        unique = f"{name}-{next(RUNS)}"
+        self.process = self._processes.start(unique, [sys.executable, "-m", "robot_bridge", *command])
+        if name == "gateway":
+            self.gateway = self.process
+        self._names.append(unique)
+        return unique
+
+    def kill_gateway(self) -> None:
+        """End the gateway the way a power cut does."""
+        self.gateway.kill()
+        self.gateway.wait(5)
+
+    def desk(self, operator: str = "Ada") -> Desk:
+        """Return an operator's connection."""
+        desk = Desk(f"{self.address}/desk", operator)
+        self._wires.append(desk)
+        return desk
+
+    def robot(self, name: str | None = None) -> RobotWire:
+        """Return a robot's connection that does nothing by itself."""
+        wire = RobotWire(f"{self.address}/robot" + (f"?robot={name}" if name else ""))
+        self._wires.append(wire)
+        return wire
+
+    def hang_up(self) -> None:
+        """Cut every connection; a close in good order would wait for what nobody read."""
+        for wire in self._wires:
+            with contextlib.suppress(OSError):
+                wire.connection.socket.shutdown(socket.SHUT_RDWR)
+
+    def sql(self, text: str, *values: Any) -> list[tuple[Any, ...]]:
+        """Run one statement as any other program would."""
+        with contextlib.closing(sqlite3.connect(self.file, timeout=5, isolation_level=None)) as connection:
+            return connection.execute(text, values).fetchall()
+
+    def output(self) -> str:
+        """Return what the gateway and the robots have printed."""
+        logs = [self._processes.log(name).read_text(encoding="utf-8") for name in self._names]
+        return "\n".join(logs)
