@@ -1,6 +1,6 @@
 """The help of ``fleet:exportrobotmap``."""
 
-HELP = """
+_TEXT = """
 <p>Writes the obstacles in a window of the site as a map that robots read: oriented segments with free space
 to their right, grouped by kind. Robots get metres in the <b>site frame</b>: a projected CRS, an origin in it
 and a rotation.</p>
@@ -17,11 +17,10 @@ is.</p>
 field <i>height</i> or <i>height_m</i>, the layer's name, true. Where no height is known, the default height
 is used, said in a warning and marked <i>h=est</i> in the map.</p>
 <p><b>Format</b>: text, or binary (the text compressed, with a check sum), which needs the Python package
-zstandard. docs/robot-map.md describes both.</p>
+zstandard. The file <i>docs/robot-map.md</i> of the project describes both, and exports from a script.</p>
 <p>Broken geometry is repaired where that is safe and left out where it is not. Each time a warning names the
 layer and the feature; the export goes on.</p>
-<p>From a script, with no display:</p>
-<pre>qgis_process run fleet:exportrobotmap -- \\
-  OBSTACLES="campus.gpkg|layername=buildings" OBSTACLES="campus.gpkg|layername=walls" \\
-  CENTER=48,48 WIDTH=104 HEIGHT=104 FORMAT=text OUTPUT=campus.txt</pre>
 """
+
+HELP = " ".join(_TEXT.split())
+"""In one line, because QGIS takes every line break for the end of a paragraph."""

@@ -161,6 +161,7 @@ def test_the_toolbox_finds_help_and_icon(provider):
     algorithm = provider.algorithm("exportrobotmap")
     assert not algorithm.icon().isNull()
     assert "site frame" in algorithm.shortHelpString()
+    assert "\n" not in algorithm.shortHelpString(), "QGIS would end a paragraph at each line break"
     assert algorithm.shortDescription()
     described = {definition.name() for definition in algorithm.outputDefinitions()}
     assert described == {
