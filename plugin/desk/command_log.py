@@ -8,7 +8,7 @@ from qgis.PyQt.QtCore import QModelIndex, Qt
 from qgis.PyQt.QtGui import QStandardItem, QStandardItemModel
 from qgis.PyQt.QtWidgets import QAbstractItemView, QHeaderView, QTreeView, QWidget
 
-from ...robot_bridge.messages import CommandReport, CommandState, CommandStep
+from ...robot_bridge.messages import Abort, CommandReport, CommandState, CommandStep
 from .colours import COMMAND_COLOURS
 from .command_book import in_words
 from .desk import Desk
@@ -102,17 +102,20 @@ class CommandLog(QTreeView):
 
 
 def _step_cells(step: CommandStep, report: CommandReport) -> tuple[str, str, str, str]:
-    off = ""
-    if step.state is CommandState.REACHED and report.deviation is not None:
-        off = f"{report.deviation:.2f} m off"
+    off = _off(report) if step.state is CommandState.REACHED else ""
     return _clock(step.at), f"by {step.by}", step.state.value, step.reason or off
 
 
 def _details(report: CommandReport) -> str:
-    if report.deviation is not None:
-        return f"{report.deviation:.2f} m off"
     reason = report.steps[-1].reason if report.steps else None
-    return reason or f"by {report.operator}"
+    return _off(report) or reason or f"by {report.operator}"
+
+
+def _off(report: CommandReport) -> str:
+    """Return how far from its target a robot stands; an abort has no target."""
+    if report.deviation is None or report.op == Abort.__name__:
+        return ""
+    return f"{report.deviation:.2f} m off"
 
 
 def _clock(at: float | None) -> str:

@@ -92,10 +92,11 @@ class LiveView(QObject):
         self._pulls += 1
         if self._pulls % (1 + len(self._desk.picture) // FEWER_FRAMES_FROM) == 0:
             self._frame.start()
-        if self._pulls % LAYER_EVERY == 0:
+        newcomers = len(self._desk.picture) != len(self.layer)
+        if self._pulls % LAYER_EVERY == 0 or newcomers:
             self._write_layer()
-            if self.following:
-                self._go_after()
+        if self._pulls % LAYER_EVERY == 0 and self.following:
+            self._go_after()
 
     def _site_changed(self) -> None:
         self.layer.clear()

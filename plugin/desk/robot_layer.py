@@ -18,7 +18,7 @@ from qgis.core import (
     QgsVectorLayer,
 )
 from qgis.PyQt import sip
-from qgis.PyQt.QtCore import QObject, pyqtSignal
+from qgis.PyQt.QtCore import QObject, QTimer, pyqtSignal
 
 from ...robot_bridge.messages import SiteReport
 from ...robot_bridge.sites.frame import SiteFrame
@@ -56,6 +56,9 @@ class RobotLayer(QObject):
         self._ids: dict[str, int] = {}
         self._marking = False
 
+    def __len__(self) -> int:
+        return len(self._ids)
+
     @property
     def layer(self) -> QgsVectorLayer | None:
         """The layer, None while there is none (or its project was closed)."""
@@ -75,7 +78,7 @@ class RobotLayer(QObject):
         self._layer.selectionChanged.connect(self._selection_changed)
         self._project.addMapLayer(self._layer, False)
         self._group().insertLayer(0, self._layer)
-        self._project.setDirty(was_dirty)
+        self._leave_clean(was_dirty)
 
     def update_robots(self, views: Sequence[RobotView]) -> None:
         """Write the robots as they are; those without a pose have no geometry."""
@@ -130,7 +133,16 @@ class RobotLayer(QObject):
         group = self._project.layerTreeRoot().findGroup(GROUP)
         if group is not None and not group.children():
             group.parent().removeChildNode(group)
-        self._project.setDirty(was_dirty)
+        self._leave_clean(was_dirty)
+
+    def _leave_clean(self, was_dirty: bool) -> None:
+        """A layer that comes anew with each link is no change that the user would want to save."""
+        if was_dirty:
+            return
+        self._project.setDirty(False)
+        # QGIS's layer panel notes a change once more when it has laid out the new group.
+        project = self._project
+        QTimer.singleShot(0, lambda: project.setDirty(False))
 
     def _group(self) -> QgsLayerTreeGroup:
         root = self._project.layerTreeRoot()

@@ -233,9 +233,19 @@ def test_the_layer_carries_the_robots_in_the_sites_crs(at_desk, wait):
     assert not layer.isEditable()
 
 
-def test_the_layer_does_not_make_the_project_ask_to_be_saved(at_desk, wait):
-    wait(lambda: at_desk.view.layer.layer.featureCount() == 2, 3)
-    assert not QgsProject.instance().isDirty()
+@pytest.mark.parametrize("unsaved", [False, True])
+def test_the_layer_neither_makes_nor_hides_unsaved_changes(plugin, gateway, make_robot, wait, unsaved):
+    project = QgsProject.instance()
+    # As QGIS's layer panel does, at once and again when it has laid out the group.
+    project.layerTreeRoot().addedChildren.connect(lambda *_: project.setDirty(True))
+    project.layerTreeRoot().addedChildren.connect(lambda *_: QTimer.singleShot(0, project.setDirty))
+    project.setDirty(unsaved)
+    gateway.show(make_robot("r1"))
+    window = plugin.window
+    window.dock.findChild(QLineEdit, "fleet_url").setText(gateway.url)
+    window.actions.connect.trigger()
+    wait(lambda: window.view.layer.layer is not None and window.view.layer.layer.featureCount() == 1, 3)
+    assert project.isDirty() is unsaved
 
 
 def test_a_new_project_gets_the_layer_anew(at_desk, wait):
