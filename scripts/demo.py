@@ -31,11 +31,14 @@ from robot_bridge.sites.site import Site
 
 FOLDER = Path(os.environ.get("FLEET_DEMO_FOLDER") or ROOT / "build" / "demo")
 SCREEN = (1440, 900)
-EXTENT = (0.0, 0.0, 130.0, 112.0)
+EXTENT = (0.0, 0.0, 130.0, 126.0)
 CONE = (46.0, 8.0)
 ROUTE = [(54.0, 84.0), (68.0, 84.0), (71.5, 82.0), (72.0, 76.0)]
 FAR = (44.0, 22.0)
 ERRANDS = (Errand("r1", CONE, "reached"), Errand("r2", ROUTE[-1], "reached"), Errand("r3", FAR, "aborted"))
+SPEED = 2.5
+"""m/s: fast enough that the demonstration is short."""
+
 DESK_TIMEOUT = 240.0
 
 
@@ -56,7 +59,7 @@ class Demonstration:
         database = FOLDER / "fleet.db"
         address = start_gateway(self._processes, database)
         self._happened(f"the gateway serves {self._site.name!r} at {address}, SQLite")
-        start_robots(self._processes, address, database)
+        start_robots(self._processes, address, database, SPEED)
         profile = Profile(FOLDER / "profile", link=False)
         self._export(profile)
         self._drive(profile, address)

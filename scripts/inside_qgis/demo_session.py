@@ -22,10 +22,8 @@ def work(session: Session) -> None:
     send_cone(session, "r1", plan["cone"])
     send_route(session, "r2", plan["route"])
     send_cone(session, "r3", plan["far"])
+    picture(session)
     abort(session, "r3")
-    operator.wait_for_map()
-    operator.take_picture(operator.canvas, Path(plan["picture"]))
-    session.happened("picture", f"the map canvas was saved as {plan['picture']}")
     for robot in ("r1", "r2"):
         seconds = operator.wait(
             f"{robot} reaching its end", lambda robot=robot: ended(session, robot), DRIVE_TIMEOUT
@@ -78,11 +76,20 @@ def send(session: Session, robot: str, what: str) -> None:
     session.happened(f"{robot} {what}", f"sent {robot} a {what}: acknowledged", acknowledged_after=seconds)
 
 
+def picture(session: Session) -> None:
+    """Save the map while every robot drives."""
+    plan, operator = session.plan, session.operator
+    operator.pause(2)
+    for robot in plan["robots"]:
+        operator.wait(f"{robot} driving", lambda robot=robot: operator.speed(robot) >= 0.5, STEP_TIMEOUT)
+    operator.wait_for_map()
+    operator.take_picture(operator.canvas, Path(plan["picture"]))
+    session.happened("picture", f"all of them drive; the map was saved as {plan['picture']}")
+
+
 def abort(session: Session, robot: str) -> None:
     """Abort a robot that drives and see it stand."""
     operator = session.operator
-    operator.wait(f"{robot} driving", lambda: operator.speed(robot) >= 0.5, STEP_TIMEOUT)
-    operator.pause(3)
     operator.select(robot)
     operator.press("fleet_abort")
     operator.wait(f"the abort of {robot}", lambda: aborted(session, robot), STEP_TIMEOUT)

@@ -42,10 +42,20 @@ def start_gateway(processes: Processes, database: Path) -> str:
     return processes.wait_for_line("gateway", r"listening on (ws://[\w.]+:\d+)", 30).group(1)
 
 
-def start_robots(processes: Processes, address: str, database: Path) -> None:
-    """Start the three robots: two over WebSocket, one over SQL."""
+def start_robots(processes: Processes, address: str, database: Path, speed: float = 1.5) -> None:
+    """Start the three robots: two over WebSocket, one over SQL; ``speed`` is their largest, m/s."""
     for seed, start in enumerate(STARTS, start=1):
         way = ["--database", f"sqlite:///{database}"] if start.over_sql else ["--url", f"{address}/robot"]
         pose = ",".join(str(number) for number in start.pose)
-        robot = ["robot", *way, "--name", start.name, f"--pose={pose}", "--seed", str(seed)]
+        robot = [
+            "robot",
+            *way,
+            "--name",
+            start.name,
+            f"--pose={pose}",
+            "--seed",
+            str(seed),
+            "--speed",
+            str(speed),
+        ]
         processes.start(start.name, [sys.executable, "-m", "robot_bridge", *robot])
