@@ -11,7 +11,9 @@ from bridge_programs import wait_until
 
 @pytest.fixture
 def bridge(start_bridge, sample_site):
-    return start_bridge(sample_site)
+    bridge = start_bridge(sample_site)
+    yield bridge
+    bridge.end()
 
 
 def steps(command):

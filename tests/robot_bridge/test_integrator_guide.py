@@ -1,0 +1,188 @@
+"""The integrator's guide says what a real gateway does: each of its examples is run."""
+
+from __future__ import annotations
+
+import json
+import re
+import sqlite3
+from pathlib import Path
+
+import pytest
+from bridge_programs import wait_until
+from bridge_wires import RefusedError
+
+from robot_bridge import jsonrpc
+from robot_bridge.messages import ANSWERS, DESK_REQUESTS, REQUESTS
+from robot_bridge.wire import decode_answer, decode_desk_request, decode_map, decode_request
+
+ROOT = Path(__file__).resolve().parents[2]
+GUIDE = (ROOT / "docs" / "integrator.md").read_text(encoding="utf-8")
+BLOCKS = re.findall(r"^```(\w+) ([\w -]+)\n(.*?)^```$", GUIDE, re.DOTALL | re.MULTILINE)
+NOT_SERVED = {"SendGPS", "SendImage", "GetPath", "GetPosIni", "GetPosEnd", "SetObject", "SetPosIni"}
+
+
+def blocks(kind):
+    """Return the blocks whose info string begins with ``kind``, as (the rest of it, JSON value)."""
+    found = [(info.split()[1:], text) for _, info, text in BLOCKS if info.split()[0] == kind]
+    return [(rest[0] if rest else "", json.loads(text)) for rest, text in found]
+
+
+def shape(value):
+    """Return a JSON value with its names and types and without what it says."""
+    if isinstance(value, dict):
+        return {name: shape(inner) for name, inner in value.items()}
+    if isinstance(value, list):
+        return [shape(inner) for inner in value[:1]]
+    return (
+        "number" if isinstance(value, (int, float)) and not isinstance(value, bool) else type(value).__name__
+    )
+
+
+@pytest.fixture
+def bridge(start_bridge, sample_site):
+    bridge = start_bridge(sample_site)
+    yield bridge
+    bridge.end()
+
+
+# --- the examples are messages ----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("op", "params"), blocks("robot-params"))
+def test_what_a_robot_says_is_understood(op, params):
+    decode_request(op, params)
+
+
+@pytest.mark.parametrize(("op", "params"), blocks("gateway-params"))
+def test_what_the_gateway_says_is_what_it_can_say(op, params):
+    decode_answer(op, params)
+
+
+@pytest.mark.parametrize("frame", [frame for _, frame in blocks("robot-hears")])
+def test_what_a_robot_hears_is_a_frame_that_the_reference_robot_understands(frame):
+    message = jsonrpc.decode(json.dumps(frame))
+    if isinstance(message, jsonrpc.Call):
+        params = dict(message.params or {})
+        content = decode_map(params.pop("map")) if message.method == "SetMap" else None
+        decode_answer(message.method, params, content)
+
+
+@pytest.mark.parametrize("frame", [frame for _, frame in blocks("desk-sends")])
+def test_what_a_desk_sends_is_understood(frame):
+    message = jsonrpc.decode(json.dumps(frame))
+    decode_desk_request(message.method, message.params)
+
+
+def test_every_operation_and_method_has_an_example_on_each_wire():
+    assert {op for op, _ in blocks("robot-params")} == set(REQUESTS)
+    assert {op for op, _ in blocks("gateway-params")} == set(ANSWERS) - {"SetMap"}
+    said = {frame.get("method") for _, frame in blocks("robot-sends")} - {None}
+    assert said == set(REQUESTS) - {"OpAck"}
+    heard = {frame.get("method") for _, frame in blocks("robot-hears")} - {None}
+    assert heard == set(ANSWERS) - {"OpAck"}
+    assert {frame["method"] for _, frame in blocks("desk-sends")} == set(DESK_REQUESTS)
+    told = {frame.get("method") for _, frame in blocks("desk-hears")} - {None}
+    assert told == {"positions", "command"}
+
+
+def test_what_is_not_served_yet_is_named_and_nothing_else():
+    named = re.findall(r"^Not (?:served|sent) yet.*: ([\w, ]+)\.$", GUIDE, re.MULTILINE)
+    assert set(", ".join(named).split(", ")) == NOT_SERVED
+    assert not NOT_SERVED & (set(REQUESTS) | set(ANSWERS))
+
+
+def test_every_error_code_is_explained():
+    codes = {value for name, value in vars(jsonrpc).items() if name.isupper() and isinstance(value, int)}
+    assert codes == {int(code) for code in re.findall(r"^\| (-32\d{3}) \|", GUIDE, re.MULTILINE)}
+
+
+def test_the_columns_are_those_of_the_tables(bridge):
+    named = re.findall(
+        r"^\| (\w+) \| ", GUIDE.split("## Over SQL")[1].split("Robots insert")[0], re.MULTILINE
+    )
+    for table in ("rr", "sa"):
+        columns = [name for _, name, *_ in bridge.sql(f"pragma table_info({table})")]
+        assert named[1:] == columns
+
+
+# --- the examples are what happens ------------------------------------------------------------------------
+
+
+def test_the_sql_story_goes_as_it_is_told(bridge):
+    desk, rows = bridge.desk(), []
+    story = sqlite3.connect(bridge.file, timeout=5, isolation_level=None)
+    for language, info, text in BLOCKS:
+        if info == "result":
+            told = text.strip().splitlines()
+            assert ["|".join(map(str, row)) for row in rows] == told
+        if language != "sql":
+            continue
+        if info.endswith("after-send"):
+            desk.send("target-r1", "r1", "SetPosEnd", x=20.1, y=8.0, cone=False)
+        for statement in filter(None, map(str.strip, text.split(";"))):
+            rows = story.execute(statement).fetchall()
+            if not story.in_transaction:
+                wait_until(lambda: bridge.sql("select count(*) from rr") == [(0,)], what=statement)
+    story.close()
+    command = desk.wait_for_step("target-r1", "reached")
+    assert [s["state"] for s in command["steps"]] == ["queued", "delivered", "acknowledged", "reached"]
+
+
+def test_the_websocket_story_goes_as_it_is_told(bridge):
+    told = [frame for _, frame in blocks("robot-hears")]
+    robot, desk = bridge.robot("r1"), bridge.desk()
+    for _, frame in blocks("robot-sends"):
+        if "method" in frame:
+            robot.connection.send(json.dumps(frame))
+        if "method" in frame and "id" in frame:
+            (wanted,) = [t for t in told if t.get("id") == frame["id"] and "method" not in t]
+            assert answer_frame(robot, frame["id"]) == {
+                k: wanted[k] for k in ("result", "error") if k in wanted
+            }
+    commands = {frame["method"]: frame.get("params", {}) for frame in told if "method" in frame}
+    for op in ("SetPosEnd", "SetPath", "Abort"):
+        desk.send(f"command-{op}", "r1", op, **commands[op])
+        heard = robot.wait_for(op)
+        assert heard.get("params", {}) == commands[op]
+        robot.say(heard["id"], error="battery empty")
+        assert desk.wait_for_step(f"command-{op}", "failed")["steps"][-1]["reason"] == "battery empty"
+    for op in ("Start", "SetMap"):
+        assert shape(robot.wait_for(op).get("params", {})) == shape(commands[op])
+
+
+def answer_frame(wire, id):
+    """Return how call ``id`` was answered, as it stands in the frame."""
+    try:
+        return {"result": wire.answer(id)}
+    except RefusedError as error:
+        return {"error": {"code": error.code, "message": str(error)}}
+
+
+def test_the_desks_story_goes_as_it_is_told(bridge):
+    robot = bridge.robot("r1")
+    robot.plug_in(1)
+    robot.ask("SendPos", {"x": 20.0, "y": 8.0, "theta": 0.0, "v": 0.0})
+    desk = bridge.desk()
+    heard = []
+    desk._hear = heard.append
+    told = [frame for _, frame in blocks("desk-hears")]
+    for _, frame in blocks("desk-sends"):
+        desk.connection.send(json.dumps(frame))
+        (wanted,) = [t for t in told if t.get("id") == frame["id"]]
+        answered = answer_frame(desk, frame["id"])
+        if frame["method"] == "subscribe":
+            desk.until(lambda: heard)
+        if "error" in wanted or frame["method"] == "hello":
+            assert answered == {k: wanted[k] for k in answered}
+        assert shape(answered) == shape({k: wanted[k] for k in answered})
+    for method in ("positions", "command"):
+        (wanted,) = [t for t in told if t.get("method") == method]
+        assert shape(next(h for h in heard if h["method"] == method)) == shape(wanted)
+
+
+def test_the_reference_robots_command_lines_have_options_that_exist():
+    from robot_bridge.__main__ import robot
+
+    for line in re.findall(r"^    robot-bridge robot (.*)$", GUIDE, re.MULTILINE):
+        for option in re.findall(r"--([\w-]+)", line):
+            assert option.replace("-", "_") in robot.__annotations__
