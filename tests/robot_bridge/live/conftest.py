@@ -1,1 +1,0 @@
-"""The tests in this folder run the real programs as processes."""
