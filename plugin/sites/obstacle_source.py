@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -19,7 +19,7 @@ from qgis.core import (
 )
 
 from .errors import LayerTypeError
-from .roles import LayerExpressions, expressions_of, role_of
+from .roles import LayerExpressions, LayerSetup, setup_of
 from .site_crs import stated_crs
 
 
@@ -40,24 +40,34 @@ class ObstacleSource:
     context: QgsExpressionContext
 
 
+Setups = Callable[[QgsVectorLayer], LayerSetup]
+"""Tells what a layer is: by what it keeps itself, by a profile, by a dialog."""
+
+
 def obstacle_sources(
-    layers: Sequence[QgsVectorLayer], general: LayerExpressions, context: QgsExpressionContext
+    layers: Sequence[QgsVectorLayer],
+    general: LayerExpressions,
+    context: QgsExpressionContext,
+    setups: Setups = setup_of,
 ) -> list[ObstacleSource]:
     """Return what is read of ``layers``; to be called in the thread that they belong to.
 
-    An expression kept in a layer wins over the one in ``general``. ``context`` is what expressions see
-    besides the layer.
+    An expression that ``setups`` has for a layer wins over the one in ``general``. ``context`` is what
+    expressions see besides the layer.
 
     :raises LayerTypeError: naming the layer that holds neither lines nor polygons.
     """
     for layer in layers:
         _check(layer)
-    names = _unique([_plain_name(layer) for layer in layers])
-    return [_source(layer, name, general, context) for layer, name in zip(layers, names, strict=True)]
+    names = _unique([plain_name(layer) for layer in layers])
+    return [
+        _source(layer, name, setups(layer), general, context)
+        for layer, name in zip(layers, names, strict=True)
+    ]
 
 
 def _check(layer: QgsVectorLayer) -> None:
-    name = _plain_name(layer)
+    name = plain_name(layer)
     if not layer.isValid():
         raise LayerTypeError(
             f"The layer {name} cannot be opened ({layer.source()}): repair its data source or leave it out."
@@ -72,14 +82,18 @@ def _check(layer: QgsVectorLayer) -> None:
 
 
 def _source(
-    layer: QgsVectorLayer, name: str, general: LayerExpressions, context: QgsExpressionContext
+    layer: QgsVectorLayer,
+    name: str,
+    setup: LayerSetup,
+    general: LayerExpressions,
+    context: QgsExpressionContext,
 ) -> ObstacleSource:
-    own = expressions_of(layer)
+    own = setup.expressions
     scoped = QgsExpressionContext(context)
     scoped.appendScope(QgsExpressionContextUtils.layerScope(layer))
     return ObstacleSource(
         name=name,
-        role=role_of(layer),
+        role=setup.role,
         crs=stated_crs(layer.crs()),
         fields=layer.fields(),
         count=layer.featureCount(),
@@ -88,12 +102,13 @@ def _source(
             height=own.height or general.height,
             semantics=own.semantics or general.semantics,
             outdoor=own.outdoor or general.outdoor,
+            width=own.width or general.width,
         ),
         context=scoped,
     )
 
 
-def _plain_name(layer: QgsVectorLayer) -> str:
+def plain_name(layer: QgsVectorLayer) -> str:
     """Return the layer's name; the one inside its file where it is only called as the file is.
 
     That is what qgis_process calls ``campus.gpkg|layername=walls``: all layers of a file alike.

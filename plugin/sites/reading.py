@@ -38,11 +38,13 @@ class Reading:
 def read_outlines(
     sources: Sequence[ObstacleSource],
     site: SitePlacing,
-    window: Bounds,
+    window: Bounds | None,
     default_height: float,
     feedback: QgsFeedback,
 ) -> Reading:
     """Return the outlines of all features whose bounding box touches ``window``, metres in the site frame.
+
+    All features where there is no window.
 
     Expressions and CRSs of every layer are checked before the first feature is read.
 
@@ -72,14 +74,16 @@ def check_sources(sources: Sequence[ObstacleSource], site: SitePlacing) -> None:
 class _LayerReader:
     """Reads the features of one layer into a :class:`Reading`."""
 
-    def __init__(self, source: ObstacleSource, site: SitePlacing, window: Bounds, default_height: float):
+    def __init__(
+        self, source: ObstacleSource, site: SitePlacing, window: Bounds | None, default_height: float
+    ):
         self.source = source
         self._default_height = default_height
         self._values = FeatureValues(
             source.name, source.fields, source.role, source.expressions, default_height, source.context
         )
         self._placing: LayerPlacing = site.of_layer(source.name, source.crs)
-        self._area: QgsRectangle | None = self._placing.area_of(window)
+        self._area: QgsRectangle | None = self._placing.area_of(window) if window else None
         self._estimated: list[int] = []
         self._odd_for_role: list[int] = []
 

@@ -14,7 +14,9 @@ from .layers import LayerSpec
 from .projections import crs_of, projections
 
 GEOPACKAGE_FILE = "site.gpkg"
-_STAMP = "FLEET_SITE"
+STAMP_KEY = "FLEET_SITE"
+"""The metadata item of every layer that names its publication."""
+
 _REPAIR = "Publish the site again."
 
 
@@ -65,7 +67,7 @@ def write_layers(file: Path, layers: Sequence[Layer], crs: str, stamp: str) -> N
                 append=file.exists(),
                 dataset_options={"VERSION": "1.3"},
                 # Not on the dataset: GDAL writes that into an .aux.xml file beside the site on every reading.
-                layer_metadata={_STAMP: stamp},
+                layer_metadata={STAMP_KEY: stamp},
             )
     except (pyogrio.errors.DataSourceError, pyogrio.errors.DataLayerError, OSError) as error:
         raise LayerError(
@@ -96,7 +98,7 @@ def _check_stamp(file: Path, specs: Sequence[LayerSpec], present: set[str], stam
             raise LayerError(
                 f"{file} has no layer {spec.name!r}; it has {', '.join(sorted(present)) or 'none'}. {_REPAIR}"
             )
-    found = (_pyogrio().read_info(str(file), layer=specs[0].name)["layer_metadata"] or {}).get(_STAMP)
+    found = (_pyogrio().read_info(str(file), layer=specs[0].name)["layer_metadata"] or {}).get(STAMP_KEY)
     if found != stamp:
         raise LayerError(
             f"{file} belongs to {found or 'no publication'} and the settings beside it to {stamp}: "

@@ -31,7 +31,7 @@ def read_site(folder: Path | str) -> Site:
     settings = read_settings(folder / SETTINGS_FILE)
     file = folder / GEOPACKAGE_FILE
     specs = (OBSTACLES, CENTRELINES, SURFACES, KEEPOUTS)
-    obstacles, centrelines, surfaces, keepouts = read_layers(file, specs, settings.crs, _stamp(settings))
+    obstacles, centrelines, surfaces, keepouts = read_layers(file, specs, settings.crs, settings.stamp)
     return Site(
         settings=settings,
         outlines=outlines_of(obstacles, settings.frame, str(file)),
@@ -80,14 +80,9 @@ def _write(folder: Path, settings: SiteSettings, layers: Sequence[Layer]) -> Non
     # A folder inside the target, so that both renames stay on one file system.
     partial = Path(tempfile.mkdtemp(prefix=".publishing-", dir=folder))
     try:
-        write_layers(partial / GEOPACKAGE_FILE, layers, settings.crs, _stamp(settings))
+        write_layers(partial / GEOPACKAGE_FILE, layers, settings.crs, settings.stamp)
         (partial / SETTINGS_FILE).write_text(settings_text(settings), encoding="utf-8")
         (partial / GEOPACKAGE_FILE).replace(folder / GEOPACKAGE_FILE)
         (partial / SETTINGS_FILE).replace(folder / SETTINGS_FILE)
     finally:
         shutil.rmtree(partial, ignore_errors=True)
-
-
-def _stamp(settings: SiteSettings) -> str:
-    """Return what both files of one publication carry."""
-    return f"{settings.id} version {settings.version}"

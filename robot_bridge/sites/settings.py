@@ -55,6 +55,11 @@ class SiteSettings:
     liveness: LivenessLimits = field(default_factory=LivenessLimits)
 
     @property
+    def stamp(self) -> str:
+        """What both files of one publication carry."""
+        return f"{self.id} version {self.version}"
+
+    @property
     def frame(self) -> SiteFrame:
         """The site frame these settings describe."""
         return SiteFrame(self.crs, self.origin, math.radians(self.rotation_deg))
@@ -84,13 +89,18 @@ def settings_of(tables: Mapping[str, Any], file: Path) -> SiteSettings:
 
 def check_settings(settings: SiteSettings, file: Path) -> None:
     """Raise :class:`SettingsError` for the first value that has the right type and is still wrong."""
-    wrong = _first_wrong(settings)
-    if wrong is not None:
-        raise SettingsError(f"{file}: {wrong}")
+    check_values(settings, file)
     try:
         check_site_crs(settings.crs)
     except CrsError as error:
         raise SettingsError(f"{file}: site.crs: {error}") from error
+
+
+def check_values(settings: SiteSettings, file: Path) -> None:
+    """As :func:`check_settings`, but for the CRS, which needs pyproj to be understood."""
+    wrong = _first_wrong(settings)
+    if wrong is not None:
+        raise SettingsError(f"{file}: {wrong}")
 
 
 def settings_text(settings: SiteSettings) -> str:

@@ -1,0 +1,83 @@
+"""The expressions of one layer, checked once and evaluated for each feature."""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import Any
+
+from qgis.core import NULL, QgsExpression, QgsExpressionContext, QgsFeature, QgsFields
+
+from .errors import ExpressionError
+
+_METRES = re.compile(r"\s*([+-]?\d+(?:[.,]\d+)?)\s*m?\s*", re.ASCII)
+
+
+class LayerRules:
+    """Prepares and evaluates the expressions of ``layer``; ``warnings`` are about the layer as a whole."""
+
+    def __init__(self, layer: str, fields: QgsFields, context: QgsExpressionContext):
+        self._layer = layer
+        self._fields = fields
+        self._context = QgsExpressionContext(context)
+        self._context.setFields(fields)
+        self.warnings: list[str] = []
+
+    def rule(self, what: str, text: str) -> QgsExpression | None:
+        """Return the prepared expression, None for an empty one or one about fields the layer lacks.
+
+        :raises ExpressionError: when ``text`` is no expression.
+        """
+        if not text.strip():
+            return None
+        expression = QgsExpression(text)
+        if expression.hasParserError():
+            raise ExpressionError(
+                f"The {what} expression {text!r} for the layer {self._layer} is not one: "
+                f"{expression.parserErrorString().strip()}. Correct it."
+            )
+        names = {name.lower() for name in self._fields.names()}
+        columns = expression.referencedColumns() - {"#!allattributes!#"}
+        missing = sorted(name for name in columns if name.lower() not in names)
+        if missing:
+            self.warnings.append(
+                f"Layer {self._layer}: it has no field {', '.join(missing)}, which the {what} expression "
+                f"{text!r} reads; the default is used for all its features"
+            )
+            return None
+        expression.prepare(self._context)
+        return expression
+
+    def at(self, feature: QgsFeature) -> None:
+        """Let :meth:`value` speak of ``feature`` from now on."""
+        self._context.setFeature(feature)
+
+    def value(self, what: str, expression: QgsExpression | None, notes: list[str]) -> Any:
+        """Return what ``expression`` says of the feature, None for nothing; a failure becomes a note."""
+        if expression is None:
+            return None
+        value = expression.evaluate(self._context)
+        if expression.hasEvalError():
+            notes.append(f"the {what} expression fails: {expression.evalErrorString()}; the default is used")
+            return None
+        return None if value is None or value == NULL else value
+
+    def column(self, *names: str) -> str:
+        """Return the expression that reads the first of the fields ``names`` that is there, else nothing."""
+        for name in names:
+            index = self._fields.lookupField(name)
+            if index >= 0:
+                return QgsExpression.quotedColumnRef(self._fields.at(index).name())
+        return ""
+
+
+def as_metres(value: Any) -> float | None:
+    """Return a number of metres, also from text such as ``12,5 m``."""
+    if isinstance(value, str):
+        match = _METRES.fullmatch(value)
+        return float(match[1].replace(",", ".")) if match else None
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        return None
+    return number if math.isfinite(number) else None
