@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 
 # The C1 controls and the line and paragraph separators end a line for some readers; lone surrogates are no
 # UTF-8; blanks at either end are taken for indentation.
@@ -31,6 +32,28 @@ def escape_value(text: str) -> str:
 def unescape(text: str) -> str:
     """Return what a written label says."""
     return _ESCAPED.sub(lambda match: chr(int(match[1] or match[2], 16)), text)
+
+
+def write_ext(ext: Mapping[str, str]) -> str:
+    """Return extras as they are written after the semantics, ``key=value,...;``, or nothing."""
+    if not ext:
+        return ""
+    return ",".join(f"{escape_key(key)}={escape_value(value)}" for key, value in ext.items()) + ";"
+
+
+def read_ext(text: str) -> dict[str, str]:
+    """Return the extras in ``text``, which is without its semicolon; raises ValueError if it has no key."""
+    pairs: list[tuple[str, str]] = []
+    for piece in text.split(","):
+        key, equals, value = piece.partition("=")
+        if equals:
+            pairs.append((key, value))
+        elif pairs:
+            # A value may hold commas, as the normal n=nx,ny,nz does.
+            pairs[-1] = (pairs[-1][0], f"{pairs[-1][1]},{piece}")
+        elif text:
+            raise ValueError(text)
+    return {unescape(key): unescape(value) for key, value in pairs}
 
 
 def _code(match: re.Match[str]) -> str:

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from .errors import RobotMapError
-from .labels import escape, escape_key, escape_value
+from .labels import escape, write_ext
 from .model import Obstacle, RobotMap
 from .text_reader import read_text
 
@@ -60,7 +60,7 @@ def _head(robot_map: RobotMap, strict: bool) -> Iterator[str]:
 
 
 def _obstacle(obstacle: Obstacle, strict: bool) -> Iterator[str]:
-    ext = _ext({} if strict else obstacle.ext)
+    ext = write_ext({} if strict else obstacle.ext)
     count = len(obstacle.a)
     yield "obstacle;\n"
     yield f"{obstacle.id};{int(obstacle.shape_type)};{count};{escape(obstacle.semantics)};{ext}\n#\n"
@@ -70,14 +70,8 @@ def _obstacle(obstacle: Obstacle, strict: bool) -> Iterator[str]:
         flag = "1" if obstacle.outdoor[row] else "0"
         label = escape(obstacle.segment_semantics[row])
         extras = {} if strict or not obstacle.segment_ext else obstacle.segment_ext[row]
-        yield f"{format_number(obstacle.height[row])};{flag};{label};{_ext(extras)}\n#\n"
+        yield f"{format_number(obstacle.height[row])};{flag};{label};{write_ext(extras)}\n#\n"
 
 
 def _point(x: float, y: float) -> str:
     return f"{format_number(x)};{format_number(y)};\n"
-
-
-def _ext(ext: dict[str, str]) -> str:
-    if not ext:
-        return ""
-    return ",".join(f"{escape_key(key)}={escape_value(value)}" for key, value in ext.items()) + ";"

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .errors import TextError
-from .labels import unescape
+from .labels import read_ext, unescape
 from .model import Border, Obstacle, RobotMap, ShapeType
 
 _NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
@@ -104,17 +104,10 @@ class _Reader:
         return int(fields[0]), ShapeType(int(fields[1])), int(fields[2]), unescape(fields[3]), ext
 
     def _ext(self, number: int, text: str) -> dict[str, str]:
-        pairs: list[tuple[str, str]] = []
-        for piece in text.split(","):
-            key, equals, value = piece.partition("=")
-            if equals:
-                pairs.append((key, value))
-            elif pairs:
-                # A value may hold commas, as the normal n=nx,ny,nz does.
-                pairs[-1] = (pairs[-1][0], f"{pairs[-1][1]},{piece}")
-            elif text:
-                self._fail_at(number, "'key=value,...;' after the semantics", text)
-        return {unescape(key): unescape(value) for key, value in pairs}
+        try:
+            return read_ext(text)
+        except ValueError:
+            self._fail_at(number, "'key=value,...;' after the semantics", text)
 
     def _segment(self) -> Segment:
         a, b = self._point(), self._point()

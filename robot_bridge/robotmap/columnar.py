@@ -1,0 +1,276 @@
+"""Codec 2: a map in columns of centimetre differences; ``docs/robot-map.md`` says what each item is.
+
+It keeps what a map in centimetres says. How a number was spelled, comments and blanks are not kept.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .columns import differences, pack, unpack
+from .errors import BinaryError
+from .head_table import table_of, with_numbers, without_numbers
+from .labels import escape, read_ext, unescape, write_ext
+from .model import Border, Obstacle, RobotMap, ShapeType
+from .plain_cbor import dumps, loads
+from .runs import LOOSE, Runs, run_lengths, runs_of, segments_of
+
+_SHORTEST_OBSTACLE = len("obstacle;\n0;1;0;;\n#\n")
+_SHORTEST_SEGMENT = len("0;0;\n0;0;\n0;0;;\n#\n")
+_FARTHEST = 1 << 52
+"""centimetres; a float64 holds every whole number of them up to here."""
+_LARGEST_ID = 10**18
+
+
+class _Columns(NamedTuple):
+    """The items of the array."""
+
+    meta: str
+    x_min: int
+    y_min: int
+    x_max: int
+    y_max: int
+    heads: str
+    tails: str
+    obstacles: int
+    segments: int
+    forms: bytes
+    counts: bytes
+    ids: bytes
+    head: bytes
+    numbers: bytes
+    varies: bytes
+    tail: bytes
+    heights: bytes
+    starts: bytes
+    steps: bytes
+
+
+_KINDS = (str, *[int] * 4, *[str] * 2, *[int] * 2, *[bytes] * 10)
+
+
+def pack_map(robot_map: RobotMap) -> bytes:
+    """Return ``robot_map`` in CBOR, not compressed.
+
+    Raises BinaryError for numbers that are too large, and MissingCodecError without cbor2.
+    """
+    obstacles = robot_map.obstacles
+    counts = np.array([len(o.a) for o in obstacles], dtype=np.int64)
+    if any(abs(o.id) > _LARGEST_ID for o in obstacles):
+        raise BinaryError("codec check: codec 2 has no room for an id as large as one here; use codec 1")
+    ids = np.array([o.id for o in obstacles], dtype=np.int64)
+    runs = runs_of(
+        _centimetres([o.a for o in obstacles], 2), _centimetres([o.b for o in obstacles], 2), counts
+    )
+    shape_types = np.array([int(o.shape_type) for o in obstacles], dtype=np.int64)
+    lines, numbers = without_numbers([_head(o) for o in obstacles], ids)
+    heads, head = table_of(lines)
+    tails, tail = table_of([line for o in obstacles for line in _tails(o)])
+    height = _centimetres([o.height for o in obstacles], 1)[:, 0]
+    tail, tail_varies = _once_where_equal(tail, counts)
+    height, height_varies = _once_where_equal(height, counts)
+    x_min, y_min, x_max, y_max = _centimetres([np.array(robot_map.border)], 1)[:, 0].tolist()
+    columns = _Columns(
+        meta="\n".join(f"{key} {' '.join(value.split())}" for key, value in robot_map.meta.items()),
+        x_min=x_min,
+        y_min=y_min,
+        x_max=x_max,
+        y_max=y_max,
+        heads="\n".join(heads),
+        tails="\n".join(tails),
+        obstacles=len(obstacles),
+        segments=int(counts.sum()),
+        forms=pack(runs.forms * 8 + shape_types),
+        counts=pack(counts),
+        ids=pack(differences(ids) - 1),
+        head=pack(head),
+        numbers=pack(differences(numbers - ids)),
+        varies=pack(tail_varies + 2 * height_varies),
+        tail=pack(tail),
+        heights=pack(differences(height)),
+        starts=pack(np.diff(runs.starts, axis=0, prepend=0).T.ravel()),
+        steps=pack(runs.steps.T.ravel()),
+    )
+    return dumps(columns)
+
+
+def unpack_map(content: bytes, text_length: int) -> RobotMap:
+    """Return the map in ``content``, whose text has ``text_length`` bytes.
+
+    Raises BinaryError naming the check that failed, before anything larger than that text is made, and
+    MissingCodecError without cbor2.
+    """
+    columns = _checked(loads(content, len(_Columns._fields)), text_length)
+    k, n = columns.obstacles, columns.segments
+    kinds, counts = unpack(columns.forms, k, "forms"), unpack(columns.counts, k, "counts")
+    forms, shape_types = kinds >> 3, kinds & 7
+    _require(((counts >= 0) & (counts <= n)).all() and counts.sum() == n, "counts do not add up")
+    _require(((forms >= 0) & (forms <= LOOSE)).all(), "a form is unknown")
+    _require(((forms == LOOSE) | (counts > 0)).all(), "a run has no points")
+    _require(((shape_types >= 1) & (shape_types <= 6)).all(), "a shape type is unknown")
+    varies = unpack(columns.varies, k, "varies")
+    tail = _for_each(columns.tail, counts, (varies & 1) > 0, "tail", plain=True)
+    height = _for_each(columns.heights, counts, (varies & 2) > 0, "heights", plain=False)
+    a, b = segments_of(_runs(columns, forms, counts), counts)
+    _require(max(_largest(a), _largest(height)) <= _FARTHEST, "a number is too large")
+    heads, tails = columns.heads.split("\n"), columns.tails.split("\n")
+    head = unpack(columns.head, k, "head")
+    _check_text_size(((heads, head), (tails, tail)), text_length)
+    ids = np.cumsum(unpack(columns.ids, k, "ids") + 1)
+    numbers = np.cumsum(unpack(columns.numbers, k, "numbers")) + ids
+    lines = with_numbers([heads[place] for place in head.tolist()], numbers)
+    parts = _Parts(a / 100, b / 100, height / 100, tail, [_tail_read(line) for line in tails])
+    border = Border(*(value / 100 for value in columns[1:5]))
+    obstacles = _obstacles(ids.tolist(), shape_types.tolist(), counts, lines, parts)
+    return RobotMap(border, tuple(obstacles), _meta(columns.meta))
+
+
+def _centimetres(values: Sequence[NDArray[Any]], axes: int) -> NDArray[Any]:
+    """Return all of ``values`` one after the other, (n, axes) int64."""
+    scaled = np.concatenate([np.empty((0, axes)), *(v.reshape(-1, axes) for v in values)]) * 100
+    if not (np.abs(scaled) < _FARTHEST).all():
+        raise BinaryError("codec check: codec 2 has no room for a number as large as one here; use codec 1")
+    rounded: NDArray[Any] = np.round(scaled).astype(np.int64)
+    return rounded
+
+
+def _head(obstacle: Obstacle) -> str:
+    return f"{escape(obstacle.semantics)};{write_ext(obstacle.ext)}"
+
+
+def _tails(obstacle: Obstacle) -> Iterator[str]:
+    extras = obstacle.segment_ext or ({},) * len(obstacle.a)
+    for row, outdoor in enumerate(obstacle.outdoor.tolist()):
+        yield f"{'01'[outdoor]};{escape(obstacle.segment_semantics[row])};{write_ext(extras[row])}"
+
+
+def _once_where_equal(values: NDArray[Any], counts: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
+    """Return the values of obstacles with one value for all segments once, and which have several, (K,).
+
+    Obstacles without segments have no value.
+    """
+    filled = counts > 0
+    firsts = np.zeros(len(counts), dtype=np.int64)
+    firsts[filled] = values[(np.cumsum(counts) - counts)[filled]]
+    obstacle = np.repeat(np.arange(len(counts)), counts)
+    differs = values != firsts[obstacle]
+    varies = np.bincount(obstacle, differs, len(counts)) > 0
+    kept = varies[obstacle]
+    kept[(np.cumsum(counts) - counts)[filled]] = True
+    return values[kept], varies.astype(np.int64)
+
+
+def _for_each(
+    column: bytes, counts: NDArray[Any], varies: NDArray[Any], name: str, plain: bool
+) -> NDArray[Any]:
+    """Return a value for each segment, (n,) int64: what :func:`_once_where_equal` was given."""
+    repeats = np.where(varies, 1, counts)
+    repeats = np.repeat(repeats, np.where(varies, counts, counts > 0))
+    values = unpack(column, len(repeats), name)
+    return np.repeat(values if plain else np.cumsum(values), repeats)
+
+
+def _runs(columns: _Columns, forms: NDArray[Any], counts: NDArray[Any]) -> Runs:
+    lengths = run_lengths(forms, counts)
+    steps = int(lengths.sum()) - len(lengths)
+    starts = unpack(columns.starts, 2 * len(lengths), "starts").reshape(2, -1).T
+    return Runs(forms, np.cumsum(starts, axis=0), unpack(columns.steps, 2 * steps, "steps").reshape(2, -1).T)
+
+
+def _largest(values: NDArray[Any]) -> int:
+    """Return the largest absolute value; that of the least int64 is its own."""
+    return max(int(values.max()), -int(values.min())) if values.size else 0
+
+
+def _checked(items: list[int | str | bytes], text_length: int) -> _Columns:
+    columns = _Columns(*items)  # type: ignore[arg-type]
+    for name, value, kind in zip(_Columns._fields, items, _KINDS, strict=True):
+        _require(type(value) is kind, f"{name} is not of type {kind.__name__}")
+    _require(min(columns.obstacles, columns.segments) >= 0, "a count is negative")
+    _require(max(abs(value) for value in columns[1:5]) <= _FARTHEST, "the border is too large")
+    _require(columns.x_min < columns.x_max and columns.y_min < columns.y_max, "the border has no inside")
+    if columns.obstacles * _SHORTEST_OBSTACLE + columns.segments * _SHORTEST_SEGMENT > text_length:
+        raise BinaryError(
+            f"size check: {columns.obstacles} obstacles and {columns.segments} segments are declared, more "
+            f"than a text of {text_length} bytes holds; get the map once more"
+        )
+    return columns
+
+
+def _check_text_size(tables: Sequence[tuple[list[str], NDArray[Any]]], text_length: int) -> None:
+    """Tell by the tables that the text would be too long, before a label is repeated a million times."""
+    size = 0
+    for lines, places in tables:
+        _require(((places >= 0) & (places < len(lines))).all(), "a place is in no table")
+        lengths = np.array([len(line) for line in lines], dtype=np.int64)
+        size += int(lengths[places].sum())
+    if size > text_length:
+        raise BinaryError(f"size check: the labels alone have more than {text_length} bytes")
+
+
+def _require(fine: bool | np.bool_, problem: str) -> None:
+    if not fine:
+        raise BinaryError(f"columns check: {problem}; the file is altered, get it once more")
+
+
+class _Parts(NamedTuple):
+    """The columns of all segments, and what each place in the table of tails says."""
+
+    a: NDArray[Any]
+    b: NDArray[Any]
+    height: NDArray[Any]
+    tail: NDArray[Any]
+    tails: list[tuple[bool, str, dict[str, str]]]
+
+
+def _obstacles(
+    ids: list[int], shape_types: list[int], counts: NDArray[Any], lines: list[str], parts: _Parts
+) -> Iterator[Obstacle]:
+    ends = np.cumsum(counts).tolist()
+    for k, end in enumerate(ends):
+        own = slice(ends[k - 1] if k else 0, end)
+        semantics, ext = _fields(lines[k], 2)
+        tails = [parts.tails[place] for place in parts.tail[own].tolist()]
+        yield Obstacle(
+            id=ids[k],
+            shape_type=ShapeType(shape_types[k]),
+            semantics=unescape(semantics),
+            a=parts.a[own],
+            b=parts.b[own],
+            height=parts.height[own],
+            outdoor=np.array([tail[0] for tail in tails], dtype=bool),
+            segment_semantics=tuple(tail[1] for tail in tails),
+            ext=_ext(ext),
+            segment_ext=tuple(dict(tail[2]) for tail in tails) if any(tail[2] for tail in tails) else (),
+        )
+
+
+def _tail_read(line: str) -> tuple[bool, str, dict[str, str]]:
+    if not line:
+        # The table of a map without segments.
+        return False, "", {}
+    outdoor, semantics, ext = _fields(line, 3)
+    return outdoor == "1", unescape(semantics), _ext(ext)
+
+
+def _fields(line: str, count: int) -> list[str]:
+    """Return what stands before the semicolons of ``line``, the last one, the extras, possibly nothing."""
+    fields = line.split(";")
+    _require(len(fields) in (count, count + 1) and not fields[-1], f"{line[:40]!r} has other fields")
+    return fields[:count]
+
+
+def _ext(text: str) -> dict[str, str]:
+    try:
+        return read_ext(text)
+    except ValueError:
+        raise BinaryError(f"columns check: {text[:40]!r} has no 'key=value'; get the map once more") from None
+
+
+def _meta(text: str) -> dict[str, str]:
+    pairs = (line.partition(" ") for line in text.split("\n") if line)
+    return {key: value for key, _, value in pairs}
