@@ -18,7 +18,6 @@ from robot_bridge.robotmap.text import read_text
 
 ROOT = Path(__file__).resolve().parents[2]
 DOCUMENTS = [ROOT / "README.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").glob("*.md"))]
-GUIDES = {"architecture.md", "install.md", "integrator.md", "operator.md", "robot-map.md"}
 LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
 
 
@@ -45,9 +44,10 @@ def test_every_link_resolves(document):
 
 
 def test_the_readme_leads_to_every_guide():
-    assert {path.name for path in (ROOT / "docs").glob("*.md")} == GUIDES
+    guides = {path.name for path in (ROOT / "docs").glob("*.md")}
+    assert {"install.md", "operator.md", "integrator.md", "robot-map.md"} <= guides
     linked = {Path(target).name for target in LINK.findall((ROOT / "README.md").read_text(encoding="utf-8"))}
-    assert linked >= GUIDES
+    assert linked >= guides
 
 
 def test_the_two_commands_come_first():
