@@ -126,9 +126,13 @@ def test_a_gateway_gone_in_mid_session_lets_robots_turn_stale_then_lost_and_come
     wait(lambda: states() == ["lost", "offline"], 3, "lost")
     layer = window.view.layer.layer
     wait(lambda: [f["state"] for f in layer.getFeatures()] == ["lost", "offline"], 3, "the layer")
-    gateway.show(make_robot("r1"))
     gateway.start()
-    wait(lambda: states()[0] == "fresh", 8, "the new link")
+
+    def fresh_again():
+        gateway.show(make_robot("r1"))
+        return states()[0] == "fresh"
+
+    wait(fresh_again, 15, "the new link")
     assert "Connected" in state_line(window)
 
 
