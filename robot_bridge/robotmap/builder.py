@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -12,10 +12,13 @@ from .errors import WindowError
 from .model import Border, Obstacle, RobotMap, ShapeType
 from .outlines import Outlines
 from .segments import Segments, clip, is_closed, oriented_segments, without_vanished
-from .usable import closed_rings, usable_outlines
+from .usable import Inspection, inspected
 from .window import Window
 
 __all__ = ["Window", "build_map"]
+
+Rows = slice | NDArray[Any]
+"""Which segments, in their order."""
 
 _WHEN_CUT = {
     ShapeType.CLOSED_POLYGON: ShapeType.OPEN_POLYGON,
@@ -35,29 +38,44 @@ def build_map(
     that do not close are closed, each with a warning if it lies in the window or nowhere at all. Raises
     WindowError when there is neither a window nor an outline.
     """
-    border = window.border if window is not None else None
-    outlines, closed = closed_rings(outlines, border)
-    usable, left_out = usable_outlines(outlines, border)
-    border = border or _bounds(outlines, usable)
-    segments = without_vanished(clip(oriented_segments(outlines, usable), border))
-    chains = list(_chains(segments, outlines))
+    found = inspected(outlines)
+    if window is None:
+        near, border = np.ones(len(outlines), dtype=bool), _bounds(found)
+    else:
+        near, border = found.near(window.border), window.border
+    segments = clip(oriented_segments(found.outlines, found.usable & near), border)
+    return map_of(found.outlines, segments, border, meta, found.notes_on(near))
+
+
+def map_of(
+    outlines: Outlines,
+    segments: Segments,
+    border: Border,
+    meta: Mapping[str, str] | None,
+    warnings: tuple[str, ...],
+) -> RobotMap:
+    """Return the map of ``border`` whose obstacles are the clipped ``segments`` of ``outlines``."""
+    segments = without_vanished(segments)
     obstacles = sorted(
-        _numbered(chains, len(outlines)), key=lambda item: (_group(outlines, item[2]), item[2], item[0])
+        _numbered(_chains(segments, outlines), len(outlines)),
+        key=lambda item: (_group(outlines, item[2]), item[2], item[0]),
     )
+    heights, outdoor = np.round(segments.height, 2), outlines.outdoor[segments.outline]
     return RobotMap(
         border=border,
-        obstacles=tuple(_obstacle(outlines, segments, *item) for item in obstacles),
+        obstacles=tuple(
+            _obstacle(outlines, segments, heights[rows], outdoor[rows], id, rows, outline, closed)
+            for id, rows, outline, closed in obstacles
+        ),
         meta=dict(meta or {}),
-        warnings=(*closed, *left_out),
+        warnings=warnings,
     )
 
 
-def _bounds(outlines: Outlines, usable: NDArray[Any]) -> Border:
-    row = np.repeat(np.arange(len(outlines)), np.diff(outlines.offsets))
-    points = outlines.coordinates[usable[row]]
-    if not len(points):
+def _bounds(found: Inspection) -> Border:
+    if not found.usable.any():
         raise WindowError("window: there is no obstacle to take the extent from; give a window")
-    (x_min, y_min), (x_max, y_max) = points.min(axis=0), points.max(axis=0)
+    (x_min, y_min), (x_max, y_max) = found.low[found.usable].min(axis=0), found.high[found.usable].max(axis=0)
     # A single straight wall has no width; the map still needs a border with an inside.
     x_spare, y_spare = max(0.0, 0.5 - (x_max - x_min) / 2), max(0.0, 0.5 - (y_max - y_min) / 2)
     return Window.from_bounds(
@@ -65,42 +83,52 @@ def _bounds(outlines: Outlines, usable: NDArray[Any]) -> Border:
     ).border
 
 
-def _chains(segments: Segments, outlines: Outlines) -> Iterator[tuple[int, NDArray[Any], bool]]:
-    """Yield outline, indices of segments in their order, and whether they close a ring."""
+def _chains(segments: Segments, outlines: Outlines) -> Iterator[tuple[int, Rows, bool]]:
+    """Yield outline, segments in their order, and whether they close a ring, for each chain."""
     if not len(segments.outline):
         return
-    starts = np.flatnonzero(np.concatenate([[True], np.diff(segments.outline) != 0]))
-    closed = is_closed(outlines.shape_type)
-    for start, end in zip(starts, [*starts[1:], len(segments.outline)], strict=True):
-        outline = int(segments.outline[start])
-        if outlines.shape_type[outline] == ShapeType.STAIRS:
-            yield outline, np.arange(start, end), False
+    types = outlines.shape_type[segments.outline]
+    begins = np.concatenate([[True], np.diff(segments.outline) != 0])
+    run_begins = begins | (~segments.joined & (types != int(ShapeType.STAIRS)))
+    starts = np.flatnonzero(run_begins)
+    ends = np.append(starts[1:], len(types))
+    firsts = np.flatnonzero(begins[starts])
+    lasts = np.append(firsts[1:], len(starts)) - 1
+    meets = _meet_where_they_begin(segments, outlines, starts[firsts], ends[lasts] - 1).tolist()
+    runs = [slice(start, end) for start, end in zip(starts.tolist(), ends.tolist(), strict=True)]
+    outline = segments.outline[starts[firsts]].tolist()
+    for k, (first, last) in enumerate(zip(firsts.tolist(), lasts.tolist(), strict=True)):
+        own = runs[first : last + 1]
+        if meets[k] and len(own) == 1:
+            yield outline[k], own[0], True
             continue
-        breaks = np.flatnonzero(~segments.joined[start:end]) + start
-        runs = np.split(np.arange(start, end), breaks[1:] - start)
-        corner = np.round(outlines.coordinates[outlines.offsets[outline]], 2)
-        yield from _joined_runs(segments, outline, runs, bool(closed[outline]), corner)
+        if meets[k]:
+            # The last run of a ring goes on in the first.
+            round_corner = np.r_[own[-1], own[0]]
+            yield outline[k], round_corner, False
+            own = own[1:-1]
+        for run in own:
+            yield outline[k], run, False
 
 
-def _joined_runs(
-    segments: Segments, outline: int, runs: list[NDArray[Any]], ring: bool, corner: NDArray[Any]
-) -> Iterator[tuple[int, NDArray[Any], bool]]:
-    """Yield the runs of one outline; in a ring the last may go on in the first."""
-    # Not any two cuts that fall on one point: the ring's own first corner.
-    ends = np.array([segments.b[runs[-1][-1]], segments.a[runs[0][0]]])
-    meets = ring and bool((ends == corner).all())
-    if meets and len(runs) == 1:
-        yield outline, runs[0], True
-        return
-    if meets:
-        runs = [np.concatenate([runs[-1], runs[0]]), *runs[1:-1]]
-    for run in runs:
-        yield outline, run, False
+def _meet_where_they_begin(
+    segments: Segments, outlines: Outlines, first: NDArray[Any], last: NDArray[Any]
+) -> NDArray[Any]:
+    """Tell which outlines are rings whose segments, from ``first`` to ``last``, go through their first point.
+
+    Not any two cuts that fall on one point: the ring's own first corner.
+    """
+    outline = segments.outline[first]
+    corner = np.round(outlines.coordinates[outlines.offsets[outline]], 2)
+    meets: NDArray[Any] = (
+        is_closed(outlines.shape_type[outline])
+        & (segments.b[last] == corner).all(axis=1)
+        & (segments.a[first] == corner).all(axis=1)
+    )
+    return meets
 
 
-def _numbered(
-    chains: list[tuple[int, NDArray[Any], bool]], rows: int
-) -> Iterator[tuple[int, NDArray[Any], int, bool]]:
+def _numbered(chains: Iterable[tuple[int, Rows, bool]], rows: int) -> Iterator[tuple[int, Rows, int, bool]]:
     """Yield id, segments, outline and whether closed, for each chain."""
     seen: set[int] = set()
     extra = rows
@@ -118,17 +146,24 @@ def _group(outlines: Outlines, outline: int) -> str:
 
 
 def _obstacle(
-    outlines: Outlines, segments: Segments, id: int, indices: NDArray[Any], outline: int, closed: bool
+    outlines: Outlines,
+    segments: Segments,
+    heights: NDArray[Any],
+    outdoor: NDArray[Any],
+    id: int,
+    rows: Rows,
+    outline: int,
+    closed: bool,
 ) -> Obstacle:
     shape_type = ShapeType(int(outlines.shape_type[outline]))
     return Obstacle(
         id=id,
         shape_type=shape_type if closed else _WHEN_CUT.get(shape_type, shape_type),
         semantics=outlines.semantics[outline],
-        a=segments.a[indices],
-        b=segments.b[indices],
-        height=np.round(segments.height[indices], 2),
-        outdoor=np.full(len(indices), outlines.outdoor[outline]),
-        segment_semantics=("",) * len(indices),
+        a=segments.a[rows],
+        b=segments.b[rows],
+        height=heights,
+        outdoor=outdoor,
+        segment_semantics=("",) * len(heights),
         ext={"src": outlines.source[outline]} if outlines.source[outline] else {},
     )

@@ -15,6 +15,7 @@ _ON_BORDER = 1e-9
 """metres; what a cut coordinate may be off the border that it was cut at by floating point."""
 
 CLOSED_TYPES = (ShapeType.CLOSED_POLYGON, ShapeType.CLOSED_CURVE, ShapeType.RAMP)
+_IS_CLOSED = np.array([t in [int(closed) for closed in CLOSED_TYPES] for t in range(len(ShapeType) + 1)])
 
 
 @dataclass(frozen=True)
@@ -34,7 +35,8 @@ class Segments:
 
 def is_closed(shape_type: NDArray[Any]) -> NDArray[Any]:
     """Tell which shape types, (K,), are rings."""
-    return np.isin(shape_type, [int(t) for t in CLOSED_TYPES])
+    closed: NDArray[Any] = _IS_CLOSED.take(shape_type, mode="clip")
+    return closed
 
 
 def signed_areas(outlines: Outlines) -> NDArray[Any]:
@@ -112,19 +114,16 @@ def clip(segments: Segments, border: Border) -> Segments:
     centimetres.
     """
     direction = segments.b - segments.a
-    enter, leave = np.zeros(len(segments.a)), np.ones(len(segments.a))
-    outside = np.zeros(len(segments.a), dtype=bool)
-    for axis, low, high in ((0, border.x_min, border.x_max), (1, border.y_min, border.y_max)):
-        for p, q in (
-            (-direction[:, axis], segments.a[:, axis] - low),
-            (direction[:, axis], high - segments.a[:, axis]),
-        ):
-            with np.errstate(divide="ignore", invalid="ignore"):
-                t = q / p
-            enter = np.where(p < 0, np.maximum(enter, t), enter)
-            leave = np.where(p > 0, np.minimum(leave, t), leave)
-            outside |= (p == 0) & (q < 0)
-    return _between(segments, direction, enter, leave, ~outside & (enter < leave), border)
+    low, high = np.array([border.x_min, border.y_min]), np.array([border.x_max, border.y_max])
+    # Towards each of the four sides: where p < 0 the segment comes in there, where p > 0 it goes out there.
+    p = np.concatenate([0.0 - direction.T, direction.T])
+    q = np.concatenate([(segments.a - low).T, (high - segments.a).T])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        t = q / p
+    enter = np.where(p < 0, t, 0.0).max(axis=0, initial=0.0)
+    # Along a side, t is minus infinity outside it, infinity inside, and no number on it.
+    leave = np.fmin.reduce(np.where(p < 0, 1.0, t), axis=0, initial=1.0)
+    return _between(segments, direction, enter, leave, enter < leave, border)
 
 
 def _between(
@@ -137,17 +136,17 @@ def _between(
 ) -> Segments:
     """Return the segments marked in ``inside``, each from ``enter`` to ``leave`` of its length (0 to 1)."""
     kept = np.flatnonzero(inside)
-    enter, leave, a, step = enter[kept], leave[kept], segments.a[kept], direction[kept]
+    enter, leave = enter[kept], leave[kept]
+    a, b = segments.a[kept], segments.b[kept]
     joined = segments.joined[kept] & (enter == 0)
     joined[1:] &= (kept[1:] == kept[:-1] + 1) & (leave[:-1] == 1)
     joined[:1] = False
-    return Segments(
-        a=np.where((enter > 0)[:, None], _cut_point(a + enter[:, None] * step, border), a),
-        b=np.where((leave < 1)[:, None], _cut_point(a + leave[:, None] * step, border), segments.b[kept]),
-        height=segments.height[kept],
-        outline=segments.outline[kept],
-        joined=joined,
-    )
+    begun, ended = np.flatnonzero(enter > 0), np.flatnonzero(leave < 1)
+    cut, share = np.concatenate([begun, ended]), np.concatenate([enter[begun], leave[ended]])
+    if len(cut):
+        points = _cut_point(a[cut] + share[:, None] * direction[kept[cut]], border)
+        a[begun], b[ended] = points[: len(begun)], points[len(begun) :]
+    return Segments(a, b, segments.height[kept], segments.outline[kept], joined)
 
 
 def _cut_point(points: NDArray[Any], border: Border) -> NDArray[Any]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -16,56 +16,83 @@ SMALLEST_AREA = 1e-4
 """m² below which a ring encloses nothing at the precision of a map."""
 
 
-def closed_rings(outlines: Outlines, border: Border | None) -> tuple[Outlines, list[str]]:
-    """Return the outlines with their first point repeated at the end of rings that do not close.
+@dataclass(frozen=True)
+class Inspection:
+    """K outlines whose rings close, which of them can be obstacles, and what is said of them.
 
-    Also a warning for each of them that touches ``border``.
+    ``low`` and ``high``, (K, 2), are the corners of their bounding boxes. Note k is about outline
+    ``note_row[k]``; ``note_everywhere`` marks those of outlines that have no place.
     """
-    lengths = np.diff(outlines.offsets)
-    ring = np.flatnonzero(is_closed(outlines.shape_type) & (lengths >= 3))
-    first, last = outlines.offsets[ring], outlines.offsets[ring + 1] - 1
-    ends = outlines.coordinates[[first, last]]
-    open_ = ring[((ends[0] != ends[1]) & np.isfinite(ends).all(axis=0)).any(axis=1)] if len(ring) else ring
-    if not len(open_):
-        return outlines, []
-    added = outlines.coordinates[outlines.offsets[open_]]
-    coordinates = np.insert(outlines.coordinates, outlines.offsets[open_ + 1], added, axis=0)
-    lengths[open_] += 1
-    offsets = np.concatenate([np.zeros(1, dtype=np.int64), np.cumsum(lengths, dtype=np.int64)])
-    near = _near(outlines, border)
-    warnings = [
-        f"{outlines.source[k]}: is a ring that does not close; it is closed" for k in open_ if near[k]
-    ]
-    return replace(outlines, coordinates=coordinates, offsets=offsets), warnings
+
+    outlines: Outlines
+    usable: NDArray[Any]
+    low: NDArray[Any]
+    high: NDArray[Any]
+    notes: tuple[str, ...]
+    note_row: NDArray[Any]
+    note_everywhere: NDArray[Any]
+
+    def near(self, border: Border) -> NDArray[Any]:
+        """Tell which outlines' bounding boxes touch the border's rectangle, (K,) bool."""
+        return touching(self.low, self.high, border)
+
+    def notes_on(self, near: NDArray[Any]) -> tuple[str, ...]:
+        """Return the notes on the outlines marked in ``near``, (K,) bool, and on those without a place."""
+        kept = np.flatnonzero(self.note_everywhere | near[self.note_row])
+        return tuple(self.notes[k] for k in kept)
 
 
-def usable_outlines(outlines: Outlines, border: Border | None) -> tuple[NDArray[Any], list[str]]:
-    """Return (K,) bool, true for outlines to cut at ``border``, and a warning for each other that touches it.
-
-    An outline with no points, or with one that is not finite, touches everything.
-    """
-    closed = is_closed(outlines.shape_type)
+def inspected(outlines: Outlines) -> Inspection:
+    """Return ``outlines`` with every ring closed, and what is wrong with which."""
+    outlines, closed = _closed_rings(outlines)
+    low, high = _boxes(outlines.coordinates, outlines)
     lengths = np.diff(outlines.offsets)
     finite = _finite(outlines) & np.isfinite(outlines.height)
+    ring = is_closed(outlines.shape_type)
     reasons = (
         (~finite, "has a coordinate or a height that is not a finite number"),
-        (lengths < np.where(closed, 4, 2), "has too few points"),
-        (closed & _flat(outlines), "is a ring that encloses nothing"),
+        (lengths < np.where(ring, 4, 2), "has too few points"),
+        (ring & _flat(outlines), "is a ring that encloses nothing"),
         (
             (outlines.shape_type == ShapeType.STAIRS) & (lengths % 2 == 1),
             "is a flight of stairs whose risers are not pairs of points",
         ),
         (_extent(outlines) < 0.01, "is smaller than a centimetre"),
     )
-    near = _near(outlines, border) | ~finite | (lengths == 0)
     usable = np.ones(len(outlines), dtype=bool)
-    warnings = []
+    rows = [closed]
+    notes = [f"{outlines.source[k]}: is a ring that does not close; it is closed" for k in closed]
     for bad, reason in reasons:
-        warnings += [
-            f"{outlines.source[k]}: {reason}; it is left out" for k in np.flatnonzero(bad & usable & near)
-        ]
+        rows.append(np.flatnonzero(bad & usable))
+        notes += [f"{outlines.source[k]}: {reason}; it is left out" for k in rows[-1]]
         usable &= ~bad
-    return usable & near, warnings
+    note_row = np.concatenate(rows)
+    everywhere = (~finite | (lengths == 0))[note_row]
+    everywhere[: len(closed)] = False
+    return Inspection(outlines, usable, low, high, tuple(notes), note_row, everywhere)
+
+
+def touching(low: NDArray[Any], high: NDArray[Any], border: Border) -> NDArray[Any]:
+    """Tell which boxes, from ``low`` to ``high``, (n, 2) each, touch the border's rectangle, (n,) bool."""
+    corner_low, corner_high = (border.x_min, border.y_min), (border.x_max, border.y_max)
+    touches: NDArray[Any] = ((high >= corner_low) & (low <= corner_high)).all(axis=1)
+    return touches
+
+
+def _closed_rings(outlines: Outlines) -> tuple[Outlines, NDArray[Any]]:
+    """Return the outlines with each ring closed by its first point, and the rows of those that were not."""
+    lengths = np.diff(outlines.offsets)
+    ring = np.flatnonzero(is_closed(outlines.shape_type) & (lengths >= 3))
+    first, last = outlines.offsets[ring], outlines.offsets[ring + 1] - 1
+    ends = outlines.coordinates[[first, last]]
+    open_ = ring[((ends[0] != ends[1]) & np.isfinite(ends).all(axis=0)).any(axis=1)] if len(ring) else ring
+    if not len(open_):
+        return outlines, open_
+    added = outlines.coordinates[outlines.offsets[open_]]
+    coordinates = np.insert(outlines.coordinates, outlines.offsets[open_ + 1], added, axis=0)
+    lengths[open_] += 1
+    offsets = np.concatenate([np.zeros(1, dtype=np.int64), np.cumsum(lengths, dtype=np.int64)])
+    return replace(outlines, coordinates=coordinates, offsets=offsets), open_
 
 
 def _finite(outlines: Outlines) -> NDArray[Any]:
@@ -87,16 +114,6 @@ def _extent(outlines: Outlines) -> NDArray[Any]:
         # A centimetre is a little less than 0.01 in the difference of two large coordinates.
         extent: NDArray[Any] = np.round((high - low).max(axis=1), 2)
     return extent
-
-
-def _near(outlines: Outlines, border: Border | None) -> NDArray[Any]:
-    """Tell which outlines' bounding boxes touch the border's rectangle."""
-    if border is None:
-        return np.ones(len(outlines), dtype=bool)
-    low, high = _boxes(outlines.coordinates, outlines)
-    corner_low, corner_high = (border.x_min, border.y_min), (border.x_max, border.y_max)
-    near: NDArray[Any] = ((high >= corner_low) & (low <= corner_high)).all(axis=1)
-    return near
 
 
 def _boxes(coordinates: NDArray[Any], outlines: Outlines) -> tuple[NDArray[Any], NDArray[Any]]:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
-from ..robotmap.builder import Window, build_map
+from ..robotmap.builder import Window
+from ..robotmap.index import OutlineIndex
 from ..robotmap.model import RobotMap
 from ..robotmap.outlines import Outlines
 from .features import Area, Centreline
@@ -63,7 +65,11 @@ class Site:
         return self._map(Window.square(x, y, area))
 
     def _map(self, window: Window) -> RobotMap:
-        return build_map(self.outlines, window, meta=self.map_meta())
+        return self._index.map_of(window, meta=self.map_meta())
+
+    @cached_property
+    def _index(self) -> OutlineIndex:
+        return OutlineIndex(self.outlines)
 
     def map_meta(self) -> dict[str, str]:
         """Return the leading lines of every map of this site (design, section 6)."""
