@@ -214,10 +214,13 @@ async def test_a_robot_that_started_anew_is_not_sent_what_an_operator_aborted(re
     assert await ready.states() == {"a": "aborted", "x": "acknowledged"}
 
 
-async def test_a_robot_that_started_anew_gets_what_it_forgot_in_the_order_it_was_asked(ready):
+@pytest.mark.parametrize("acknowledged", [False, True])
+async def test_a_robot_that_started_anew_gets_what_it_forgot_in_the_order_it_was_asked(ready, acknowledged):
     await ready.send("x", "Abort")
     await ready.deliver()
     await ready.send("b")
+    if acknowledged:
+        await ready.ack((await ready.deliver())[-1].id)
     await ready.ready(magic=2)
     assert [op for op in await ready.take() if op != "SetMap"] == ["Abort", "SetPosEnd"]
     assert await ready.states() == {"x": "acknowledged", "b": "acknowledged"}
@@ -245,6 +248,19 @@ async def test_open_commands_outlive_the_gateway(ready):
     assert "SetPosEnd" in await ready.take("r2")
     assert "SetPosEnd" in await ready.take("r3")
     assert await ready.states() == {"a": "reached", "b": "acknowledged", "c": "acknowledged"}
+
+
+async def test_a_path_half_driven_is_followed_to_its_end_when_the_gateway_starts_anew(ready):
+    await ready.send("a", "SetPath", points=[(10.0, 10.0), (60.0, 10.0)])
+    await ready.take()
+    for x in range(10, 31, 2):
+        await ready.at(float(x), 10.0, v=2.0)
+    await ready.restart()
+    for x in range(32, 60, 2):
+        await ready.at(float(x), 10.0, v=2.0)
+    assert await ready.states() == {"a": "acknowledged"}
+    await ready.at(60.0, 10.0)
+    assert await ready.states() == {"a": "reached"}
 
 
 async def test_ended_commands_stay_ended_when_the_gateway_starts_anew(ready):

@@ -72,13 +72,32 @@ async def test_a_robot_that_reads_and_deletes_its_row_has_been_delivered_the_com
 
 
 async def test_a_robot_that_never_said_ready_is_told_start_once(yard):
+    told = []
     for _ in range(3):
         yard.ask("r5", SendPos(1.0, 2.0, 0.0, 0.0))
         await yard.link.poll()
-    assert yard.waiting("r5") == ["Start"]
+        told.append(yard.waiting("r5"))
+        yard.sql("delete from sa")
+    assert told == [["Start"], [], []]
     assert yard.fleet.reports() == []
-    await hello(yard, "r5")
-    assert yard.waiting("r5") == []
+
+
+async def test_ready_takes_the_place_of_what_an_earlier_run_left_unread(yard):
+    yard.ask("r1", SendPos(1.0, 2.0, 0.0, 0.0))
+    for magic in (1, 2):
+        yard.ask("r1", Ready(magic))
+        await yard.link.poll()
+    assert yard.waiting() == ["OpAck", "SetMap"]
+
+
+@pytest.mark.parametrize("request_", [Alive(), OpAck(id=1), GetMap(60.0, 90.0, 100.0)])
+async def test_a_stopped_robot_stays_stopped_whatever_it_says_at_a_standstill(yard, request_):
+    await hello(yard)
+    for request in (Stopped(), request_):
+        yard.ask("r1", request)
+    await yard.link.poll()
+    (report,) = yard.fleet.reports()
+    assert report.stopped is True
 
 
 async def test_robots_on_sql_are_told_start_when_the_gateway_starts_anew(yard):

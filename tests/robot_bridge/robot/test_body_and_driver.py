@@ -81,3 +81,4 @@ def test_the_robot_follows_a_loop_all_round_and_ends_where_it_began():
 def test_the_robot_turns_on_the_spot_before_it_drives_back():
     _, trace = drive((0.0, 0.0, 0.0), [(-5.0, 0.0)])
     assert max(x for x, _, _ in trace) < 0.05
+    assert min(x for x, _, theta in trace if abs(theta) < 2.0) > -0.05
