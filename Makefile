@@ -6,8 +6,9 @@ READY := .venv/.fleet-setup
 RUN := .venv/bin/python
 HEADLESS := env QT_QPA_PLATFORM=offscreen XDG_RUNTIME_DIR=$(CURDIR)/build/run
 
-# Given on the command line: make test ARGS="-k robotmap", make install PROFILE=work LINK=1
+# Given on the command line: make test ARGS="-k robotmap" WORKERS=0, make install PROFILE=work LINK=1
 ARGS ?=
+WORKERS ?= auto
 JOBS ?= 3
 PROFILE ?= default
 LINK ?=
