@@ -16,6 +16,8 @@ is.</p>
 <i>fleet/role</i> makes flights of risers of a layer (stairs) or surfaces without height (ramp). Default: the
 field <i>height</i> or <i>height_m</i>, the layer's name, true. Where no height is known, the default height
 is used, said in a warning and marked <i>h=est</i> in the map.</p>
+<p><b>Map profile</b>: a file that says by layer name what layers are: <i>openstreetmap</i>,
+<i>upc_campus_nord</i> or the path of one's own. It wins over what the layers keep.</p>
 <p><b>Format</b>: text, or binary (the text compressed, with a check sum), which needs the Python package
 zstandard. The file <i>docs/robot-map.md</i> of the project describes both, and exports from a script.</p>
 <p>Broken geometry is repaired where that is safe and left out where it is not. Each time a warning names the

@@ -26,6 +26,7 @@ from ..sites.reading import check_sources
 from ..sites.roles import LayerExpressions
 from ..sites.site_crs import site_crs_for
 from .errors import ParameterError
+from .map_profile import setups_of
 from .map_window import LOCAL, SITE_CRS, map_window, site_frame
 from .whole_file import OutputError
 
@@ -71,8 +72,10 @@ def plan_of(
     # As strings: parameterAsExpression replaces what is no expression by the default, in silence.
     names = (HEIGHT_EXPRESSION, SEMANTICS_EXPRESSION, OUTDOOR_EXPRESSION)
     general = LayerExpressions(*(algorithm.parameterAsString(parameters, name, context) for name in names))
-    sources = obstacle_sources(layers, general, algorithm.createExpressionContext(parameters, context))
-    crs = _site_crs(algorithm, parameters, context, sources)
+    setups = setups_of(algorithm, parameters, context)
+    scopes = algorithm.createExpressionContext(parameters, context)
+    sources = obstacle_sources(layers, general, scopes, setups)
+    crs = site_crs(algorithm, parameters, context, sources)
     frame = site_frame(algorithm, parameters, context, crs)
     local = algorithm.parameterAsBool(parameters, LOCAL, context)
     site = SitePlacing(crs, frame, context.transformContext(), local)
@@ -81,7 +84,7 @@ def plan_of(
         sources=sources,
         site=site,
         window=map_window(algorithm, parameters, context, crs, frame),
-        default_height=_default_height(algorithm, parameters, context),
+        default_height=default_height(algorithm, parameters, context),
         target=_target(algorithm, parameters, context, layers),
     )
 
@@ -112,9 +115,16 @@ def _layers(algorithm, parameters: Parameters, context) -> list[QgsVectorLayer]:
     return layers
 
 
-def _site_crs(
-    algorithm, parameters: Parameters, context, sources: Sequence[ObstacleSource]
+def site_crs(
+    algorithm: QgsProcessingAlgorithm,
+    parameters: Parameters,
+    context: QgsProcessingContext,
+    sources: Sequence[ObstacleSource],
 ) -> QgsCoordinateReferenceSystem:
+    """Return the CRS of the site: SITE_CRS, else the project's or the layers' own.
+
+    :raises FleetError: when it is no CRS or cannot carry a site.
+    """
     chosen = algorithm.parameterAsCrs(parameters, SITE_CRS, context)
     if parameters.get(SITE_CRS) and not chosen.isValid():
         raise ParameterError(
@@ -125,7 +135,13 @@ def _site_crs(
     return site_crs_for(chosen, project_crs, [source.crs for source in sources])
 
 
-def _default_height(algorithm, parameters: Parameters, context) -> float:
+def default_height(
+    algorithm: QgsProcessingAlgorithm, parameters: Parameters, context: QgsProcessingContext
+) -> float:
+    """Return DEFAULT_HEIGHT in metres.
+
+    :raises ParameterError: when it is none.
+    """
     height = algorithm.parameterAsDouble(parameters, DEFAULT_HEIGHT, context)
     if not 0 <= height < math.inf:
         raise ParameterError(f"DEFAULT_HEIGHT is {height}: give a number of metres of 0 or more.")

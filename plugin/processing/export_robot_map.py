@@ -38,6 +38,7 @@ from .export_plan import (
     plan_of,
     unopened_layer,
 )
+from .map_profile import profile_parameter
 from .map_window import window_parameters, window_problem
 from .whole_file import write_whole
 
@@ -96,6 +97,7 @@ class ExportRobotMap(QgsProcessingAlgorithm):
             ),
             *window_parameters(),
             *_value_parameters(),
+            profile_parameter(),
             QgsProcessingParameterEnum(
                 FORMAT, "Format", options=[TEXT, BINARY], defaultValue=TEXT, usesStaticStrings=True
             ),

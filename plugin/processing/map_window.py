@@ -39,8 +39,13 @@ def window_parameters() -> list[QgsProcessingParameterDefinition]:
         QgsProcessingParameterNumber(WIDTH, "Width of the window, along x [m]", _REAL, PAPERS_SIDE_M),
         QgsProcessingParameterNumber(HEIGHT, "Height of the window, along y [m]", _REAL, PAPERS_SIDE_M),
         QgsProcessingParameterExtent(EXTENT, "Extent (instead of centre, width and height)", optional=True),
-        *(_advanced(parameter) for parameter in _frame_parameters()),
+        *frame_parameters(),
     ]
+
+
+def frame_parameters() -> list[QgsProcessingParameterDefinition]:
+    """Return the advanced parameters that say which frame the site has."""
+    return [_advanced(parameter) for parameter in _frame_parameters()]
 
 
 def window_problem(parameters: Mapping[str, Any]) -> str:

@@ -8,6 +8,7 @@ from qgis.core import QgsProcessingProvider
 from qgis.PyQt.QtGui import QIcon
 
 from .export_robot_map import ExportRobotMap
+from .publish_site import PublishSite
 
 ICON = Path(__file__).parents[2] / "resources" / "icons" / "fleet.svg"
 
@@ -26,3 +27,4 @@ class FleetProvider(QgsProcessingProvider):
 
     def loadAlgorithms(self):
         self.addAlgorithm(ExportRobotMap())
+        self.addAlgorithm(PublishSite())

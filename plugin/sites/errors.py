@@ -17,6 +17,14 @@ class LayerCrsError(LayerReadingError):
     """A layer's coordinates have no known place in the site's CRS."""
 
 
+class PublicationError(FleetError):
+    """A site cannot be published: its settings, its folder or what is there already."""
+
+
+class ProfileError(FleetError):
+    """A map profile cannot be read: its file, one of its keys, or one of its expressions."""
+
+
 class LayerTypeError(LayerReadingError):
     """A layer cannot be opened, or holds neither lines nor polygons."""
 

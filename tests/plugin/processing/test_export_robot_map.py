@@ -7,7 +7,12 @@ import math
 import pytest
 from fleet_supervisor.plugin.sites.roles import LayerExpressions, set_expressions
 from fleet_supervisor.robot_bridge.robotmap.model import ShapeType
-from qgis.core import QgsCoordinateReferenceSystem, QgsExpressionContextUtils, QgsProject
+from qgis.core import (
+    QgsCoordinateReferenceSystem,
+    QgsExpressionContextUtils,
+    QgsProcessingException,
+    QgsProject,
+)
 
 SQUARE = "Polygon((10 10, 20 10, 20 20, 10 20, 10 10))"
 WALL = "LineString(0 5, 50 5)"
@@ -168,3 +173,23 @@ def test_the_toolbox_finds_help_and_icon(provider):
         *("OUTPUT", "OBSTACLE_COUNT", "SEGMENT_COUNT"),
         *("BYTES", "BYTES_PER_M2", "WARNING_COUNT"),
     }
+
+
+def test_a_profile_says_what_a_layer_is_and_wins_over_what_it_keeps(export, make_layer, tmp_path):
+    wall = make_layer("old wall", features=[("LineString(0 5, 50 5)", 1.5)])
+    wall.setCustomProperty("fleet/height", "9")
+    profile = tmp_path / "mine.toml"
+    profile.write_text(
+        '[[layers]]\nnames = ["*wall"]\nrole = "obstacle"\n'
+        'height = \'"height" * 2\'\nsemantics = "\'wall\'"\n'
+    )
+    (obstacle,) = export(wall, CENTER="0,0", PROFILE=str(profile)).map.obstacles
+    assert (obstacle.semantics, obstacle.height.tolist()) == ("wall", [3.0])
+    assert export(wall, CENTER="0,0").map.obstacles[0].height.tolist() == [9.0]
+
+
+def test_a_broken_profile_stops_the_export(export, make_layer, tmp_path):
+    profile = tmp_path / "mine.toml"
+    profile.write_text('[[layers]]\nnames = ["wall"]\nrole = "obstacel"\n')
+    with pytest.raises(QgsProcessingException, match=r"mine\.toml: layers\[0\]\.role is 'obstacel'"):
+        export(make_layer("wall"), CENTER="0,0", PROFILE=str(profile))

@@ -1,0 +1,42 @@
+"""The parameter PROFILE: what layers are, from a file instead of from the project."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from qgis.core import (
+    QgsProcessingAlgorithm,
+    QgsProcessingContext,
+    QgsProcessingParameterDefinition,
+    QgsProcessingParameterFile,
+)
+
+from ..sites.obstacle_source import Setups
+from ..sites.profile_file import SUFFIXES, find_profile, read_profile
+from ..sites.roles import setup_of
+
+PROFILE = "PROFILE"
+
+
+def profile_parameter() -> QgsProcessingParameterDefinition:
+    """Return the parameter; its value is a path or the name of a profile that comes with the plugin."""
+    kinds = " ".join(f"*{suffix}" for suffix in SUFFIXES)
+    return QgsProcessingParameterFile(
+        PROFILE,
+        "Map profile: what the layers are, by their names (default: as each layer keeps it)",
+        optional=True,
+        # "All files" also lets the name of a shipped profile pass QGIS's check of the value.
+        fileFilter=f"Map profile ({kinds});;All files (*)",
+    )
+
+
+def setups_of(
+    algorithm: QgsProcessingAlgorithm, parameters: Mapping[str, Any], context: QgsProcessingContext
+) -> Setups:
+    """Return what tells the role and the expressions of a layer.
+
+    :raises ProfileError: when the profile cannot be read.
+    """
+    chosen = algorithm.parameterAsFile(parameters, PROFILE, context)
+    return read_profile(find_profile(chosen)).setup_over if chosen else setup_of

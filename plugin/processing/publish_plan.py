@@ -1,0 +1,206 @@
+"""What a publication will hold, settled and checked before it starts."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from qgis.core import (
+    QgsCoordinateReferenceSystem,
+    QgsMapLayer,
+    QgsProcessingAlgorithm,
+    QgsProcessingContext,
+    QgsProcessingUtils,
+    QgsVectorLayer,
+)
+
+from ...robot_bridge.sites.settings import Bounds, LivenessLimits, SiteSettings
+from ..sites.content_reading import SiteSources, check_content_sources
+from ..sites.errors import LayerTypeError
+from ..sites.obstacle_source import Setups, obstacle_sources
+from ..sites.placing import SitePlacing
+from ..sites.publication import check_publication_values, next_version
+from ..sites.roles import (
+    KEEPOUT,
+    OBSTACLE_ROLES,
+    ROAD_CENTRELINE,
+    ROAD_SURFACE,
+    LayerExpressions,
+)
+from ..sites.site_crs import crs_name, is_engineering
+from .errors import ParameterError
+from .export_plan import default_height, site_crs
+from .map_profile import setups_of
+from .map_window import LOCAL, site_frame
+
+FOLDER, REPLACE = "FOLDER", "REPLACE"
+SITE_ID, SITE_NAME, BOUNDS = "SITE_ID", "SITE_NAME", "BOUNDS"
+DEFAULT_WIDTH = "DEFAULT_WIDTH"
+TOLERANCE, STALE_AFTER, LOST_AFTER = "REACHED_TOLERANCE", "STALE_AFTER", "LOST_AFTER"
+
+LAYERS = {
+    "OBSTACLES": OBSTACLE_ROLES,
+    "ROAD_CENTRELINES": (ROAD_CENTRELINE,),
+    "ROAD_SURFACES": (ROAD_SURFACE,),
+    "KEEPOUTS": (KEEPOUT,),
+}
+"""The roles of the layers that each parameter takes from the project when it is empty,
+in the order of SiteSources."""
+
+SITE_VARIABLE = "fleet_site"
+"""The project variable that holds the id of its site."""
+
+WHERE_NOT_KNOWN = Bounds(0.0, 0.0, 1.0, 1.0)
+
+Parameters = Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class PublishPlan:
+    """Everything that is needed of the parameters and layers; usable from any thread.
+
+    The bounds of ``settings`` stand in where ``bounds_given`` is false, until the layers are read.
+    """
+
+    folder: Path
+    settings: SiteSettings
+    bounds_given: bool
+    sources: SiteSources
+    site: SitePlacing
+    default_height: float
+    default_width: float
+
+
+def publish_plan(
+    algorithm: QgsProcessingAlgorithm, parameters: Parameters, context: QgsProcessingContext
+) -> PublishPlan:
+    """Return the plan for ``parameters``; to be called in the main thread.
+
+    :raises FleetError: when a parameter, a layer or what is in the folder stands in the way.
+    """
+    sources = _sources(algorithm, parameters, context)
+    if not sources.all():
+        raise ParameterError(
+            "There is nothing to publish: no layer is given and no layer of the project has a role. Give "
+            "roles (Fleet Supervisor > Layer roles), a PROFILE, or layers."
+        )
+    crs = site_crs(algorithm, parameters, context, sources.all())
+    _check_published_crs(crs)
+    frame = site_frame(algorithm, parameters, context, crs)
+    local = algorithm.parameterAsBool(parameters, LOCAL, context)
+    site = SitePlacing(crs, frame, context.transformContext(), local)
+    check_content_sources(sources, site)
+    folder = Path(algorithm.parameterAsFileOutput(parameters, FOLDER, context))
+    settings, given = _settings(algorithm, parameters, context, site)
+    check_publication_values(settings, folder)
+    replace_other = algorithm.parameterAsBool(parameters, REPLACE, context)
+    return PublishPlan(
+        folder=folder,
+        settings=next_version(settings, folder, replace_other=replace_other),
+        bounds_given=given,
+        sources=sources,
+        site=site,
+        default_height=default_height(algorithm, parameters, context),
+        default_width=_above_zero(algorithm, parameters, context, DEFAULT_WIDTH),
+    )
+
+
+def _sources(algorithm, parameters: Parameters, context) -> SiteSources:
+    setups = setups_of(algorithm, parameters, context)
+    scopes = algorithm.createExpressionContext(parameters, context)
+    found = [_layers(algorithm, parameters, context, name, setups) for name in LAYERS]
+    return SiteSources(*(obstacle_sources(layers, LayerExpressions(), scopes, setups) for layers in found))
+
+
+def _layers(algorithm, parameters: Parameters, context, name: str, setups: Setups) -> list[QgsVectorLayer]:
+    values = parameters.get(name)
+    if not values:
+        return _project_layers(context.project(), LAYERS[name], setups)
+    for value in values if isinstance(values, (list, tuple)) else [values]:
+        if isinstance(value, str) and QgsProcessingUtils.mapLayerFromString(value, context) is None:
+            raise LayerTypeError(
+                f"{name}: the layer {value} cannot be opened: check the file, and the layer's name after "
+                "'|layername='."
+            )
+    layers = algorithm.parameterAsLayerList(parameters, name, context)
+    _check_vectors(layers)
+    return layers
+
+
+def _project_layers(project, roles: Sequence[str], setups: Setups) -> list[QgsVectorLayer]:
+    layers = project.mapLayers().values() if project is not None else ()
+    found = [layer for layer in layers if setups(layer).role in roles]
+    _check_vectors(found)
+    return sorted(found, key=lambda layer: (layer.name(), layer.id()))
+
+
+def _check_vectors(layers: Sequence[QgsMapLayer]) -> None:
+    for layer in layers:
+        if not isinstance(layer, QgsVectorLayer):
+            raise LayerTypeError(f"The layer {layer.name()} is no vector layer: take its role away.")
+
+
+def _check_published_crs(crs: QgsCoordinateReferenceSystem) -> None:
+    if crs.isValid() and not is_engineering(crs) and crs.authid() and not crs.authid().startswith("USER:"):
+        return
+    named = f"The site's CRS, {crs_name(crs)}," if crs.isValid() else "The site's CRS is not known, and"
+    raise ParameterError(
+        f"{named} has no code that a gateway knows it by: choose SITE_CRS such as EPSG:32633. Layers in "
+        "local metres can be published with ORIGIN and LOCAL=true."
+    )
+
+
+def _settings(algorithm, parameters: Parameters, context, site: SitePlacing) -> tuple[SiteSettings, bool]:
+    name, title = _names(algorithm, parameters, context)
+    bounds = _bounds(algorithm, parameters, context, site)
+    numbers = {
+        key: algorithm.parameterAsDouble(parameters, key, context) for key in (STALE_AFTER, LOST_AFTER)
+    }
+    settings = SiteSettings(
+        id=name,
+        name=title,
+        version=1,
+        crs=site.crs.authid(),
+        origin=site.frame.origin,
+        bounds=bounds or WHERE_NOT_KNOWN,
+        rotation_deg=round(math.degrees(site.frame.rotation), 9),
+        reached_tolerance_m=algorithm.parameterAsDouble(parameters, TOLERANCE, context),
+        liveness=LivenessLimits(numbers[STALE_AFTER], numbers[LOST_AFTER]),
+    )
+    return settings, bounds is not None
+
+
+def _names(algorithm, parameters: Parameters, context) -> tuple[str, str]:
+    project = context.project()
+    variables = project.customVariables() if project is not None else {}
+    name = algorithm.parameterAsString(parameters, SITE_ID, context) or str(
+        variables.get(SITE_VARIABLE) or ""
+    )
+    if not name:
+        raise ParameterError(
+            f"SITE_ID is empty and the project has no variable {SITE_VARIABLE}: give the site an id of "
+            "letters, digits, '_', '.' and '-', such as north_yard."
+        )
+    title = project.title() if project is not None else ""
+    return name, algorithm.parameterAsString(parameters, SITE_NAME, context) or title or name
+
+
+def _bounds(algorithm, parameters: Parameters, context, site: SitePlacing) -> Bounds | None:
+    if not parameters.get(BOUNDS):
+        return None
+    outline = algorithm.parameterAsExtentGeometry(parameters, BOUNDS, context, site.crs)
+    corners = site.frame.to_site([(vertex.x(), vertex.y()) for vertex in outline.vertices()])
+    if not len(corners):
+        raise ParameterError(f"BOUNDS {parameters[BOUNDS]} is no extent: write 'xmin,xmax,ymin,ymax'.")
+    low, high = corners.min(axis=0).round(3), corners.max(axis=0).round(3)
+    return Bounds(float(low[0]), float(low[1]), float(high[0]), float(high[1]))
+
+
+def _above_zero(algorithm, parameters: Parameters, context, name: str) -> float:
+    value = algorithm.parameterAsDouble(parameters, name, context)
+    if not 0 < value < math.inf:
+        raise ParameterError(f"{name} is {value}: give a number of metres above 0.")
+    return value

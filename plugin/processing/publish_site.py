@@ -1,0 +1,206 @@
+"""``fleet:publishsite``: layers by their roles in, the folder that a gateway serves out."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from pathlib import Path
+
+from qgis.core import (
+    QgsProcessing,
+    QgsProcessingAlgorithm,
+    QgsProcessingOutputNumber,
+    QgsProcessingOutputString,
+    QgsProcessingParameterBoolean,
+    QgsProcessingParameterDefinition,
+    QgsProcessingParameterExtent,
+    QgsProcessingParameterFolderDestination,
+    QgsProcessingParameterMultipleLayers,
+    QgsProcessingParameterNumber,
+    QgsProcessingParameterString,
+)
+from qgis.PyQt.QtGui import QIcon
+
+from ...robot_bridge.sites.settings import Bounds, LivenessLimits
+from ..errors import FleetError
+from ..sites.content_reading import read_content
+from ..sites.ground_reading import DEFAULT_WIDTH_M
+from ..sites.publication import publish
+from ..sites.site_content import SiteContent
+from .errors import ParameterError, shown_by_processing
+from .export_plan import DEFAULT_HEIGHT
+from .map_profile import profile_parameter
+from .map_window import frame_parameters
+from .publish_help import HELP
+from .publish_plan import (
+    BOUNDS,
+    DEFAULT_WIDTH,
+    FOLDER,
+    LOST_AFTER,
+    REPLACE,
+    SITE_ID,
+    SITE_NAME,
+    STALE_AFTER,
+    TOLERANCE,
+    PublishPlan,
+    publish_plan,
+)
+
+LAYER_TITLES = {
+    "OBSTACLES": "Obstacle layers, stairs, ramps and furniture (default: the project's with such a role)",
+    "ROAD_CENTRELINES": "Road centreline layers (default: the project's with that role)",
+    "ROAD_SURFACES": "Road surface layers (default: the project's with that role)",
+    "KEEPOUTS": "Keepout layers (default: the project's with that role)",
+}
+NUMBERS = {
+    "VERSION": "Version of the site",
+    "OBSTACLE_COUNT": "Obstacle outlines",
+    "CENTRELINE_COUNT": "Road centrelines",
+    "SURFACE_COUNT": "Road surfaces",
+    "KEEPOUT_COUNT": "Keepouts",
+    "WARNING_COUNT": "Warnings",
+}
+ID = "ID"
+ICON = Path(__file__).parents[2] / "resources" / "icons" / "publish_site.svg"
+
+_REAL = QgsProcessingParameterNumber.Type.Double
+_LIMITS = LivenessLimits()
+
+
+class PublishSite(QgsProcessingAlgorithm):
+    """Publishes the project's layers as the site that a gateway serves (design, section 3)."""
+
+    def name(self):
+        return "publishsite"
+
+    def displayName(self):
+        return "Publish site"
+
+    def group(self):
+        return "Sites"
+
+    def groupId(self):
+        return "sites"
+
+    def tags(self):
+        return ["robot", "gateway", "site", "publish", "obstacle", "road", "keepout", "qgis_process"]
+
+    def shortDescription(self):
+        return "Writes the layers of a site, by their roles, into the folder that a gateway serves."
+
+    def shortHelpString(self):
+        return HELP
+
+    def icon(self):
+        return QIcon(str(ICON))
+
+    def svgIconPath(self):
+        return str(ICON)
+
+    def createInstance(self):
+        return PublishSite()
+
+    def initAlgorithm(self, configuration=None):
+        site = [
+            QgsProcessingParameterString(SITE_ID, "Site id (default: the project's)", optional=True),
+            QgsProcessingParameterString(
+                SITE_NAME, "Site name (default: the project's title)", optional=True
+            ),
+            QgsProcessingParameterExtent(
+                BOUNDS, "Where robots may be sent (default: all that is published)", optional=True
+            ),
+        ]
+        for parameter in (
+            *_layer_parameters(),
+            profile_parameter(),
+            *site,
+            *_value_parameters(),
+            *frame_parameters(),
+            QgsProcessingParameterFolderDestination(FOLDER, "Folder of the published site"),
+        ):
+            self.addParameter(parameter)
+        self.addOutput(QgsProcessingOutputString(ID, "Id of the site"))
+        for name, description in NUMBERS.items():
+            self.addOutput(QgsProcessingOutputNumber(name, description))
+
+    def checkParameterValues(self, parameters, context):
+        # Before QGIS's own checks, which say that a value is wrong and not why.
+        try:
+            publish_plan(self, parameters, context)
+        except FleetError as error:
+            return False, str(error)
+        return super().checkParameterValues(parameters, context)
+
+    def prepareAlgorithm(self, parameters, context, feedback):
+        with shown_by_processing():
+            self._plan = publish_plan(self, parameters, context)
+        return True
+
+    def processAlgorithm(self, parameters, context, feedback):
+        plan = self._plan
+        with shown_by_processing():
+            content = _content(plan, feedback)
+            if content is None:
+                return {}
+            settings = plan.settings
+            if not plan.bounds_given:
+                settings = replace(settings, bounds=_all_of(content))
+            for warning in content.warnings:
+                feedback.pushWarning(warning)
+            if not publish(plan.folder, content, settings, feedback):
+                return {}
+        feedback.setProgress(100)
+        groups = (content.obstacles, content.centrelines, content.surfaces, content.keepouts)
+        figures = (settings.version, *map(len, groups), len(content.warnings))
+        feedback.pushInfo(
+            f"Site {settings.id} version {settings.version} is published in {plan.folder}: "
+            f"{figures[1]} obstacle outlines, {figures[2]} centrelines, {figures[3]} road surfaces, "
+            f"{figures[4]} keepouts; bounds {', '.join(f'{edge:g}' for edge in settings.bounds)} m"
+        )
+        return {FOLDER: str(plan.folder), ID: settings.id, **dict(zip(NUMBERS, figures, strict=True))}
+
+
+def _content(plan: PublishPlan, feedback) -> SiteContent | None:
+    bounds = plan.settings.bounds if plan.bounds_given else None
+    return read_content(plan.sources, plan.site, bounds, plan.default_height, plan.default_width, feedback)
+
+
+def _all_of(content: SiteContent) -> Bounds:
+    extent = content.extent
+    if extent is None:
+        raise ParameterError(
+            "There is nothing to publish: the layers hold nothing that can be read. See the warnings, or "
+            "give BOUNDS to publish an empty site."
+        )
+    x_min, y_min, x_max, y_max = extent
+    x_low, y_low = math.floor(x_min), math.floor(y_min)
+    # A single straight wall has no width; a site still needs an inside.
+    x_high, y_high = max(math.ceil(x_max), x_low + 1), max(math.ceil(y_max), y_low + 1)
+    return Bounds(float(x_low), float(y_low), float(x_high), float(y_high))
+
+
+def _layer_parameters() -> list[QgsProcessingParameterDefinition]:
+    kind = QgsProcessing.SourceType.TypeVectorAnyGeometry
+    return [
+        QgsProcessingParameterMultipleLayers(name, title, kind, optional=True)
+        for name, title in LAYER_TITLES.items()
+    ]
+
+
+def _value_parameters() -> list[QgsProcessingParameterDefinition]:
+    numbers = (
+        (DEFAULT_HEIGHT, "Height where none is known [m]", 3.0),
+        (DEFAULT_WIDTH, "Width of a road where none is known [m]", DEFAULT_WIDTH_M),
+        (TOLERANCE, "A target is reached within [m]", 0.2),
+        (STALE_AFTER, "A robot is stale without a message for [s]", _LIMITS.stale_after_s),
+        (LOST_AFTER, "A robot is lost without a message for [s]", _LIMITS.lost_after_s),
+    )
+    parameters: list[QgsProcessingParameterDefinition] = [
+        QgsProcessingParameterNumber(name, title, _REAL, default) for name, title, default in numbers
+    ]
+    parameters.append(
+        QgsProcessingParameterBoolean(REPLACE, "Replace the publication of another site", defaultValue=False)
+    )
+    for parameter in parameters[2:]:
+        parameter.setFlags(parameter.flags() | QgsProcessingParameterDefinition.Flag.FlagAdvanced)
+    return parameters

@@ -1,0 +1,74 @@
+"""Reads everything that a site publishes from its layers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from qgis.core import QgsFeedback
+
+from .ground_reading import check_ground_sources, read_areas, read_centrelines
+from .obstacle_source import ObstacleSource
+from .placing import Bounds, SitePlacing
+from .reading import check_sources, read_outlines
+from .roles import KEEPOUT, ROAD_CENTRELINE, ROAD_SURFACE
+from .site_content import SiteContent
+
+BEYOND_M = 100.0
+"""How far obstacles outside the bounds are published: a robot at the edge is sent what it can reach."""
+
+
+@dataclass(frozen=True)
+class SiteSources:
+    """The layers of a site, by what is read of them."""
+
+    obstacles: Sequence[ObstacleSource] = ()
+    centrelines: Sequence[ObstacleSource] = ()
+    surfaces: Sequence[ObstacleSource] = ()
+    keepouts: Sequence[ObstacleSource] = ()
+
+    def all(self) -> list[ObstacleSource]:
+        """Return every source."""
+        return [*self.obstacles, *self.centrelines, *self.surfaces, *self.keepouts]
+
+
+def read_content(
+    sources: SiteSources,
+    site: SitePlacing,
+    bounds: Bounds | None,
+    default_height: float,
+    default_width: float,
+    feedback: QgsFeedback,
+) -> SiteContent | None:
+    """Return what the layers hold, None after a cancel; of obstacles what is near ``bounds``, else all.
+
+    :raises LayerReadingError: when a layer has no known place on the site or an expression is not one.
+    """
+    near = _widened(bounds) if bounds is not None else None
+    obstacles = read_outlines(sources.obstacles, site, near, default_height, feedback)
+    centrelines = read_centrelines(sources.centrelines, site, default_width, feedback)
+    surfaces = read_areas(sources.surfaces, site, ROAD_SURFACE, feedback)
+    keepouts = read_areas(sources.keepouts, site, KEEPOUT, feedback)
+    readings = (obstacles, centrelines, surfaces, keepouts)
+    if feedback.isCanceled() or not all(reading.complete for reading in readings):
+        return None
+    return SiteContent(
+        obstacles=obstacles.rows,
+        centrelines=centrelines.items,
+        surfaces=surfaces.items,
+        keepouts=keepouts.items,
+        warnings=[warning for reading in readings for warning in reading.warnings],
+    )
+
+
+def check_content_sources(sources: SiteSources, site: SitePlacing) -> None:
+    """Raise :class:`LayerReadingError` for what :func:`read_content` would refuse, without reading."""
+    check_sources(sources.obstacles, site)
+    check_ground_sources(sources.centrelines, site, ROAD_CENTRELINE)
+    check_ground_sources(sources.surfaces, site, ROAD_SURFACE)
+    check_ground_sources(sources.keepouts, site, KEEPOUT)
+
+
+def _widened(bounds: Bounds) -> Bounds:
+    x_min, y_min, x_max, y_max = bounds
+    return x_min - BEYOND_M, y_min - BEYOND_M, x_max + BEYOND_M, y_max + BEYOND_M

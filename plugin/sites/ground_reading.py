@@ -1,0 +1,186 @@
+"""Road centrelines, road surfaces and keepouts read from their layers into plain arrays."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from typing import Generic, TypeVar
+
+import numpy as np
+from qgis.core import QgsAbstractGeometry, QgsFeature, QgsFeedback, QgsGeometry
+
+from ...robot_bridge.sites.features import Area, Centreline
+from .layer_rules import LayerRules, as_metres
+from .obstacle_source import ObstacleSource
+from .parts import parts_of
+from .placing import LayerPlacing, PlacingError, SitePlacing
+from .roles import KEEPOUT, ROAD_CENTRELINE, ROAD_SURFACE
+from .shapes import SAGITTA_M, Shape, shapes_of
+from .soundness import lines_with_length
+
+DEFAULT_WIDTH_M = 3.5
+"""The width of a road where none is known: one lane."""
+
+WIDTH_FIELDS = ("width_m", "width")
+LABEL_FIELDS = {ROAD_CENTRELINE: "surface", ROAD_SURFACE: "surface", KEEPOUT: "name"}
+"""The field that labels a feature of each role where no expression does."""
+
+Item = TypeVar("Item", Centreline, Area)
+
+
+@dataclass
+class GroundReading(Generic[Item]):
+    """What was read, in the site frame, and warnings naming layer and feature.
+
+    ``complete`` is false after a cancel.
+    """
+
+    items: list[Item] = field(default_factory=list)
+    warnings: list[str] = field(default_factory=list)
+    complete: bool = True
+
+
+def read_centrelines(
+    sources: Sequence[ObstacleSource], site: SitePlacing, default_width: float, feedback: QgsFeedback
+) -> GroundReading[Centreline]:
+    """Return the roads of layers of lines; what is no line is left out with a warning.
+
+    :raises LayerReadingError: when a layer has no known place on the site or an expression is not one.
+    """
+    reading: GroundReading[Centreline] = GroundReading()
+    for source in sources:
+        layer = _GroundLayer(source, site, ROAD_CENTRELINE)
+        width = layer.rules.rule("width", source.expressions.width or layer.rules.column(*WIDTH_FIELDS))
+        unknown: list[int] = []
+        for feature, geometry in layer.features(reading, feedback):
+            notes: list[str] = []
+            metres = _width(layer.rules, width, notes)
+            if metres is None:
+                unknown.append(feature.id())
+            lines = _lines(geometry, notes)
+            label = layer.label(feature, notes)
+            reading.items += [
+                Centreline(layer.placing.to_site(line), metres or default_width, label) for line in lines
+            ]
+            layer.note(feature, notes, reading)
+        reading.warnings += layer.rules.warnings
+        if unknown:
+            reading.warnings.append(
+                f"Layer {source.name}: the width of {len(unknown)} of its roads is not known and taken as "
+                f"{default_width:g} m (feature {unknown[0]} is the first)"
+            )
+    return reading
+
+
+def read_areas(
+    sources: Sequence[ObstacleSource], site: SitePlacing, role: str, feedback: QgsFeedback
+) -> GroundReading[Area]:
+    """Return the polygons of layers of ``role``; what is no polygon is left out with a warning.
+
+    :raises LayerReadingError: as :func:`read_centrelines`.
+    """
+    reading: GroundReading[Area] = GroundReading()
+    for source in sources:
+        layer = _GroundLayer(source, site, role)
+        for feature, geometry in layer.features(reading, feedback):
+            shapes, notes = shapes_of(geometry)
+            polygons = _polygons(shapes)
+            if any(not _closed(shape.points) for shape in shapes):
+                notes.append("has a line, which is no area; it is left out")
+            label = layer.label(feature, notes)
+            reading.items += [
+                Area(tuple(layer.placing.to_site(ring) for ring in rings), label) for rings in polygons
+            ]
+            layer.note(feature, notes, reading)
+        reading.warnings += layer.rules.warnings
+    return reading
+
+
+def check_ground_sources(sources: Sequence[ObstacleSource], site: SitePlacing, role: str) -> None:
+    """Raise :class:`LayerReadingError` for what reading ``sources`` would refuse, without reading."""
+    for source in sources:
+        rules = _GroundLayer(source, site, role).rules
+        rules.rule("width", source.expressions.width)
+
+
+class _GroundLayer:
+    """One layer of roads or areas: where it lies, what its expressions say, which features it has."""
+
+    def __init__(self, source: ObstacleSource, site: SitePlacing, role: str):
+        self.source = source
+        self.placing: LayerPlacing = site.of_layer(source.name, source.crs)
+        self.rules = LayerRules(source.name, source.fields, source.context)
+        column = self.rules.column(LABEL_FIELDS[role])
+        self._label = self.rules.rule("semantics", source.expressions.semantics or column)
+        self._otherwise = source.name if role == KEEPOUT else ""
+
+    def features(
+        self, reading: GroundReading, feedback: QgsFeedback
+    ) -> Iterator[tuple[QgsFeature, QgsGeometry]]:
+        """Yield each feature with its geometry in metres; warn of those that have none."""
+        for feature in self.source.features.getFeatures():
+            if feedback.isCanceled():
+                reading.complete = False
+                return
+            geometry = feature.geometry()
+            if geometry.isNull() or geometry.isEmpty():
+                self.note(feature, ["has no geometry; it is left out"], reading)
+                continue
+            try:
+                moved = self.placing.to_metres(geometry)
+            except PlacingError as error:
+                why = f"cannot be transformed into the site's CRS ({error}); it is left out"
+                self.note(feature, [why], reading)
+                continue
+            self.rules.at(feature)
+            yield feature, moved
+
+    def label(self, feature: QgsFeature, notes: list[str]) -> str:
+        """Return the label of the feature that was yielded last."""
+        value = self.rules.value("semantics", self._label, notes)
+        return self._otherwise if value is None else str(value)
+
+    def note(self, feature: QgsFeature, notes: Sequence[str], reading: GroundReading) -> None:
+        """Warn of ``feature``."""
+        reading.warnings += [f"Layer {self.source.name}, feature {feature.id()}: {note}" for note in notes]
+
+
+def _width(rules: LayerRules, expression, notes: list[str]) -> float | None:
+    value = rules.value("width", expression, notes)
+    if value is None or value == "":
+        return None
+    metres = as_metres(value)
+    if metres is None or metres <= 0:
+        notes.append(f"its width {value!r} is not a number of metres above 0; the default is used")
+        return None
+    return metres
+
+
+def _lines(geometry: QgsGeometry, notes: list[str]) -> list[np.ndarray]:
+    if geometry.constGet().hasCurvedSegments():
+        maximum = QgsAbstractGeometry.SegmentationToleranceType.MaximumDifference
+        geometry = QgsGeometry(geometry.constGet().segmentize(SAGITTA_M, maximum))
+    parts = parts_of(geometry)
+    notes += parts.notes
+    if not parts.finite:
+        notes.append("has a coordinate that is no number; it is left out")
+        return []
+    if parts.polygons:
+        notes.append("has a polygon, which is no centreline; it is left out")
+    lines, line_notes = lines_with_length(parts.lines)
+    notes += line_notes
+    return lines
+
+
+def _polygons(shapes: Sequence[Shape]) -> list[list[np.ndarray]]:
+    polygons: list[list[np.ndarray]] = []
+    for shape in shapes:
+        if shape.courtyard:
+            polygons[-1].append(shape.points)
+        elif _closed(shape.points):
+            polygons.append([shape.points])
+    return polygons
+
+
+def _closed(points: np.ndarray) -> bool:
+    return bool(len(points) > 3 and (points[0] == points[-1]).all())

@@ -1,0 +1,132 @@
+"""Map profiles in files: TOML, or the same keys as JSON where Python reads no TOML (before 3.11)."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from qgis.core import QgsExpression
+
+from .errors import ProfileError
+from .profile import GEOMETRIES, Profile, ProfileRule
+from .roles import ROLES, LayerExpressions, LayerSetup
+
+PROFILES = Path(__file__).parents[2] / "resources" / "profiles"
+SUFFIXES = (".toml", ".json")
+
+_EXPRESSIONS = ("height", "semantics", "outdoor", "width")
+_RULE_KEYS = ("names", "fields", "geometry", "role", *_EXPRESSIONS)
+_KEYS = ("name", "about", "layers")
+
+
+def shipped_profiles() -> list[Path]:
+    """Return the files of the profiles that come with the plugin."""
+    return sorted(PROFILES.glob("*.toml"))
+
+
+def find_profile(text: str) -> Path:
+    """Return the file that ``text`` names: a path, or the name of a profile that comes with the plugin."""
+    named = PROFILES / f"{text}.toml"
+    return named if named in shipped_profiles() else Path(text)
+
+
+def read_profile(file: Path) -> Profile:
+    """Return the profile in ``file``.
+
+    :raises ProfileError: naming the file, the key, what is wrong with it and what is right.
+    """
+    content = _content(file)
+    _refuse_unknown(content, _KEYS, "", file)
+    layers = content.get("layers")
+    if not isinstance(layers, list) or not layers:
+        raise ProfileError(f"{file}: layers is missing or empty: write one table [[layers]] or more.")
+    return Profile(
+        name=_text(content, "name", "", file) or file.stem,
+        about=_text(content, "about", "", file),
+        rules=tuple(_rule(layer, f"layers[{k}]", file) for k, layer in enumerate(layers)),
+    )
+
+
+def _content(file: Path) -> Mapping[str, Any]:
+    try:
+        text = file.read_text(encoding="utf-8")
+    except FileNotFoundError as error:
+        shipped = ", ".join(path.stem for path in shipped_profiles())
+        raise ProfileError(
+            f"The profile {file} is not there: give the path of a file, or one of {shipped}."
+        ) from error
+    except (OSError, UnicodeDecodeError) as error:
+        raise ProfileError(f"The profile {file} cannot be read: {error}.") from error
+    try:
+        content = json.loads(text) if file.suffix.lower() == ".json" else _toml(text, file)
+    except (ValueError, RecursionError) as error:
+        kind = "JSON" if file.suffix.lower() == ".json" else "TOML"
+        raise ProfileError(f"{file} is not valid {kind}: {error}. Correct that place.") from error
+    if not isinstance(content, Mapping):
+        raise ProfileError(f"{file} is no profile: write an object with name and layers.")
+    return content
+
+
+def _toml(text: str, file: Path) -> Mapping[str, Any]:
+    try:
+        import tomllib
+    except ImportError as error:
+        raise ProfileError(
+            f"{file} cannot be read: this QGIS runs Python older than 3.11, which reads no TOML. Save the "
+            "profile with the same keys as JSON and choose that file."
+        ) from error
+    return tomllib.loads(text)
+
+
+def _rule(content: Any, key: str, file: Path) -> ProfileRule:
+    if not isinstance(content, Mapping):
+        raise ProfileError(f"{file}: {key} is {content!r}: write a table [[layers]].")
+    _refuse_unknown(content, _RULE_KEYS, f"{key}.", file)
+    names, fields = (_texts(content, name, key, file) for name in ("names", "fields"))
+    if not names and not fields:
+        raise ProfileError(
+            f'{file}: {key} fits no layer: write names = ["*building*"] or fields = ["building"].'
+        )
+    geometry = _text(content, "geometry", f"{key}.", file)
+    if geometry and geometry not in GEOMETRIES:
+        raise ProfileError(f"{file}: {key}.geometry is {geometry!r}: write one of {', '.join(GEOMETRIES)}.")
+    role = _text(content, "role", f"{key}.", file)
+    if role not in ROLES:
+        raise ProfileError(f"{file}: {key}.role is {role!r}: write one of {', '.join(ROLES)}.")
+    expressions = {name: _expression(content, name, key, file) for name in _EXPRESSIONS}
+    return ProfileRule(names, fields, geometry, LayerSetup(role, LayerExpressions(**expressions)))
+
+
+def _expression(content: Mapping[str, Any], name: str, key: str, file: Path) -> str:
+    text = " ".join(_text(content, name, f"{key}.", file).split())
+    if text and (parsed := QgsExpression(text)).hasParserError():
+        raise ProfileError(
+            f"{file}: {key}.{name} is no QGIS expression: {parsed.parserErrorString().strip()}. Correct it."
+        )
+    return text
+
+
+def _text(content: Mapping[str, Any], name: str, prefix: str, file: Path) -> str:
+    value = content.get(name, "")
+    if not isinstance(value, str):
+        raise ProfileError(f"{file}: {prefix}{name} is {value!r}: write text in quotes.")
+    return value
+
+
+def _texts(content: Mapping[str, Any], name: str, key: str, file: Path) -> tuple[str, ...]:
+    value = content.get(name, [])
+    texts = [value] if isinstance(value, str) else value
+    if not isinstance(texts, list) or not all(isinstance(text, str) and text for text in texts):
+        raise ProfileError(f'{file}: {key}.{name} is {value!r}: write a list of texts, such as ["walls"].')
+    return tuple(texts)
+
+
+def _refuse_unknown(content: Mapping[str, Any], known: tuple[str, ...], prefix: str, file: Path) -> None:
+    for name in content:
+        if name not in known:
+            raise ProfileError(
+                f"{file}: {prefix}{name} is no key of a profile: known are {', '.join(known)}. Remove it or "
+                "correct its name."
+            )

@@ -1,0 +1,122 @@
+"""Publishes a site from QGIS: a folder with ``site.toml`` and ``site.gpkg``, whole or as it was before."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import tempfile
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from qgis.core import QgsFeedback
+
+from ...robot_bridge.sites.errors import SettingsError
+from ...robot_bridge.sites.geopackage import GEOPACKAGE_FILE
+from ...robot_bridge.sites.settings import SETTINGS_FILE, SiteSettings, check_values, settings_text
+from .errors import PublicationError
+from .site_content import SiteContent
+from .site_file import stamp_in, write_site_file
+
+_ID = re.compile(r"""^[ \t]*id[ \t]*=[ \t]*(?:"([^"\n]*)"|'([^'\n]*)')""", re.MULTILINE)
+_VERSION = re.compile(r"^[ \t]*version[ \t]*=[ \t]*(\d+)", re.MULTILINE)
+_STAMP = re.compile(r"(.+) version (\d+)")
+
+
+@dataclass(frozen=True)
+class Earlier:
+    """The publication that a folder holds already."""
+
+    id: str
+    version: int
+
+
+def earlier_publication(folder: Path) -> Earlier | None:
+    """Return what is published in ``folder``, None when nothing is.
+
+    The two lines wanted of ``site.toml`` are found by their shape, because Python before 3.11 reads no TOML.
+    After a publication cut off between its two files the higher version counts, so that it is not used twice.
+
+    :raises PublicationError: when the folder holds files of these names that are no publication.
+    """
+    settings_file, layers_file = folder / SETTINGS_FILE, folder / GEOPACKAGE_FILE
+    found = []
+    if settings_file.is_file():
+        text = settings_file.read_text(encoding="utf-8", errors="replace")
+        name, version = _ID.search(text), _VERSION.search(text)
+        if name is None or version is None:
+            raise _not_a_publication(settings_file)
+        found.append(Earlier(name[1] or name[2] or "", int(version[1])))
+    if layers_file.is_file():
+        stamp = _STAMP.fullmatch(stamp_in(layers_file))
+        if stamp is None and not found:
+            raise _not_a_publication(layers_file)
+        if stamp is not None and (not found or stamp[1] == found[0].id):
+            found.append(Earlier(stamp[1], int(stamp[2])))
+    return max(found, key=lambda earlier: earlier.version, default=None)
+
+
+def next_version(settings: SiteSettings, folder: Path, *, replace_other: bool = False) -> SiteSettings:
+    """Return ``settings`` with the version after the one published in ``folder``, 1 for a first one.
+
+    :raises PublicationError: when the folder holds another site and ``replace_other`` is not said.
+    """
+    try:
+        earlier = earlier_publication(folder)
+    except PublicationError:
+        if not replace_other:
+            raise
+        earlier = None
+    if earlier is not None and earlier.id == settings.id:
+        return replace(settings, version=earlier.version + 1)
+    if earlier is not None and not replace_other:
+        raise PublicationError(
+            f"{folder} holds version {earlier.version} of another site, {earlier.id}: choose another folder "
+            f"for {settings.id}, or say that the other site may be replaced (REPLACE=true)."
+        )
+    return replace(settings, version=1)
+
+
+def publish(folder: Path, content: SiteContent, settings: SiteSettings, feedback: QgsFeedback) -> bool:
+    """Publish ``content`` in ``folder``; return whether it was, false after a cancel.
+
+    Other files in ``folder`` stay. An earlier publication is replaced only after the new one is complete. A
+    gateway that reads between the replacement of the two files refuses what it finds and reads no half site.
+
+    :raises PublicationError: when a setting is wrong or the folder cannot be written.
+    """
+    check_publication_values(settings, folder)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        # A folder inside the target, so that both renames stay on one file system.
+        partial = Path(tempfile.mkdtemp(prefix=".publishing-", dir=folder))
+        try:
+            if not write_site_file(partial / GEOPACKAGE_FILE, content, settings, feedback):
+                return False
+            (partial / SETTINGS_FILE).write_text(settings_text(settings), encoding="utf-8")
+            if feedback.isCanceled():
+                return False
+            for name in (GEOPACKAGE_FILE, SETTINGS_FILE):
+                (partial / name).replace(folder / name)
+        finally:
+            shutil.rmtree(partial, ignore_errors=True)
+    except OSError as error:
+        raise PublicationError(
+            f"The site cannot be published in {folder}: {error.strerror or error}. Check the folder's rights "
+            "and the free space."
+        ) from error
+    return True
+
+
+def check_publication_values(settings: SiteSettings, folder: Path) -> None:
+    """Raise :class:`PublicationError` for the first setting that is wrong in itself."""
+    try:
+        check_values(settings, folder / SETTINGS_FILE)
+    except SettingsError as error:
+        raise PublicationError(str(error)) from error
+
+
+def _not_a_publication(file: Path) -> PublicationError:
+    return PublicationError(
+        f"{file} is there and is no part of a published site: choose another folder, or say that it may be "
+        "replaced (REPLACE=true)."
+    )

@@ -1,0 +1,283 @@
+"""``fleet:publishsite``: from layers with roles to what a gateway serves, and every way it is refused."""
+
+from __future__ import annotations
+
+import base64
+import json
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pytest
+from fleet_supervisor.plugin.sites.roles import LayerExpressions, LayerSetup, keep_setup
+from fleet_supervisor.robot_bridge.robotmap.binary import decode_text
+from fleet_supervisor.robot_bridge.robotmap.text import read_text
+from fleet_supervisor.robot_bridge.sites.errors import LayerError
+from fleet_supervisor.robot_bridge.sites.publication import read_site
+from qgis.core import QgsProcessingContext, QgsProcessingException, QgsProject
+from stage.processes import Processes
+from websockets.sync.client import connect
+
+RING = "Polygon((0 0, 20 0, 20 10, 0 10, 0 0), (5 3, 9 3, 9 7, 5 7, 5 3))"
+ROAD = "LineString(0 15, 50 15)"
+AREA = "Polygon((40 20, 50 20, 50 30, 40 20))"
+
+
+@dataclass(frozen=True)
+class Published:
+    """One finished publication: its outputs, its folder, and what it warned of."""
+
+    results: dict
+    folder: Path
+    warnings: list[str]
+
+
+@pytest.fixture
+def publish(provider, tmp_path, cancels_at):
+    """Run the algorithm by ``processing.run``, in an empty project unless given one."""
+    import processing
+
+    def run(feedback=None, project=None, **parameters) -> Published:
+        listener = feedback or cancels_at(1000)
+        context = QgsProcessingContext()
+        context.setProject(project or QgsProject())
+        folder = tmp_path / "site"
+        everything = {"FOLDER": str(folder), "SITE_ID": "yard", "SITE_CRS": "EPSG:32633", **parameters}
+        results = processing.run(
+            "fleet:publishsite", everything, context=context, feedback=listener, is_child_algorithm=True
+        )
+        return Published(results, Path(everything["FOLDER"]), listener.warnings)
+
+    return run
+
+
+@pytest.fixture
+def yard(make_layer):
+    """The layers of a small site, by the parameters that take them."""
+    return {
+        "OBSTACLES": [make_layer("house", "Polygon", features=[(RING, 9.5)])],
+        "ROAD_CENTRELINES": [
+            make_layer(
+                "roads",
+                fields="&field=width_m:double&field=surface:string",
+                features=[(ROAD, 3.5, "asphalt"), (None, 1, ""), ("LineString(0 5, 9 5)", -1.0, "mud")],
+            )
+        ],
+        "ROAD_SURFACES": [
+            make_layer("ground", "Polygon", fields="&field=surface:string", features=[(RING, "asphalt")])
+        ],
+        "KEEPOUTS": [make_layer("ponds", "Polygon", fields="&field=name:string", features=[(AREA, "Pond")])],
+    }
+
+
+def content_of(folder):
+    return {file.name: file.read_bytes() for file in folder.iterdir()} if folder.exists() else {}
+
+
+@pytest.fixture
+def refused(publish, tmp_path):
+    """Run a publication that must fail, and return what it said; the folder must stay as it was."""
+
+    def run(**parameters) -> str:
+        before = content_of(tmp_path / "site")
+        with pytest.raises(QgsProcessingException) as error:
+            publish(**parameters)
+        assert content_of(tmp_path / "site") == before
+        return str(error.value)
+
+    return run
+
+
+def test_what_is_published_is_what_the_layers_hold(publish, yard):
+    done = publish(**yard, ORIGIN="-10,-20", ROTATION=90, REACHED_TOLERANCE=0.3, STALE_AFTER=2, LOST_AFTER=5)
+    site = read_site(done.folder)
+    assert (site.id, site.name, site.version) == ("yard", "yard", 1)
+    assert site.frame.origin == (-10.0, -20.0) and site.settings.rotation_deg == 90.0
+    assert site.settings.reached_tolerance_m == 0.3
+    assert (site.settings.liveness.stale_after_s, site.settings.liveness.lost_after_s) == (2.0, 5.0)
+    assert site.outlines.courtyard.tolist() == [False, True]
+    assert site.outlines.height.tolist() == [9.5, 9.5]
+    # (0, 0) of the CRS is 10 m east and 20 m north of the origin; the site's x axis points north.
+    np.testing.assert_allclose(site.outlines.coordinates[0], [20.0, -10.0], atol=1e-6)
+    assert [(line.width_m, line.surface) for line in site.centrelines] == [(3.5, "asphalt"), (3.5, "mud")]
+    assert [(area.label, len(area.rings)) for area in site.surfaces] == [("asphalt", 2)]
+    assert [area.label for area in site.keepouts] == ["Pond"]
+    assert all(site.contains(*point) for point in site.outlines.coordinates)
+    assert {key: done.results[key] for key in ("ID", "VERSION", "OBSTACLE_COUNT", "CENTRELINE_COUNT")} == {
+        "ID": "yard",
+        "VERSION": 1,
+        "OBSTACLE_COUNT": 2,
+        "CENTRELINE_COUNT": 2,
+    }
+    assert done.warnings == [
+        "Layer roads, feature 2: has no geometry; it is left out",
+        "Layer roads, feature 3: its width -1.0 is not a number of metres above 0; the default is used",
+        "Layer roads: the width of 1 of its roads is not known and taken as 3.5 m (feature 3 is the first)",
+    ]
+
+
+def test_layers_come_from_the_project_by_their_roles(publish, make_layer):
+    project = QgsProject()
+    house = make_layer("house", "Polygon", features=[(RING, 9.5)])
+    stairs = make_layer("up", "MultiLineString", features=[("MultiLineString((0 0, 4 0), (0 1, 4 1))", 0.15)])
+    other = make_layer("other", features=[(ROAD, 1.0)])
+    project.addMapLayers([house, stairs, other])
+    keep_setup(house, LayerSetup("obstacle", LayerExpressions(height="4", semantics="'shed'")))
+    keep_setup(stairs, LayerSetup("stairs"))
+    site = read_site(publish(project=project).folder)
+    assert list(site.outlines.semantics) == ["shed", "shed", "up"]
+    assert site.outlines.height.tolist() == [4.0, 4.0, 0.15]
+    assert site.outlines.shape_type.tolist() == [1, 1, 5]
+
+
+def test_the_version_goes_up_by_itself(publish, yard):
+    assert [publish(**yard).results["VERSION"] for _ in range(3)] == [1, 2, 3]
+
+
+def test_a_publication_cut_off_between_its_files_does_not_use_a_version_twice(publish, yard, tmp_path):
+    folder = publish(**yard).folder
+    old = (folder / "site.toml").read_bytes()
+    publish(**yard)
+    (folder / "site.toml").write_bytes(old)
+    with pytest.raises(LayerError, match="publishing was interrupted"):
+        read_site(folder)
+    assert publish(**yard).results["VERSION"] == 3
+    assert read_site(folder).version == 3
+
+
+def test_another_site_is_replaced_only_when_told(publish, refused, yard):
+    folder = publish(**yard).folder
+    publish(**yard)
+    said = refused(**yard, SITE_ID="field")
+    assert f"{folder} holds version 2 of another site, yard" in said and "REPLACE=true" in said
+    assert publish(**yard, SITE_ID="field", REPLACE=True).results["VERSION"] == 1
+    assert read_site(folder).id == "field"
+
+
+def test_files_of_that_name_that_are_no_publication_stay(refused, publish, yard, tmp_path):
+    (tmp_path / "site").mkdir()
+    (tmp_path / "site" / "site.toml").write_text("something else")
+    assert "site.toml is there and is no part of a published site" in refused(**yard)
+    assert publish(**yard, REPLACE=True).results["VERSION"] == 1
+
+
+@pytest.mark.parametrize("percent", [1, 60])
+def test_a_cancel_leaves_the_publication_that_was_there(publish, yard, make_layer, cancels_at, percent):
+    folder = publish(**yard).folder
+    before = content_of(folder)
+    many = make_layer("many", features=[(f"LineString({k} 0, {k} 1)", 1.0) for k in range(300)])
+    assert publish(**{**yard, "OBSTACLES": [many]}, feedback=cancels_at(percent)).results == {}
+    assert content_of(folder) == before
+
+
+def test_a_folder_that_cannot_be_written_is_named(refused, yard, tmp_path):
+    (tmp_path / "file").write_text("in the way")
+    said = refused(**yard, FOLDER=str(tmp_path / "file" / "site"))
+    assert f"cannot be published in {tmp_path / 'file' / 'site'}" in said
+
+
+def test_obstacles_beyond_the_bounds_are_published_as_far_as_a_robot_sees(publish, make_layer):
+    walls = [("LineString(50 0, 50 9)", 1), ("LineString(199 0, 199 9)", 1), ("LineString(201 0, 201 9)", 1)]
+    done = publish(OBSTACLES=[make_layer(features=walls)], BOUNDS="0,100,0,50")
+    site = read_site(done.folder)
+    assert tuple(site.bounds) == (0.0, 0.0, 100.0, 50.0)
+    assert list(site.outlines.source) == ["walls:1", "walls:2"]
+
+
+@pytest.mark.parametrize(
+    ("parameters", "said"),
+    [
+        ({"SITE_ID": ""}, "SITE_ID is empty and the project has no variable fleet_site"),
+        ({"SITE_ID": "a b"}, "site.id = 'a b' is not an id"),
+        ({"SITE_CRS": "EPSG:3857"}, "its metres are not metres"),
+        ({"STALE_AFTER": 20}, "a robot turns stale before it is lost"),
+        ({"REACHED_TOLERANCE": 0}, "reached_tolerance_m = 0.0 is not above 0"),
+        ({"DEFAULT_WIDTH": 0}, "DEFAULT_WIDTH is 0.0"),
+        ({"BOUNDS": "5,5,0,10"}, "has no area"),
+        ({"PROFILE": "no_such"}, "The profile no_such is not there"),
+        ({"OBSTACLES": ["/no/such.gpkg"]}, "OBSTACLES: the layer /no/such.gpkg cannot be opened"),
+    ],
+)
+def test_a_wrong_parameter_is_named(refused, yard, parameters, said):
+    assert said in refused(**{**yard, **parameters})
+
+
+def test_nothing_to_publish_is_said_before_and_after_reading(refused, make_layer):
+    assert "no layer of the project has a role" in refused()
+    assert "hold nothing that can be read" in refused(OBSTACLES=[make_layer()])
+
+
+def test_a_local_crs_is_refused_with_the_way_out(refused, publish, make_layer):
+    local = make_layer(crs='wkt:LOCAL_CS["yard",UNIT["metre",1]]', features=[("LineString(0 0, 5 0)", 1.0)])
+    said = refused(OBSTACLES=[local], SITE_CRS=None)
+    assert "has no code that a gateway knows it by" in said and "LOCAL=true" in said
+    site = read_site(publish(OBSTACLES=[local], LOCAL=True, ORIGIN="400000,4500000").folder)
+    np.testing.assert_allclose(site.outlines.coordinates, [[0, 0], [5, 0]], atol=1e-6)
+
+
+def shapes(robot_map):
+    """Return what a map says, whatever its obstacles are numbered."""
+    return sorted(
+        (o.semantics, o.ext.get("src"), int(o.shape_type), o.height.tolist(), o.a.tolist(), o.b.tolist())
+        for o in robot_map.obstacles
+    )
+
+
+@pytest.fixture(scope="module")
+def by_process(qgis_process, root, tmp_path_factory):
+    """The sample site published by ``qgis_process`` without the packages of this environment."""
+    folder = tmp_path_factory.mktemp("published") / "site"
+    project = root / "resources" / "sample_site" / "sample_site.qgz"
+    words = (f"--PROJECT_PATH={project}", "--", "BOUNDS=640420,640620,5193480,5193640", f"FOLDER={folder}")
+    done = qgis_process("run", "fleet:publishsite", *words, packages=False)
+    assert done.status == 0, done.said
+    return done, folder
+
+
+def test_a_stock_qgis_publishes_what_a_gateway_serves(by_process, tmp_path):
+    _, folder = by_process
+    command = [sys.executable, "-m", "robot_bridge", "serve", "--site", folder, "--port", "0"]
+    command += ["--database", f"sqlite:///{tmp_path / 'fleet.db'}"]
+    with Processes(tmp_path / "logs") as processes:
+        processes.start("gateway", command)
+        address = processes.wait_for_line("gateway", r"listening on (ws://\S+:\d+)", 20).group(1)
+        with connect(f"{address}/robot", max_size=None) as robot:
+            robot.send(json.dumps({"jsonrpc": "2.0", "id": 1, "method": "Ready", "params": {"magic": 7}}))
+            calls = (json.loads(robot.recv(10)) for _ in range(5))
+            call = next(frame for frame in calls if frame.get("method") == "SetMap")
+    served = read_text(decode_text(base64.b64decode(call["params"]["map"])))
+    assert served.meta["id"] == "sample" and served.meta["version"] == "1"
+    assert shapes(served) == shapes(read_site(folder).whole_map())
+
+
+def test_the_map_of_a_publication_is_the_map_exported_from_the_layers(
+    by_process, qgis_process, root, tmp_path
+):
+    _, folder = by_process
+    project = root / "resources" / "sample_site" / "sample_site.qgz"
+    layers = ("Buildings", "Walls", "Columns", "Litter bins", "Benches", "Stairs", "Ramp")
+    words = [f"OBSTACLES={name}" for name in layers]
+    words += ["EXTENT=640420,640620,5193480,5193640", f"OUTPUT={tmp_path / 'map.txt'}"]
+    done = qgis_process("run", "fleet:exportrobotmap", f"--PROJECT_PATH={project}", "--", *words)
+    assert done.status == 0, done.said
+    exported = read_text((tmp_path / "map.txt").read_text())
+    published = read_site(folder).whole_map()
+    assert len(shapes(published)) > 40
+    assert shapes(exported) == shapes(published)
+    assert exported.border == published.border
+
+
+def test_helsinki_is_published_by_its_profile_with_every_loss_named(qgis_process, data, tmp_path):
+    helsinki = data / "osm" / "helsinki_centre_utm35n.gpkg"
+    words = [f"OBSTACLES={helsinki}|layername={name}" for name in ("buildings", "barriers")]
+    words += [f"ROAD_CENTRELINES={helsinki}|layername=roads", "PROFILE=openstreetmap", "SITE_ID=helsinki"]
+    words += ["SITE_CRS=EPSG:32635", "ORIGIN=385700,6671500", f"FOLDER={tmp_path}"]
+    done = qgis_process("run", "fleet:publishsite", "--", *words, packages=False)
+    assert done.status == 0, done.said
+    site = read_site(tmp_path)
+    assert len(site.centrelines) == 2384
+    kinds = {label.partition(",")[0] for label in site.outlines.semantics}
+    assert {"building", "retaining_wall", "bollard"} <= kinds
+    assert any(warning.startswith("Layer buildings, feature ") for warning in done.warnings)
+    assert any("heights are not known and estimated as 3 m" in warning for warning in done.warnings)
