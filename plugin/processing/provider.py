@@ -7,6 +7,7 @@ from pathlib import Path
 from qgis.core import QgsProcessingProvider
 from qgis.PyQt.QtGui import QIcon
 
+from .export_navigation_map import ExportNavigationMap
 from .export_robot_map import ExportRobotMap
 from .publish_site import PublishSite
 
@@ -27,4 +28,5 @@ class FleetProvider(QgsProcessingProvider):
 
     def loadAlgorithms(self):
         self.addAlgorithm(ExportRobotMap())
+        self.addAlgorithm(ExportNavigationMap())
         self.addAlgorithm(PublishSite())

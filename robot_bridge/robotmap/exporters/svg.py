@@ -82,8 +82,8 @@ def _areas(
 ) -> Iterator[str]:
     by_id = {obstacle.id: obstacle for obstacle in robot_map.obstacles}
     areas = [shape for shape in shapes if shape.kind == "Polygon"]
-    # What is drawn on comes first, so that it does not cover what stands on it.
-    for shape in sorted(areas, key=lambda area: area.attributes["shape_type"] != ShapeType.RAMP):
+    # Grounds come first, so that they do not cover what stands on them.
+    for shape in sorted(areas, key=lambda area: not _is_ground(area)):
         obstacle = by_id[shape.attributes["id"]]
         colours = colours_of(obstacle, by_label)
         fill = FACE if shape.attributes["courtyard"] else deepened(colours.fill, shape.attributes["height_m"])
@@ -93,6 +93,10 @@ def _areas(
             f'<path d="{_path(sheet, shape.parts)}" fill="{fill}" fill-rule="evenodd" '
             f'stroke="{colours.stroke}" stroke-width="{stroke:.1f}" stroke-linejoin="round"{dashes}/>'
         )
+
+
+def _is_ground(area: Shape) -> bool:
+    return area.attributes["courtyard"] or area.attributes["shape_type"] == ShapeType.RAMP
 
 
 def _lines(sheet: Sheet, robot_map: RobotMap, by_label: Mapping[str, Colours]) -> Iterator[str]:

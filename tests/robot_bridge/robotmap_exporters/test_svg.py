@@ -63,6 +63,24 @@ def test_a_courtyard_is_a_hole_also_where_the_border_cuts_the_building(make_map)
     assert len(fills) == 1
 
 
+def test_a_courtyard_never_covers_what_stands_in_it(make_map):
+    """The building round it is cut, so that its courtyard is an area of its own."""
+
+    def square(low, high, right=0.0):
+        right = right or high
+        return [(low, low), (right, low), (right, high), (low, high), (low, low)]
+
+    rows = [
+        (square(7, 8), {"semantics": "hut"}),
+        (square(2, 18, right=25), {"source": "b:1"}),
+        (square(6, 14), {"source": "b:1", "courtyard": True}),
+        (square(0.5, 1), {}),
+    ]
+    picture = svg_of(make_map(rows, (0, 0, 20, 20)), size=200).decode()
+    order = [picture.index(f'd="M{62 + 10 * x:.1f} {66 + 200 - 10 * y:.1f}L') for x, y in ((6, 6), (7, 7))]
+    assert order == sorted(order)
+
+
 def test_stairs_and_ramps_have_their_own_colours_whatever_they_are_called(make_map):
     picture = svg_of(
         make_map(

@@ -1,0 +1,278 @@
+"""``fleet:exportnavigationmap``: a robot map in, the maps of today's robots out."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from qgis.core import (
+    QgsProcessing,
+    QgsProcessingAlgorithm,
+    QgsProcessingOutputFile,
+    QgsProcessingOutputNumber,
+    QgsProcessingParameterDefinition,
+    QgsProcessingParameterEnum,
+    QgsProcessingParameterExpression,
+    QgsProcessingParameterFeatureSource,
+    QgsProcessingParameterFile,
+    QgsProcessingParameterFolderDestination,
+    QgsProcessingParameterNumber,
+    QgsProcessingParameterString,
+)
+from qgis.PyQt.QtGui import QIcon
+
+from ...robot_bridge.robotmap.binary import decode
+from ...robot_bridge.robotmap.errors import TextError
+from ...robot_bridge.robotmap.model import RobotMap
+from ...robot_bridge.robotmap.text import read_text
+from .errors import ParameterError, shown_by_processing
+from .map_place import place_of
+from .mask_areas import areas_of, speed_by
+from .navigation_files import FORMATS as MADE
+from .navigation_files import Files, NavigationExport
+from .navigation_help import HELP
+from .whole_file import OutputError, write_whole
+
+INPUT, FORMATS, NAME, OUTPUT = "INPUT", "FORMATS", "NAME", "OUTPUT"
+RESOLUTION, INSIDE, DRIVES_OVER = "RESOLUTION", "INSIDE", "DRIVES_OVER"
+KEEPOUTS, SPEED_AREAS, SPEED = "KEEPOUTS", "SPEED_AREAS", "SPEED"
+UNKNOWN, OCCUPIED = "unknown", "occupied"
+
+ICON = Path(__file__).parents[2] / "resources" / "icons" / "export_navigation_map.svg"
+_REAL = QgsProcessingParameterNumber.Type.Double
+_POLYGONS = [QgsProcessing.SourceType.TypeVectorPolygon]
+
+
+class ExportNavigationMap(QgsProcessingAlgorithm):
+    """Writes a robot map as Nav2 grids and masks, GeoJSON, GeoPackage and pictures."""
+
+    def name(self):
+        return "exportnavigationmap"
+
+    def displayName(self):
+        return "Export navigation map"
+
+    def group(self):
+        return "Robot maps"
+
+    def groupId(self):
+        return "robotmaps"
+
+    def tags(self):
+        return [
+            *("robot", "map", "nav2", "ros", "occupancy grid", "pgm", "costmap", "keepout", "speed", "mask"),
+            *("geojson", "geopackage", "svg", "png"),
+        ]
+
+    def shortDescription(self):
+        return "Writes a robot map as Nav2 occupancy grid and masks, GeoJSON, GeoPackage, SVG or PNG."
+
+    def shortHelpString(self):
+        return HELP
+
+    def icon(self):
+        return QIcon(str(ICON))
+
+    def svgIconPath(self):
+        return str(ICON)
+
+    def createInstance(self):
+        return ExportNavigationMap()
+
+    def initAlgorithm(self, configuration=None):
+        for parameter in _parameters():
+            self.addParameter(parameter)
+        for name in MADE:
+            self.addOutput(QgsProcessingOutputFile(name.upper(), f"File of format {name}"))
+        self.addOutput(QgsProcessingOutputNumber("FILE_COUNT", "Files"))
+        self.addOutput(QgsProcessingOutputNumber("WARNING_COUNT", "Warnings"))
+
+    def checkParameterValues(self, parameters, context):
+        # Before QGIS's own checks, which say that a value is wrong and not why.
+        problem = _number_problem(parameters) or self._choice_problem(parameters, context)
+        return (False, problem) if problem else super().checkParameterValues(parameters, context)
+
+    def processAlgorithm(self, parameters, context, feedback):
+        formats = self.parameterAsEnumStrings(parameters, FORMATS, context)
+        source = Path(self.parameterAsFile(parameters, INPUT, context))
+        folder = Path(self.parameterAsString(parameters, OUTPUT, context))
+        with shown_by_processing():
+            export = self._plan(source, parameters, context)
+            self._read_areas(export, formats, parameters, context, feedback)
+            made: dict[str, Files] = {}
+            for number, format in enumerate(formats):
+                if feedback.isCanceled():
+                    return {}
+                feedback.setProgressText(f"Making {format}")
+                made[format] = export.files(format)
+                feedback.setProgress(90.0 * (number + 1) / len(formats))
+            if feedback.isCanceled():
+                return {}
+            _write(made, folder, source, feedback)
+        for warning in export.warnings:
+            feedback.pushWarning(warning)
+        feedback.setProgress(100)
+        return _results(made, folder, len(export.warnings))
+
+    def _plan(self, source: Path, parameters, context) -> NavigationExport:
+        robot_map = _read(source)
+        return NavigationExport(
+            robot_map=robot_map,
+            place=place_of(robot_map, context.transformContext()),
+            name=_name(self.parameterAsString(parameters, NAME, context), source),
+            resolution=self.parameterAsDouble(parameters, RESOLUTION, context),
+            inside=self.parameterAsEnumString(parameters, INSIDE, context),
+            drives_over=self.parameterAsDouble(parameters, DRIVES_OVER, context),
+            warnings=list(robot_map.warnings),
+        )
+
+    def _read_areas(self, export: NavigationExport, formats, parameters, context, feedback) -> None:
+        """Read the layers of the masks that are wanted."""
+        site = export.place.placing
+        wanted = [name for name in ("keepout", "speed") if name in formats]
+        if wanted and export.place.frame is None:
+            export.warnings.append(
+                "The map names no CRS that QGIS knows: the coordinates of the keepout and speed layers are "
+                "taken as its own metres."
+            )
+        if "keepout" in wanted:
+            source = self._layer(parameters, KEEPOUTS, context)
+            export.keepouts, warnings = areas_of(source, site, feedback)
+            export.warnings += warnings
+        if "speed" in wanted:
+            source = self._layer(parameters, SPEED_AREAS, context)
+            expression = self.createExpressionContext(parameters, context, source)
+            speed = speed_by(self.parameterAsString(parameters, SPEED, context), source, expression)
+            export.speed_areas, warnings = areas_of(source, site, feedback, speed)
+            export.warnings += warnings
+
+    def _layer(self, parameters, name: str, context):
+        source = self.parameterAsSource(parameters, name, context)
+        if source is None:
+            raise ParameterError(
+                f"{name} {parameters.get(name)} cannot be opened: check the file and the layer's name."
+            )
+        return source
+
+    def _choice_problem(self, parameters, context) -> str:
+        """Return what the formats need and do not have, or nothing."""
+        formats = self.parameterAsEnumStrings(parameters, FORMATS, context)
+        needed = {"keepout": (KEEPOUTS,), "speed": (SPEED_AREAS, SPEED)}
+        for format, names in needed.items():
+            for name in names:
+                if format in formats and not parameters.get(name):
+                    return f"FORMATS has {format}, which needs {name}: give it, or leave {format} out."
+        return ""
+
+
+def _parameters() -> list[QgsProcessingParameterDefinition]:
+    return [
+        QgsProcessingParameterFile(
+            INPUT, "Robot map", fileFilter="Robot maps (*.txt *.map *.rmap *.bin);;All files (*)"
+        ),
+        QgsProcessingParameterEnum(
+            FORMATS,
+            "Formats",
+            options=list(MADE),
+            allowMultiple=True,
+            defaultValue=["occupancy"],
+            usesStaticStrings=True,
+        ),
+        QgsProcessingParameterNumber(RESOLUTION, "Side of a cell of grid and masks [m]", _REAL, 0.05),
+        QgsProcessingParameterEnum(
+            INSIDE,
+            "Inside of obstacles in the occupancy grid",
+            options=[UNKNOWN, OCCUPIED],
+            defaultValue=UNKNOWN,
+            usesStaticStrings=True,
+        ),
+        QgsProcessingParameterNumber(DRIVES_OVER, "Robots drive over what is lower than [m]", _REAL, 0.0),
+        QgsProcessingParameterFeatureSource(KEEPOUTS, "Keepout areas", _POLYGONS, optional=True),
+        QgsProcessingParameterFeatureSource(
+            SPEED_AREAS, "Areas with a speed limit", _POLYGONS, optional=True
+        ),
+        QgsProcessingParameterExpression(
+            SPEED, "Speed limit of each area [m/s]", parentLayerParameterName=SPEED_AREAS, optional=True
+        ),
+        QgsProcessingParameterString(NAME, "Name of the files (default: the robot map's)", optional=True),
+        QgsProcessingParameterFolderDestination(OUTPUT, "Folder"),
+    ]
+
+
+def _number_problem(parameters: Mapping[str, Any]) -> str:
+    """Return which number cannot be used and why, or nothing."""
+    for name, positive in ((RESOLUTION, True), (DRIVES_OVER, False)):
+        value = parameters.get(name)
+        if value is None:
+            continue
+        try:
+            number = float(value)
+        except (TypeError, ValueError):
+            if not isinstance(value, str):
+                continue
+            number = math.nan
+        if not math.isfinite(number) or number < 0 or (positive and number == 0):
+            wanted = "above 0, such as 0.05" if positive else "of 0 or more"
+            return f"{name} is {value}: give a number of metres {wanted}."
+    return ""
+
+
+def _read(file: Path) -> RobotMap:
+    """Return the map in a file, text or binary."""
+    try:
+        content = file.read_bytes()
+        if content.startswith(b"RMAP"):
+            return decode(content)
+        return read_text(content.decode())
+    except OSError as error:
+        raise ParameterError(
+            f"The robot map {file} cannot be read: {error.strerror or error}. Choose a file of "
+            "fleet:exportrobotmap."
+        ) from error
+    except UnicodeDecodeError as error:
+        raise ParameterError(
+            f"{file} is no robot map: it is neither UTF-8 text nor binary ({error})."
+        ) from error
+    except TextError as error:
+        raise ParameterError(f"{file} is no robot map: {error}") from error
+
+
+def _name(given: str, source: Path) -> str:
+    name = given.strip() or source.stem
+    if Path(name).name != name or name.startswith("."):
+        raise ParameterError(f"NAME {name!r} is no file's name: leave out folders and leading dots.")
+    return name
+
+
+def _write(made: Mapping[str, Files], folder: Path, source: Path, feedback) -> None:
+    """Write every file into the folder, none over the robot map."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise OutputError(
+            f"The folder {folder} cannot be made: {error.strerror or error}. Choose another OUTPUT."
+        ) from error
+    files = {folder / name: content for part in made.values() for name, content in part.items()}
+    for target in files:
+        if target.exists() and target.samefile(source):
+            raise OutputError(f"{target} is the robot map itself: choose another NAME or OUTPUT.")
+    for target, content in files.items():
+        write_whole(target, content)
+        feedback.pushInfo(f"{target}: {len(content)} bytes")
+
+
+def _results(made: Mapping[str, Files], folder: Path, warnings: int) -> dict[str, Any]:
+    return {
+        OUTPUT: str(folder),
+        "FILE_COUNT": sum(len(files) for files in made.values()),
+        "WARNING_COUNT": warnings,
+        **{format.upper(): str(folder / _to_open(files)) for format, files in made.items()},
+    }
+
+
+def _to_open(files: Files) -> str:
+    """Return the file that a program is given: of a grid the YAML, which names its image."""
+    names = list(files)
+    return next((name for name in names if name.endswith(".yaml")), names[0])

@@ -1,0 +1,96 @@
+"""Polygons of a layer as the areas of a mask."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from qgis.core import (
+    QgsExpression,
+    QgsExpressionContext,
+    QgsFeature,
+    QgsFeedback,
+    QgsProcessingFeatureSource,
+)
+
+from ...robot_bridge.robotmap.exporters.masks import MaskArea
+from ..sites.placing import PlacingError, SitePlacing
+from ..sites.shapes import Shape, shapes_of
+from .errors import ParameterError
+
+Speed = Callable[[QgsFeature], float]
+
+
+def areas_of(
+    source: QgsProcessingFeatureSource,
+    site: SitePlacing,
+    feedback: QgsFeedback,
+    speed: Speed | None = None,
+) -> tuple[list[MaskArea], list[str]]:
+    """Return the areas of a layer in the site frame, and a warning for each feature that is not as it was.
+
+    With ``speed`` an area without a speed above 0 is left out. Stops early when cancelled.
+
+    :raises LayerCrsError: when the layer's coordinates have no known place on the site.
+    """
+    placing = site.of_layer(source.sourceName(), source.sourceCrs())
+    areas: list[MaskArea] = []
+    warnings: list[str] = []
+    for feature in source.getFeatures():
+        if feedback.isCanceled():
+            break
+        name = f"Layer {source.sourceName()}, feature {feature.id()}"
+        limit = math.nan if speed is None else speed(feature)
+        if speed is not None and not 0 < limit < math.inf:
+            warnings.append(f"{name}: it has no speed above 0 m/s, so it sets no limit; it is left out")
+            continue
+        try:
+            shapes, notes = _shapes(feature, placing)
+        except PlacingError as error:
+            shapes, notes = [], [f"cannot be transformed into the site's CRS ({error}); it is left out"]
+        warnings += [f"{name}: {note}" for note in notes]
+        areas += [
+            MaskArea([placing.to_site(ring) for ring in rings], name, limit) for rings in _polygons(shapes)
+        ]
+    return areas, warnings
+
+
+def speed_by(text: str, source: QgsProcessingFeatureSource, context: QgsExpressionContext) -> Speed:
+    """Return the way from a feature to its speed in m/s by an expression; NaN where it has none.
+
+    :raises ParameterError: when the expression is none.
+    """
+    expression = QgsExpression(text)
+    context.setFields(source.fields())
+    if expression.hasParserError() or not expression.prepare(context):
+        reason = expression.parserErrorString() or expression.evalErrorString()
+        raise ParameterError(f"SPEED {text!r} is no expression ({reason}): write a field's name or a number.")
+
+    def speed(feature: QgsFeature) -> float:
+        context.setFeature(feature)
+        value = expression.evaluate(context)
+        try:
+            return float(value)
+        except (TypeError, ValueError):
+            return math.nan
+
+    return speed
+
+
+def _shapes(feature: QgsFeature, placing) -> tuple[Sequence[Shape], list[str]]:
+    geometry = feature.geometry()
+    if geometry.isNull() or geometry.isEmpty():
+        return [], ["has no geometry; it is left out"]
+    return shapes_of(placing.to_metres(geometry))
+
+
+def _polygons(shapes: Sequence[Shape]) -> list[list[np.ndarray]]:
+    """Return the rings of each polygon: courtyards follow the ring that they are in."""
+    polygons: list[list[np.ndarray]] = []
+    for shape in shapes:
+        if shape.courtyard and polygons:
+            polygons[-1].append(shape.points)
+        else:
+            polygons.append([shape.points])
+    return polygons
