@@ -6,7 +6,8 @@ READY := .venv/.fleet-setup
 RUN := .venv/bin/python
 HEADLESS := env QT_QPA_PLATFORM=offscreen XDG_RUNTIME_DIR=$(CURDIR)/build/run
 
-# Given on the command line: make test ARGS="-k robotmap" WORKERS=0, make install PROFILE=work LINK=1
+# Given on the command line: make test ARGS="-k robotmap" WORKERS=0 (ARGS=-rs says why tests were skipped),
+# make install PROFILE=work LINK=1
 ARGS ?=
 WORKERS ?= auto
 JOBS ?= 3
@@ -31,7 +32,7 @@ demo: $(READY) build/run ## run the main job once, headless, on the sample site;
 	@$(HEADLESS) $(RUN) scripts/demo.py
 
 test: $(READY) build/run ## run every test, style and import rules included, headless
-	@$(HEADLESS) $(RUN) -m pytest -q -n $(JOBS) --dist loadfile --durations=5 --durations-min=1 $(ARGS)
+	@$(HEADLESS) $(RUN) -m pytest -q -rfE -n $(JOBS) --dist loadfile --durations=5 --durations-min=1 $(ARGS)
 
 lint: $(READY) ## check style, types and import rules only
 	@$(RUN) -m pytest -q tests/packaging/test_style.py
