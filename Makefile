@@ -6,10 +6,9 @@ READY := .venv/.fleet-setup
 RUN := .venv/bin/python
 HEADLESS := env QT_QPA_PLATFORM=offscreen XDG_RUNTIME_DIR=$(CURDIR)/build/run
 
-# Given on the command line: make test ARGS="-k robotmap" WORKERS=0 (ARGS=-rs says why tests were skipped),
+# Given on the command line: make test ARGS="-k robotmap" JOBS=0 (ARGS=-rs says why tests were skipped),
 # make install PROFILE=work LINK=1
 ARGS ?=
-WORKERS ?= auto
 JOBS ?= 3
 PROFILE ?= default
 LINK ?=
