@@ -141,9 +141,11 @@ class CommandBook:
             deviation = command.arrival.deviation(pose) if command.arrival else None
             if deviation is None:
                 continue
+            # An Abort has no place that it could be off.
+            off = deviation if command.is_motion else None
             async with self._lock:
                 if self._open.get(command.report.command) is command:
-                    step = self._step(command, CommandState.REACHED, GATEWAY, deviation=deviation)
+                    step = self._step(command, CommandState.REACHED, GATEWAY, deviation=off)
                     await self._save([step])
 
     async def deliver_again(self, robot: str, reason: str) -> None:

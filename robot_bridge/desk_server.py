@@ -97,7 +97,7 @@ class DeskSession:
         if isinstance(request, SetPositions):
             return await self._fleet.set_positions(request.positions, self._operator)
         if isinstance(request, AbortAll):
-            return await self._fleet.abort_all(self._operator)
+            return await self._fleet.abort_all(self._operator, request.command)
         return await self._fleet.commands(request.robot, request.limit)
 
     def _hello(self, request: Hello) -> dict[str, Any]:

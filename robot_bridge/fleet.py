@@ -215,10 +215,15 @@ class Fleet:
             orders.append(self._order(str(uuid.uuid4()), position.robot, "SetPosEnd", target, operator))
         return await self._book.issue(orders)
 
-    async def abort_all(self, operator: str) -> list[CommandReport]:
-        """Tell every robot to abort its task."""
-        names = self.robots.names()
-        return await self._book.issue([Order(str(uuid.uuid4()), name, Abort(), operator) for name in names])
+    async def abort_all(self, operator: str, command: str | None = None) -> list[CommandReport]:
+        """Tell every robot to abort its task; asked again with the same ``command`` id it changes nothing."""
+        command = command or str(uuid.uuid4())
+        return await self._book.issue(
+            [
+                Order(str(uuid.uuid5(uuid.NAMESPACE_OID, f"{command} {name}")), name, Abort(), operator)
+                for name in self.robots.names()
+            ]
+        )
 
     async def commands(self, robot: str | None, limit: int) -> list[CommandReport]:
         """Return the newest commands first, of one robot or of all."""

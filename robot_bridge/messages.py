@@ -52,6 +52,12 @@ def check_robot_name(name: str) -> str:
     return name
 
 
+def check_command_id(command: str) -> None:
+    """Refuse an id that cannot tell one command from every other; raises MessageError."""
+    if not 8 <= len(command) <= 64:
+        raise MessageError(f"command is {command!r}; give an id of 8 to 64 characters, say a UUID")
+
+
 # --- what robots ask and servers answer (paper 1, tables II and III) --------------------------------------
 
 
@@ -342,15 +348,22 @@ class Send:
     params: dict[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        if not 8 <= len(self.command) <= 64:
-            raise MessageError(f"command is {self.command!r}; give an id of 8 to 64 characters, say a UUID")
+        check_command_id(self.command)
 
 
 @dataclass(frozen=True)
 class AbortAll:
-    """Ask every robot to abort its task; answered with the commands that do it."""
+    """Ask every robot to abort its task; answered with the commands that do it.
+
+    ``command`` is an id that the operator's side invents: sent twice, done once.
+    """
 
     method: ClassVar[str] = "abort_all"
+    command: str | None = None
+
+    def __post_init__(self) -> None:
+        if self.command is not None:
+            check_command_id(self.command)
 
 
 @dataclass(frozen=True)

@@ -67,7 +67,8 @@ class Orders(QObject):
 
         :raises NotSentError: when it cannot be sent.
         """
-        return self._put(str(uuid.uuid4()), AbortAll.method, {}, "ABORT ALL", None)
+        command = str(uuid.uuid4())
+        return self._put(command, AbortAll.method, to_json(AbortAll(command)), "ABORT ALL", None)
 
     def answered(self, answer: Answer) -> None:
         """Take in what became of an order."""

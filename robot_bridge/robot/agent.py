@@ -29,6 +29,8 @@ from .driver import Driver
 
 STANDING = 0.01
 """m/s."""
+RANGE = 10_000.0
+"""metres that the simulated battery lasts."""
 
 
 @dataclass(frozen=True)
@@ -136,6 +138,7 @@ class Agent:
             y=round(y + self._random.gauss(0, noise), 3),
             theta=round(theta, 4),
             v=round(self._body.v, 3),
+            battery=round(max(0.0, 1 - self._body.driven / RANGE), 3),
         )
 
     def _notice_stop(self) -> None:

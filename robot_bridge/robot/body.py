@@ -20,11 +20,15 @@ class BodyLimits:
 
 
 class Body:
-    """Where the robot really is. ``drive`` asks for a motion, ``step`` lets time pass."""
+    """Where the robot really is. ``drive`` asks for a motion, ``step`` lets time pass.
+
+    ``driven`` is metres since the start.
+    """
 
     def __init__(self, pose: Pose, limits: BodyLimits) -> None:
         self.pose = pose
         self.v = 0.0
+        self.driven = 0.0
         self.turn_rate = 0.0
         self._limits = limits
         self._wanted = (0.0, 0.0)
@@ -43,6 +47,7 @@ class Body:
         self.v += _clamp(self._wanted[0] - self.v, limits.acceleration * dt)
         self.turn_rate += _clamp(self._wanted[1] - self.turn_rate, limits.turn_acceleration * dt)
         x, y, theta = self.pose
+        self.driven += abs(self.v) * dt
         middle = theta + self.turn_rate * dt / 2
         self.pose = (
             x + self.v * math.cos(middle) * dt,

@@ -309,6 +309,8 @@ def test_abort_all_is_repeated_when_the_link_broke_before_the_answer(at_desk, ga
     wait(lambda: at_desk.desk.link.phase.value == "retrying")
     gateway.start()
     wait(lambda: len(gateway.asked("abort_all")) == 2, 8)
+    first, again = gateway.asked("abort_all")
+    assert first["command"] == again["command"]
     wait(lambda: len(at_desk.desk.orders) == 0)
 
 

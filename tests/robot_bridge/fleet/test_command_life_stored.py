@@ -107,6 +107,23 @@ async def test_abort_all_tells_every_robot(ready):
     assert "Abort" in ready.waiting("r2")
 
 
+async def test_abort_all_asked_again_under_its_id_changes_nothing(ready):
+    await ready.ready("r2", link="sql")
+    first = await ready.fleet.abort_all("Ada", "one-press-of-the-button")
+    again = await ready.fleet.abort_all("Ada", "one-press-of-the-button")
+    assert [abort.command for abort in again] == [abort.command for abort in first]
+    assert ready.waiting("r1") == ["Abort"]
+    assert {abort.command for abort in await ready.fleet.abort_all("Ada")}.isdisjoint(a.command for a in first)
+
+
+async def test_an_abort_ends_without_a_deviation(ready):
+    await ready.send("x", "Abort")
+    await ready.take()
+    await ready.at(3.0, 4.0)
+    (report,) = await ready.fleet.commands("r1", 1)
+    assert (report.state.value, report.deviation) == ("reached", None)
+
+
 async def test_a_repeated_id_changes_nothing(ready):
     await ready.send("a", x=50.0)
     await ready.take()
