@@ -113,7 +113,8 @@ async def test_abort_all_asked_again_under_its_id_changes_nothing(ready):
     again = await ready.fleet.abort_all("Ada", "one-press-of-the-button")
     assert [abort.command for abort in again] == [abort.command for abort in first]
     assert ready.waiting("r1") == ["Abort"]
-    assert {abort.command for abort in await ready.fleet.abort_all("Ada")}.isdisjoint(a.command for a in first)
+    other = await ready.fleet.abort_all("Ada")
+    assert {abort.command for abort in other}.isdisjoint(abort.command for abort in first)
 
 
 async def test_an_abort_ends_without_a_deviation(ready):
