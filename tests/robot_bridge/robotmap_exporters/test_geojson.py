@@ -105,6 +105,20 @@ def test_each_shape_has_its_geometry_and_attributes(obstacles):
     assert [f["properties"]["outdoor"] for f in obstacles["features"]].count(False) == 1
 
 
+def test_rings_keep_their_direction_also_where_the_transform_mirrors_them(robot_map):
+    content = json.loads(geojson_of(obstacle_shapes(robot_map), lambda xy: xy * (1e-3, -1e-3)))
+    assert geojson_validator.validate_geometries(content)["invalid"] == {}
+
+
+def test_a_courtyard_belongs_to_the_part_of_its_source_that_is_round_it(make_map):
+    small = [(30, 2), (31, 2), (31, 3), (30, 3), (30, 2)]
+    rows = [(small, {}), (OUTER, {}), (INNER, {"courtyard": True})]
+    shapes = obstacle_shapes(
+        make_map([(points, {"source": "b:1", **more}) for points, more in rows], (0, 0, 40, 20))
+    )
+    assert [(shape.attributes["id"], len(shape.parts)) for shape in shapes] == [(1, 1), (2, 2)]
+
+
 def test_segments_keep_their_direction_and_number(robot_map):
     content = json.loads(geojson_of(segment_shapes(robot_map), lonlat_of(FRAME)))
     assert len(content["features"]) == robot_map.segment_count
