@@ -165,5 +165,10 @@ def _obstacle(
         height=heights,
         outdoor=outdoor,
         segment_semantics=("",) * len(heights),
-        ext={"src": outlines.source[outline]} if outlines.source[outline] else {},
+        ext=_ext(outlines, outline),
     )
+
+
+def _ext(outlines: Outlines, outline: int) -> dict[str, str]:
+    source = {"src": outlines.source[outline]} if outlines.source[outline] else {}
+    return source if outlines.ext is None else {**source, **outlines.ext[outline]}

@@ -21,3 +21,11 @@ class BinaryError(RobotMapError):
 
 class MissingCodecError(RobotMapError):
     """The binary format needs a package that this Python does not have."""
+
+
+class ShapingError(RobotMapError):
+    """Something that cannot be asked of outlines; names it and what to give instead."""
+
+
+class MissingGeometryError(RobotMapError):
+    """Reducing outlines needs a package that this Python does not have."""

@@ -42,7 +42,8 @@ class BoxGrid:
         """Return which boxes touch ``border``, in rising order."""
         (left, lower), (right, upper) = self._corners(border)
         if upper - lower >= len(self._keys):
-            return np.flatnonzero(self._touch(slice(None), border))
+            everywhere: NDArray[Any] = np.flatnonzero(self._touch(slice(None), border))
+            return everywhere
         rows = np.arange(lower, upper + 1)
         first = self._keys.searchsorted(_key(left, rows)).tolist()
         last = self._keys.searchsorted(_key(right, rows), side="right").tolist()
@@ -72,4 +73,5 @@ class BoxGrid:
 
 
 def _key(column: Any, row: NDArray[Any]) -> NDArray[Any]:
-    return row * (4 * _FARTHEST) + column
+    key: NDArray[Any] = row * (4 * _FARTHEST) + column
+    return key

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 # The number in src=walls:1204 differs from obstacle to obstacle while all else stays. No written label holds
 # the character that stands for it.
-_NUMBER = re.compile(r"(?<=[;,]src=)([^,;=]*:)(0|[1-9][0-9]{0,8})(?=[,;])")
+_NUMBER = re.compile(r"(?<=[;,]src=)([^,;=]*:)(0|[1-9][0-9]{0,8})(?=[,;+])")
 _PLACE = "\x01"
 
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -38,6 +38,10 @@ class Outlines:
     """K labels, such as ``building,A5``."""
     source: Sequence[str]
     """K names of where the outline comes from, such as ``buildings:12``; used in warnings and in ``ext``."""
+    base: NDArray[Any] | None = None
+    """(K,) float64, metres above the ground where the obstacle begins; nothing where all stand on it."""
+    ext: Sequence[Mapping[str, str]] | None = None
+    """K mappings of what else an obstacle has to say, such as a ramp's normal; or nothing."""
 
     def __len__(self) -> int:
         return len(self.shape_type)
@@ -56,7 +60,34 @@ class Outlines:
             outdoor=np.array([row.outdoor for row in rows], dtype=bool),
             semantics=[row.semantics for row in rows],
             source=[row.source for row in rows],
+            base=np.array([row.base for row in rows], dtype=np.float64)
+            if any(r.base for r in rows)
+            else None,
+            ext=[row.ext for row in rows] if any(row.ext for row in rows) else None,
         )
+
+    def points(self, k: int) -> NDArray[Any]:
+        """Return the points of outline ``k``, (n, 2)."""
+        points: NDArray[Any] = self.coordinates[self.offsets[k] : self.offsets[k + 1]]
+        return points
+
+    def row(self, k: int) -> OutlineRow:
+        """Return outline ``k`` by itself."""
+        return OutlineRow(
+            points=self.points(k),
+            shape_type=ShapeType(int(self.shape_type[k])),
+            height=float(self.height[k]),
+            semantics=self.semantics[k],
+            source=self.source[k],
+            courtyard=bool(self.courtyard[k]),
+            outdoor=bool(self.outdoor[k]),
+            base=float(self.base[k]) if self.base is not None else 0.0,
+            ext=self.ext[k] if self.ext is not None else {},
+        )
+
+    def rows(self) -> list[OutlineRow]:
+        """Return all outlines one by one."""
+        return [self.row(k) for k in range(len(self))]
 
 
 @dataclass(frozen=True)
@@ -70,3 +101,5 @@ class OutlineRow:
     source: str
     courtyard: bool = False
     outdoor: bool = True
+    base: float = 0.0
+    ext: Mapping[str, str] = field(default_factory=dict)
