@@ -7,8 +7,10 @@ from pathlib import Path
 from qgis.core import QgsProcessingProvider
 from qgis.PyQt.QtGui import QIcon
 
+from .check_robot_map import CheckRobotMap
 from .export_navigation_map import ExportNavigationMap
 from .export_robot_map import ExportRobotMap
+from .load_robot_map import LoadRobotMap
 from .publish_site import PublishSite
 
 ICON = Path(__file__).parents[2] / "resources" / "icons" / "fleet.svg"
@@ -30,3 +32,5 @@ class FleetProvider(QgsProcessingProvider):
         self.addAlgorithm(ExportRobotMap())
         self.addAlgorithm(ExportNavigationMap())
         self.addAlgorithm(PublishSite())
+        self.addAlgorithm(LoadRobotMap())
+        self.addAlgorithm(CheckRobotMap())

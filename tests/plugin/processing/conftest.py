@@ -63,6 +63,19 @@ class Listener(QgsProcessingFeedback):
 
 
 @pytest.fixture
+def listener(qgis_app):
+    """A feedback that keeps what is said."""
+    return Listener()
+
+
+@pytest.fixture
+def fig_2(root) -> str:
+    """The paper's Fig. 2, as the document for integrators prints it."""
+    document = (root / "docs" / "robot-map.md").read_text(encoding="utf-8")
+    return re.search(r"^```robotmap\n(.*?)^```$", document, re.MULTILINE | re.DOTALL)[1]
+
+
+@pytest.fixture
 def cancels_at(qgis_app):
     """Return a feedback that cancels when the progress reaches ``percent``."""
 

@@ -1,0 +1,175 @@
+"""A robot map's file and where on the Earth it lies, from an algorithm's parameters."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from qgis.core import (
+    QgsCoordinateReferenceSystem,
+    QgsProcessingAlgorithm,
+    QgsProcessingContext,
+    QgsProcessingFeedback,
+    QgsProcessingParameterCrs,
+    QgsProcessingParameterDefinition,
+    QgsProcessingParameterFile,
+    QgsProcessingParameterNumber,
+    QgsProcessingParameterPoint,
+)
+
+from ...robot_bridge.robotmap.binary import LARGEST_TEXT, MAGIC, decode
+from ...robot_bridge.robotmap.errors import RobotMapError
+from ...robot_bridge.robotmap.model import RobotMap
+from ...robot_bridge.robotmap.text import read_text
+from ...robot_bridge.sites.frame import SiteFrame
+from ..errors import FleetError
+from ..sites.site_crs import check_site_crs
+from .errors import ParameterError
+from .map_window import ORIGIN, ROTATION, SITE_CRS
+
+MAP = "MAP"
+SITE_METRES = (
+    'ENGCRS["Site frame of a robot map",EDATUM["Site"],CS[Cartesian,2],AXIS["x",unspecified,ORDER[1]],'
+    'AXIS["y",unspecified,ORDER[2]],LENGTHUNIT["metre",1]]'
+)
+"""The CRS of layers whose place is not known: QGIS takes a layer without one for degrees."""
+
+
+class MapFileError(FleetError):
+    """A file that cannot be read, or is no robot map."""
+
+
+@dataclass(frozen=True)
+class MapPlace:
+    """The CRS that a map's layers get and the site frame in it."""
+
+    crs: QgsCoordinateReferenceSystem
+    frame: SiteFrame
+
+    def points(self, site: Any) -> np.ndarray:
+        """Return ``site``, (..., 2) metres in the site frame, as an array of its shape in the CRS."""
+        points = np.asarray(site, dtype=np.float64)
+        return self.frame.to_crs(points.reshape(-1, 2)).reshape(points.shape)
+
+
+def map_parameters() -> list[QgsProcessingParameterDefinition]:
+    """Return the parameters that name the file and say where the map lies if it does not."""
+    place = [
+        QgsProcessingParameterCrs(SITE_CRS, "Site CRS (default: as the map says)", optional=True),
+        QgsProcessingParameterPoint(
+            ORIGIN, "Origin of the site frame in it (default: as the map says, else 0,0)", optional=True
+        ),
+        QgsProcessingParameterNumber(
+            ROTATION,
+            "Rotation of the site frame, counter-clockwise [degrees] (default: as the map says, else 0)",
+            QgsProcessingParameterNumber.Type.Double,
+            optional=True,
+        ),
+    ]
+    for parameter in place:
+        parameter.setFlags(parameter.flags() | QgsProcessingParameterDefinition.Flag.FlagAdvanced)
+    filters = "Robot maps (*.txt *.map *.rmap *.bin);;All files (*)"
+    return [QgsProcessingParameterFile(MAP, "Robot map, text or binary", fileFilter=filters), *place]
+
+
+def file_problem(parameters: Mapping[str, Any]) -> str:
+    """Return what is wrong with the file before it is opened, or nothing."""
+    value = parameters.get(MAP)
+    if isinstance(value, (str, Path)) and str(value) and not Path(value).is_file():
+        return f"There is no file {value}: choose a robot map (MAP)."
+    return ""
+
+
+def read_map_file(path: Path) -> RobotMap:
+    """Return the map in a file, text or binary.
+
+    :raises MapFileError: naming the file, what is wrong in it, and where.
+    """
+    try:
+        size = path.stat().st_size
+        if size > LARGEST_TEXT:
+            raise MapFileError(
+                f"The file {path} has {size} bytes, and a robot map at most {LARGEST_TEXT}: choose a map."
+            )
+        content = path.read_bytes()
+        return decode(content) if content.startswith(MAGIC) else read_text(content.decode("utf-8-sig"))
+    except OSError as error:
+        raise MapFileError(
+            f"The robot map {path} cannot be read: {error.strerror or error}. Check its rights."
+        ) from error
+    except UnicodeDecodeError as error:
+        raise MapFileError(
+            f"The file {path} is no robot map: it is neither UTF-8 (byte {error.start}) nor in the binary "
+            f"format, which begins with {MAGIC.decode()}. Choose another file."
+        ) from error
+    except RobotMapError as error:
+        raise MapFileError(f"The robot map {path} cannot be read: {error}") from error
+
+
+def map_place(
+    algorithm: QgsProcessingAlgorithm,
+    parameters: Mapping[str, Any],
+    context: QgsProcessingContext,
+    meta: Mapping[str, str],
+    feedback: QgsProcessingFeedback,
+) -> MapPlace:
+    """Return where a map with the leading lines ``meta`` lies; parameters win over what it says.
+
+    Where no CRS is known the layers get a local one in metres; a warning says so.
+
+    :raises ParameterError: when a parameter or a leading line cannot be used.
+    :raises SiteCrsError: when SITE_CRS cannot carry a site.
+    """
+    crs = _crs(algorithm, parameters, context, meta, feedback)
+    origin = _numbers(meta, "origin", 2) or (0.0, 0.0)
+    if parameters.get(ORIGIN):
+        point = algorithm.parameterAsPoint(parameters, ORIGIN, context, crs)
+        origin = (point.x(), point.y())
+    (rotation,) = _numbers(meta, "rotation", 1) or (0.0,)
+    if parameters.get(ROTATION) not in (None, ""):
+        rotation = math.radians(algorithm.parameterAsDouble(parameters, ROTATION, context))
+    if not all(math.isfinite(number) for number in (*origin, rotation)):
+        raise ParameterError(f"ORIGIN {origin} or ROTATION {rotation} is not finite: give numbers.")
+    return MapPlace(crs, SiteFrame(crs.authid(), (origin[0], origin[1]), rotation))
+
+
+def _crs(algorithm, parameters, context, meta, feedback) -> QgsCoordinateReferenceSystem:
+    chosen = algorithm.parameterAsCrs(parameters, SITE_CRS, context)
+    if parameters.get(SITE_CRS):
+        if not chosen.isValid():
+            raise ParameterError(
+                f"SITE_CRS {parameters[SITE_CRS]} is no CRS that QGIS knows: write a code such as EPSG:32633."
+            )
+        check_site_crs(chosen)
+        return chosen
+    stated = meta.get("crs", "")
+    known = QgsCoordinateReferenceSystem(stated) if stated else QgsCoordinateReferenceSystem()
+    if known.isValid():
+        return known
+    why = f"the CRS {stated!r} that the map names is not known to QGIS" if stated else "it names no CRS"
+    feedback.pushWarning(
+        f"The map's place is not known, because {why}: its layers are in local metres. Give SITE_CRS, "
+        "ORIGIN and ROTATION to place it."
+    )
+    return QgsCoordinateReferenceSystem.fromWkt(SITE_METRES)
+
+
+def _numbers(meta: Mapping[str, str], key: str, count: int) -> tuple[float, ...]:
+    """Return the numbers in the leading line ``key``, none where there is no such line."""
+    if key not in meta:
+        return ()
+    try:
+        numbers = tuple(float(part) for part in meta[key].split(","))
+    except ValueError:
+        numbers = ()
+    if len(numbers) != count or not all(math.isfinite(number) for number in numbers):
+        wanted = "two numbers 'x,y'" if count == 2 else "a number"
+        raise ParameterError(
+            f"The leading line '%{key} {meta[key]}' of the map should hold {wanted}: correct it there, or "
+            f"give {key.upper()}."
+        )
+    return numbers

@@ -1,0 +1,76 @@
+"""What algorithms about robot maps have in common: their place in the toolbox, styled results."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from qgis.core import QgsFields, QgsProcessingAlgorithm, QgsProcessingUtils, QgsVectorLayer
+from qgis.PyQt.QtGui import QIcon
+
+RESOURCES = Path(__file__).parents[2] / "resources"
+
+
+class RobotMapAlgorithm(QgsProcessingAlgorithm):
+    """An algorithm of the group *Robot maps*; subclasses say who they are in their class attributes."""
+
+    NAME = ""
+    TITLE = ""
+    SUMMARY = ""
+    HELP = ""
+    ICON = ""
+    TAGS: tuple[str, ...] = ()
+    STYLES: dict[str, str] = {}  # noqa: RUF012
+    """The style, in resources/styles, of each output layer."""
+
+    def name(self):
+        return self.NAME
+
+    def displayName(self):
+        return self.TITLE
+
+    def group(self):
+        return "Robot maps"
+
+    def groupId(self):
+        return "robotmaps"
+
+    def tags(self):
+        return ["robot", "map", *self.TAGS]
+
+    def shortDescription(self):
+        return self.SUMMARY
+
+    def shortHelpString(self):
+        # In one line, because QGIS takes every line break for the end of a paragraph.
+        return " ".join(self.HELP.split())
+
+    def icon(self):
+        return QIcon(self.svgIconPath())
+
+    def svgIconPath(self):
+        return str(RESOURCES / "icons" / self.ICON)
+
+    def createInstance(self):
+        return type(self)()
+
+    def remember(self, layers: dict[str, str]) -> None:
+        """Keep which layers were made, by the names of their outputs, to be styled when they are loaded."""
+        self._made = layers
+
+    def postProcessAlgorithm(self, context, feedback):
+        for name, style in self.STYLES.items():
+            source = getattr(self, "_made", {}).get(name)
+            if source and context.willLoadLayerOnCompletion(source):
+                layer = QgsProcessingUtils.mapLayerFromString(source, context)
+                if layer is not None:
+                    layer.loadNamedStyle(str(RESOURCES / "styles" / style))
+        return {}
+
+
+def fields_of(columns: dict[str, str]) -> QgsFields:
+    """Return fields by name and kind, as a layer in memory spells kinds; to be called in the main thread.
+
+    The way to make fields that is the same on Qt 5 and Qt 6.
+    """
+    named = "".join(f"&field={name}:{kind}" for name, kind in columns.items())
+    return QgsVectorLayer(f"NoGeometry?{named[1:]}", "fields", "memory").fields()
