@@ -10,6 +10,8 @@ HEADLESS := env QT_QPA_PLATFORM=offscreen XDG_RUNTIME_DIR=$(CURDIR)/build/run
 # make install PROFILE=work LINK=1
 ARGS ?=
 JOBS ?= 3
+# pytest-qgis takes --dist for a sign that workers have QGIS, so without workers it must not be there.
+SIDE_BY_SIDE = $(if $(filter 0,$(JOBS)),,-n $(JOBS) --dist loadfile)
 PROFILE ?= default
 LINK ?=
 export PYTHON
@@ -31,7 +33,7 @@ demo: $(READY) build/run ## run the main job once, headless, on the sample site;
 	@$(HEADLESS) $(RUN) scripts/demo.py
 
 test: $(READY) build/run ## run every test, style and import rules included, headless
-	@$(HEADLESS) $(RUN) -m pytest -q -rfE -n $(JOBS) --dist loadfile --durations=5 --durations-min=1 $(ARGS)
+	@$(HEADLESS) $(RUN) -m pytest -q -rfE $(SIDE_BY_SIDE) --durations=5 --durations-min=1 $(ARGS)
 
 lint: $(READY) ## check style, types and import rules only
 	@$(RUN) -m pytest -q tests/packaging/test_style.py
