@@ -96,7 +96,7 @@ def _areas(
 
 
 def _is_ground(area: Shape) -> bool:
-    return area.attributes["courtyard"] or area.attributes["shape_type"] == ShapeType.RAMP
+    return bool(area.attributes["courtyard"] or area.attributes["shape_type"] == ShapeType.RAMP)
 
 
 def _lines(sheet: Sheet, robot_map: RobotMap, by_label: Mapping[str, Colours]) -> Iterator[str]:
