@@ -10,7 +10,6 @@ from typing import Any
 
 from qgis.core import (
     QgsCoordinateReferenceSystem,
-    QgsMapLayer,
     QgsProcessingAlgorithm,
     QgsProcessingContext,
     QgsProcessingUtils,
@@ -38,14 +37,12 @@ Parameters = Mapping[str, Any]
 
 
 @dataclass(frozen=True)
-class ExportPlan:
-    """Everything that is needed of the parameters and layers; usable from any thread."""
+class ObstaclePlan:
+    """What is read, and where it lies; usable from any thread."""
 
     sources: list[ObstacleSource]
     site: SitePlacing
-    window: Window
     default_height: float
-    target: Path
 
     @property
     def meta(self) -> dict[str, str]:
@@ -60,6 +57,14 @@ class ExportPlan:
         }
 
 
+@dataclass(frozen=True)
+class ExportPlan(ObstaclePlan):
+    """Everything that is needed of the parameters and layers to export one window."""
+
+    window: Window
+    target: Path
+
+
 def plan_of(
     algorithm: QgsProcessingAlgorithm, parameters: Parameters, context: QgsProcessingContext
 ) -> ExportPlan:
@@ -68,7 +73,22 @@ def plan_of(
     :raises FleetError: when a parameter or a layer cannot be used.
     :raises WindowError: when the window encloses nothing.
     """
-    layers = _layers(algorithm, parameters, context)
+    plan = obstacle_plan_of(algorithm, parameters, context)
+    return ExportPlan(
+        **vars(plan),
+        window=map_window(algorithm, parameters, context, plan.site.crs, plan.site.frame),
+        target=_target(algorithm, parameters, context),
+    )
+
+
+def obstacle_plan_of(
+    algorithm: QgsProcessingAlgorithm, parameters: Parameters, context: QgsProcessingContext
+) -> ObstaclePlan:
+    """Return what is read for ``parameters``; to be called in the main thread.
+
+    :raises FleetError: when a parameter or a layer cannot be used.
+    """
+    layers = obstacle_layers(algorithm, parameters, context)
     # As strings: parameterAsExpression replaces what is no expression by the default, in silence.
     names = (HEIGHT_EXPRESSION, SEMANTICS_EXPRESSION, OUTDOOR_EXPRESSION)
     general = LayerExpressions(*(algorithm.parameterAsString(parameters, name, context) for name in names))
@@ -80,13 +100,7 @@ def plan_of(
     local = algorithm.parameterAsBool(parameters, LOCAL, context)
     site = SitePlacing(crs, frame, context.transformContext(), local)
     check_sources(sources, site)
-    return ExportPlan(
-        sources=sources,
-        site=site,
-        window=map_window(algorithm, parameters, context, crs, frame),
-        default_height=default_height(algorithm, parameters, context),
-        target=_target(algorithm, parameters, context, layers),
-    )
+    return ObstaclePlan(sources, site, default_height(algorithm, parameters, context))
 
 
 def unopened_layer(parameters: Parameters, context: QgsProcessingContext) -> str:
@@ -104,7 +118,13 @@ def unopened_layer(parameters: Parameters, context: QgsProcessingContext) -> str
     return ""
 
 
-def _layers(algorithm, parameters: Parameters, context) -> list[QgsVectorLayer]:
+def obstacle_layers(
+    algorithm: QgsProcessingAlgorithm, parameters: Parameters, context: QgsProcessingContext
+) -> list[QgsVectorLayer]:
+    """Return the layers in OBSTACLES.
+
+    :raises LayerTypeError: naming the first that cannot be opened or is no vector layer.
+    """
     problem = unopened_layer(parameters, context)
     if problem:
         raise LayerTypeError(problem)
@@ -148,9 +168,9 @@ def default_height(
     return height
 
 
-def _target(algorithm, parameters: Parameters, context, layers: Sequence[QgsMapLayer]) -> Path:
+def _target(algorithm, parameters: Parameters, context) -> Path:
     target = Path(algorithm.parameterAsFileOutput(parameters, OUTPUT, context))
-    for layer in layers:
+    for layer in obstacle_layers(algorithm, parameters, context):
         path = QgsProviderRegistry.instance().decodeUri(layer.providerType(), layer.source()).get("path")
         if path and target.exists() and Path(path).exists() and target.samefile(path):
             raise OutputError(f"OUTPUT {target} is the file of the layer {layer.name()}: choose another one.")

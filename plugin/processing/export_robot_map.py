@@ -96,14 +96,9 @@ class ExportRobotMap(QgsProcessingAlgorithm):
                 OBSTACLES, "Obstacle layers", QgsProcessing.SourceType.TypeVectorAnyGeometry
             ),
             *window_parameters(),
-            *_value_parameters(),
+            *value_parameters(),
             profile_parameter(),
-            QgsProcessingParameterEnum(
-                FORMAT, "Format", options=[TEXT, BINARY], defaultValue=TEXT, usesStaticStrings=True
-            ),
-            QgsProcessingParameterBoolean(
-                STRICT, "Only what the paper's Fig. 2 has: no leading lines, no extras", defaultValue=False
-            ),
+            *format_parameters(),
             QgsProcessingParameterFileDestination(
                 OUTPUT, "Robot map", "Robot map, text (*.txt);;Robot map, binary (*.rmap)"
             ),
@@ -132,7 +127,7 @@ class ExportRobotMap(QgsProcessingAlgorithm):
             reading = read_outlines(plan.sources, plan.site, border, plan.default_height, feedback)
             if not reading.complete:
                 return {}
-            robot_map = _marked(build_map(reading.outlines(), plan.window, plan.meta), reading.estimated)
+            robot_map = marked(build_map(reading.outlines(), plan.window, plan.meta), reading.estimated)
             text = write_text(robot_map, strict=self.parameterAsBool(parameters, STRICT, context))
             binary = self.parameterAsEnumString(parameters, FORMAT, context) == BINARY
             content = encode(text) if binary else text.encode()
@@ -155,7 +150,7 @@ class ExportRobotMap(QgsProcessingAlgorithm):
         return True, ""
 
 
-def _value_parameters() -> list[QgsProcessingParameterDefinition]:
+def value_parameters() -> list[QgsProcessingParameterDefinition]:
     """Return the parameters that say what a feature is."""
     return [
         QgsProcessingParameterExpression(
@@ -176,7 +171,19 @@ def _value_parameters() -> list[QgsProcessingParameterDefinition]:
     ]
 
 
-def _marked(robot_map: RobotMap, estimated: set[str]) -> RobotMap:
+def format_parameters() -> list[QgsProcessingParameterDefinition]:
+    """Return the parameters that say how a map is written."""
+    return [
+        QgsProcessingParameterEnum(
+            FORMAT, "Format", options=[TEXT, BINARY], defaultValue=TEXT, usesStaticStrings=True
+        ),
+        QgsProcessingParameterBoolean(
+            STRICT, "Only what the paper's Fig. 2 has: no leading lines, no extras", defaultValue=False
+        ),
+    ]
+
+
+def marked(robot_map: RobotMap, estimated: set[str]) -> RobotMap:
     """Return the map with the obstacles of the sources in ``estimated`` marked."""
     return replace(
         robot_map,
