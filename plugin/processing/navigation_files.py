@@ -8,7 +8,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from ...robot_bridge.robotmap.exporters.geojson import geojson_of
-from ...robot_bridge.robotmap.exporters.geopackage import write_geopackage
 from ...robot_bridge.robotmap.exporters.grid import Grid
 from ...robot_bridge.robotmap.exporters.masks import MaskArea, filter_parameters, keepout_mask, speed_mask
 from ...robot_bridge.robotmap.exporters.nav2 import scale_files, trinary_files
@@ -16,6 +15,7 @@ from ...robot_bridge.robotmap.exporters.occupancy import Inside, occupancy_of
 from ...robot_bridge.robotmap.exporters.shapes import obstacle_shapes, segment_shapes
 from ...robot_bridge.robotmap.exporters.svg import svg_of
 from ...robot_bridge.robotmap.model import RobotMap
+from .geopackage_by_qgis import write_geopackage
 from .map_place import MapPlace
 from .svg_picture import png_of
 
@@ -86,13 +86,9 @@ def _geojson(export: NavigationExport) -> Files:
 
 
 def _geopackage(export: NavigationExport) -> Files:
-    frame = export.place.frame
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / f"{export.name}.gpkg"
-        if frame is None:
-            write_geopackage(export.robot_map, file)
-        else:
-            write_geopackage(export.robot_map, file, frame.crs, frame.to_crs)
+        write_geopackage(export.robot_map, file, export.place)
         return {file.name: file.read_bytes()}
 
 

@@ -12,7 +12,7 @@ grid is the site frame.</li>
 <li><i>speed</i>: mask for Nav2's speed filter, from the speed layer and its expression in m/s. A limit is
 never rounded up; where areas overlap the lower one holds.</li>
 <li><i>geojson</i>: obstacles and segments in WGS 84 (RFC 7946).</li>
-<li><i>geopackage</i>: the same in the site's CRS; needs the Python package pyogrio.</li>
+<li><i>geopackage</i>: the same in the site's CRS.</li>
 <li><i>svg</i>, <i>png</i>: a picture for people.</li>
 </ul>
 <p><b>Keepout and speed layers</b> are polygons in any CRS. Where the map names no CRS that QGIS knows, layers

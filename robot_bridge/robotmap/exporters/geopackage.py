@@ -23,6 +23,23 @@ ToCrs = Callable[[Points], Points]
 _WKB_KIND = {"LineString": 2, "Polygon": 3, "MultiLineString": 5}
 
 
+def geopackage_layers(robot_map: RobotMap) -> dict[str, list[Shape]]:
+    """Return the shapes of each layer that has any; in a layer all have one kind and the same attributes."""
+    shapes = obstacle_shapes(robot_map)
+    layers = {
+        "obstacle_areas": [shape for shape in shapes if shape.kind == "Polygon"],
+        "obstacle_lines": [shape for shape in shapes if shape.kind == "MultiLineString"],
+        "segments": segment_shapes(robot_map),
+        "border": [_border(robot_map)],
+    }
+    return {name: content for name, content in layers.items() if content}
+
+
+def column_value(value: Any) -> Any:
+    """Return an attribute as a column holds it: mappings and lists become JSON."""
+    return json.dumps(value, ensure_ascii=False) if isinstance(value, (dict, list)) else value
+
+
 def write_geopackage(
     robot_map: RobotMap, target: Path, crs: str | None = None, to_crs: ToCrs | None = None
 ) -> None:
@@ -34,19 +51,11 @@ def write_geopackage(
     written; nothing is left behind.
     """
     pyogrio = _pyogrio()
-    shapes = obstacle_shapes(robot_map)
-    layers = {
-        "obstacle_areas": ("Polygon", [shape for shape in shapes if shape.kind == "Polygon"]),
-        "obstacle_lines": ("MultiLineString", [s for s in shapes if s.kind == "MultiLineString"]),
-        "segments": ("LineString", segment_shapes(robot_map)),
-        "border": ("Polygon", [_border(robot_map)]),
-    }
     if target.exists():
         raise ExportError(f"{target} is there already: remove it, or choose another name")
     try:
-        for name, (kind, content) in layers.items():
-            if content:
-                _write_layer(pyogrio, target, name, kind, content, crs, to_crs)
+        for name, shapes in geopackage_layers(robot_map).items():
+            _write_layer(pyogrio, target, name, shapes, crs, to_crs)
     except (pyogrio.errors.DataSourceError, pyogrio.errors.DataLayerError, OSError) as error:
         with suppress(OSError):
             target.unlink()
@@ -59,14 +68,13 @@ def _write_layer(
     pyogrio: Any,
     target: Path,
     name: str,
-    kind: str,
     shapes: Sequence[Shape],
     crs: str | None,
     to_crs: ToCrs | None,
 ) -> None:
     columns = list(shapes[0].attributes)
     geometry = np.empty(len(shapes), dtype=object)
-    geometry[:] = [_wkb(shape, to_crs) for shape in shapes]
+    geometry[:] = [wkb_of(shape, to_crs) for shape in shapes]
     with warnings.catch_warnings():
         # A map without a CRS is what it is.
         warnings.filterwarnings("ignore", message="'crs' was not provided")
@@ -77,7 +85,7 @@ def _write_layer(
             fields=columns,
             layer=name,
             driver="GPKG",
-            geometry_type=kind,
+            geometry_type=shapes[0].kind,
             crs=crs,
             append=target.exists(),
             dataset_options={"VERSION": "1.3"},
@@ -97,12 +105,12 @@ def _border(robot_map: RobotMap) -> Shape:
 
 
 def _column(values: list[Any]) -> np.ndarray[Any, Any]:
-    if isinstance(values[0], (dict, list)):
-        values = [json.dumps(value, ensure_ascii=False) for value in values]
-    return np.array(values, dtype=object if isinstance(values[0], str) else type(values[0]))
+    plain = [column_value(value) for value in values]
+    return np.array(plain, dtype=object if isinstance(plain[0], str) else type(plain[0]))
 
 
-def _wkb(shape: Shape, to_crs: ToCrs | None) -> bytes:
+def wkb_of(shape: Shape, to_crs: ToCrs | None) -> bytes:
+    """Return the geometry of a shape as well-known binary, in the site frame's metres or in its CRS."""
     parts = [part if to_crs is None else to_crs(part) for part in shape.parts]
     kind = _WKB_KIND[shape.kind]
     if shape.kind == "LineString":

@@ -8,10 +8,14 @@ import sqlite3
 from pathlib import Path
 
 import numpy as np
+import pyogrio
 import pytest
 import yaml
 from fleet_supervisor.plugin.processing.navigation_files import FORMATS
 from fleet_supervisor.robot_bridge.robotmap.binary import encode
+from fleet_supervisor.robot_bridge.robotmap.exporters.geopackage import write_geopackage
+from fleet_supervisor.robot_bridge.robotmap.text import read_text
+from fleet_supervisor.robot_bridge.sites.map_frame import frame_of_map
 from PIL import Image
 from pyproj import Transformer
 from qgis.core import QgsProcessingContext, QgsProcessingException, QgsProject
@@ -175,6 +179,22 @@ def test_the_geopackage_holds_the_obstacles_in_the_sites_crs(export, robot_map):
         assert connection.execute(query).fetchone() == (640422.0, 5193482.0, 32633)
 
 
+def test_qgis_writes_the_geopackage_that_the_bridge_writes(export, robot_map, tmp_path):
+    parsed = read_text(MAP)
+    frame = frame_of_map(parsed.meta)
+    write_geopackage(parsed, tmp_path / "bridge.gpkg", frame.crs, frame.to_crs)
+    results, _, _ = export(robot_map, FORMATS=["geopackage"])
+    for layer in ("obstacle_areas", "obstacle_lines", "segments", "border"):
+        ours, theirs = (
+            pyogrio.raw.read(file, layer=layer) for file in (results["GEOPACKAGE"], tmp_path / "bridge.gpkg")
+        )
+        assert ours[0]["fields"].tolist() == theirs[0]["fields"].tolist()
+        assert (ours[0]["crs"], ours[0]["geometry_type"]) == (theirs[0]["crs"], theirs[0]["geometry_type"])
+        assert [bytes(shape) for shape in ours[2]] == [bytes(shape) for shape in theirs[2]]
+        for mine, other in zip(ours[3], theirs[3], strict=True):
+            assert (mine.dtype, mine.tolist()) == (other.dtype, other.tolist())
+
+
 def test_the_png_shows_the_hall_in_its_place(export, robot_map):
     results, _, _ = export(robot_map, FORMATS=["png"])
     image = QImage(results["PNG"])
@@ -275,21 +295,22 @@ def test_the_robot_map_itself_is_never_the_output(export, tmp_path):
     assert file.read_text() == MAP
 
 
-def test_a_process_without_a_display_exports_what_another_exported(qgis_process, root, tmp_path):
+def test_a_process_without_a_display_and_packages_exports_what_another_exported(qgis_process, root, tmp_path):
     """The chain of a script: the sample site's layers, a robot map, the files of today's robots."""
     project = root / "resources" / "sample_site" / "sample_site.qgz"
     layers = [f"OBSTACLES={name}" for name in ("Buildings", "Walls", "Stairs", "Ramp")]
-    source = tmp_path / "site.rmap"
+    source = tmp_path / "site.txt"
     done = qgis_process(
         *("run", "fleet:exportrobotmap", f"--PROJECT_PATH={project}", "--", *layers),
         *("CENTER=640520,5193560 [EPSG:32633]", "WIDTH=200", "HEIGHT=160"),
-        *("FORMAT=binary", f"OUTPUT={source}"),
+        f"OUTPUT={source}",
     )
     assert done.status == 0, done.said
     done = qgis_process(
         *("run", "fleet:exportnavigationmap", "--", f"INPUT={source}", "RESOLUTION=0.1"),
         *(f"FORMATS={name}" for name in ("occupancy", "geojson", "geopackage", "svg", "png")),
         f"OUTPUT={tmp_path / 'nav'}",
+        packages=False,
     )
     assert done.status == 0, done.said
     assert done.result("FILE_COUNT") == 7
