@@ -108,7 +108,7 @@ def test_a_second_robot_of_the_same_name_replaces_the_first(bridge):
     desk = watch(bridge)
     desk.send("target-1", "r1", "SetPosEnd", x=5.0, y=5.0)
     assert second.wait_for("SetPosEnd")["params"]["x"] == 5.0
-    desk.until(lambda: desk.robots["r1"]["x"] == 2.0)
+    desk.until(lambda: desk.robots["r1"].get("x") == 2.0)
     assert desk.robots["r1"]["state"] == "fresh"
 
 
