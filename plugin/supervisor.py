@@ -17,6 +17,7 @@ class FleetSupervisor:
         self._iface = iface
         self._provider = None
         self._window = None
+        self._roles = None
 
     @property
     def window(self):
@@ -34,11 +35,16 @@ class FleetSupervisor:
         if self._iface is None:
             return
         # Only here: qgis_process has no window, and needs nothing of what the window is made of.
-        from .desk.window import DeskWindow
+        from .desk.window import MENU, DeskWindow
+        from .roles.roles_action import RolesAction
 
         self._window = DeskWindow(self._iface)
+        self._roles = RolesAction(self._iface, MENU)
 
     def unload(self):
+        if self._roles is not None:
+            self._roles.remove()
+            self._roles = None
         if self._window is not None:
             self._window.remove()
             self._window = None

@@ -1,0 +1,188 @@
+"""The dialog *Layer roles*: what each layer of the project is to robots, with a live preview."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from qgis.core import QgsProject
+from qgis.gui import QgsMessageBar
+from qgis.PyQt.QtCore import Qt
+from qgis.PyQt.QtWidgets import (
+    QAbstractItemView,
+    QComboBox,
+    QDialog,
+    QDialogButtonBox,
+    QFileDialog,
+    QHBoxLayout,
+    QHeaderView,
+    QLabel,
+    QPushButton,
+    QSplitter,
+    QTableView,
+    QVBoxLayout,
+    QWidget,
+)
+
+from ..errors import FleetError
+from ..sites.profile_file import SUFFIXES, read_profile, shipped_profiles
+from ..sites.roles import keep_setup, setup_of
+from .delegates import ExpressionDelegate, RoleDelegate
+from .live_preview import LivePreview
+from .preview_view import PreviewView
+from .rows import rows_of
+from .table_model import HEIGHT, LAYER, OUTDOOR, RESULT, ROLE, SEMANTICS, WIDTH, RoleTableModel
+
+WIDTHS = {LAYER: 140, ROLE: 125, HEIGHT: 110, SEMANTICS: 190, OUTDOOR: 90, WIDTH: 95}
+
+
+class RolesDialog(QDialog):
+    """Nothing changes in the project before *Apply* or *OK*."""
+
+    def __init__(self, project: QgsProject, parent: QWidget | None = None):
+        super().__init__(parent)
+        self.setObjectName("fleet_roles_dialog")
+        self.setWindowTitle("Layer roles")
+        self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        self._project = project
+        self.model = RoleTableModel(rows_of(project), self)
+        self.preview = LivePreview(project, self.model.rows, self)
+        self._bar = QgsMessageBar(self)
+        self._table = self._make_table()
+        self._view = PreviewView(self)
+        self._summary = QLabel(self)
+        self._summary.setObjectName("fleet_roles_summary")
+        self._summary.setWordWrap(True)
+        self._buttons = self._make_buttons()
+        self._lay_out()
+        self._wire()
+        self.resize(1040, 760)
+        self.preview.refresh()
+
+    def apply(self) -> None:
+        """Keep what the table says in the layers."""
+        changed = [row for row in self.model.rows if row.setup != setup_of(row.layer)]
+        for row in changed:
+            keep_setup(row.layer, row.setup)
+        if changed:
+            self._project.setDirty(True)
+        self._show_changed()
+
+    def apply_profile(self, file: Path) -> None:
+        """Set the layers up that the profile in ``file`` knows; say how many those were, or what is wrong."""
+        try:
+            profile = read_profile(file)
+        except FleetError as error:
+            self._bar.pushWarning("", str(error))
+            return
+        setups = {row.layer_id: profile.setup_for(row.layer) for row in self.model.rows}
+        known = {layer_id: setup for layer_id, setup in setups.items() if setup is not None}
+        self.model.set_up(known)
+        self._bar.clearWidgets()
+        if known:
+            self._bar.pushInfo("", f"{profile.name}: {len(known)} of {len(setups)} layers set up.")
+        else:
+            self._bar.pushWarning("", f"{profile.name} knows none of these layers by name and fields.")
+
+    def done(self, result: int) -> None:
+        """End the preview whichever way the dialog closes."""
+        self.preview.stop()
+        super().done(result)
+
+    # --- how it looks ---
+
+    def _make_table(self) -> QTableView:
+        table = QTableView(self)
+        table.setObjectName("fleet_roles_table")
+        table.setModel(self.model)
+        table.setItemDelegateForColumn(ROLE, RoleDelegate(table))
+        for column in (HEIGHT, SEMANTICS, OUTDOOR, WIDTH):
+            table.setItemDelegateForColumn(column, ExpressionDelegate(table))
+        triggers = QAbstractItemView.EditTrigger
+        table.setEditTriggers(
+            triggers.SelectedClicked
+            | triggers.DoubleClicked
+            | triggers.EditKeyPressed
+            | triggers.AnyKeyPressed
+        )
+        table.verticalHeader().hide()
+        table.verticalHeader().setDefaultSectionSize(26)
+        table.setAlternatingRowColors(True)
+        table.setWordWrap(False)
+        header = table.horizontalHeader()
+        for column, width in WIDTHS.items():
+            table.setColumnWidth(column, width)
+        header.setSectionResizeMode(RESULT, QHeaderView.ResizeMode.Stretch)
+        return table
+
+    def _make_buttons(self) -> QDialogButtonBox:
+        standard = QDialogButtonBox.StandardButton
+        return QDialogButtonBox(standard.Ok | standard.Apply | standard.Cancel, self)
+
+    def _lay_out(self) -> None:
+        layout = QVBoxLayout(self)
+        layout.addWidget(self._bar)
+        layout.addLayout(self._profile_line())
+        splitter = QSplitter(Qt.Orientation.Vertical, self)
+        splitter.addWidget(self._table)
+        splitter.addWidget(self._view)
+        splitter.setStretchFactor(0, 1)
+        splitter.setStretchFactor(1, 1)
+        layout.addWidget(splitter, 1)
+        layout.addWidget(self._summary)
+        layout.addWidget(self._buttons)
+
+    def _profile_line(self) -> QHBoxLayout:
+        self._profiles = QComboBox(self)
+        self._profiles.setObjectName("fleet_roles_profile")
+        for file in shipped_profiles():
+            try:
+                profile = read_profile(file)
+            except FleetError as error:
+                self._bar.pushWarning("", str(error))
+                continue
+            self._profiles.addItem(profile.name, str(file))
+            self._profiles.setItemData(self._profiles.count() - 1, profile.about, Qt.ItemDataRole.ToolTipRole)
+        self._apply_profile = QPushButton("Apply profile", self)
+        self._apply_profile.setObjectName("fleet_roles_apply_profile")
+        self._from_file = QPushButton("Profile from file…", self)
+        self._apply_profile.setEnabled(self._profiles.count() > 0)
+        line = QHBoxLayout()
+        line.addWidget(QLabel("Map profile:", self))
+        for widget in (self._profiles, self._apply_profile, self._from_file):
+            line.addWidget(widget)
+        line.addStretch(1)
+        return line
+
+    # --- what it does ---
+
+    def _wire(self) -> None:
+        self._buttons.accepted.connect(self._accept)
+        self._buttons.rejected.connect(self.reject)
+        self._buttons.button(QDialogButtonBox.StandardButton.Apply).clicked.connect(self.apply)
+        self._apply_profile.clicked.connect(lambda: self.apply_profile(Path(self._profiles.currentData())))
+        self._from_file.clicked.connect(self._choose_profile)
+        self.model.edited.connect(self.preview.refresh)
+        self.model.edited.connect(self._show_changed)
+        self.preview.measured.connect(self.model.show_result)
+        self.preview.drawn.connect(self._view.show_image)
+        self.preview.summed.connect(self._summary.setText)
+        self._view.resized.connect(
+            lambda: self.preview.resize(self._view.size(), self._view.devicePixelRatioF())
+        )
+        # A row speaks of its layer: without it the dialog has nothing to show or to keep.
+        self._project.layersWillBeRemoved.connect(self.reject)
+        self._show_changed()
+
+    def _accept(self) -> None:
+        self.apply()
+        self.accept()
+
+    def _show_changed(self) -> None:
+        changed = any(row.setup != setup_of(row.layer) for row in self.model.rows)
+        self._buttons.button(QDialogButtonBox.StandardButton.Apply).setEnabled(changed)
+
+    def _choose_profile(self) -> None:
+        kinds = " ".join(f"*{suffix}" for suffix in SUFFIXES)
+        name, _ = QFileDialog.getOpenFileName(self, "Map profile", "", f"Map profile ({kinds})")
+        if name:
+            self.apply_profile(Path(name))

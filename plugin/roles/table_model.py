@@ -1,0 +1,150 @@
+"""The role table as Qt shows and edits it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from qgis.core import QgsMapLayer
+from qgis.PyQt.QtCore import QAbstractTableModel, QModelIndex, Qt, pyqtSignal
+from qgis.PyQt.QtGui import QColor
+
+from ..sites.roles import OBSTACLE_ROLES, ORTHOPHOTO, ROAD_CENTRELINE, LayerSetup
+from .measure import Measure
+from .rows import RoleRow
+
+TITLES = ("Layer", "Role", "Height [m]", "Label", "Outdoors", "Width [m]", "Comes to")
+LAYER, ROLE, HEIGHT, SEMANTICS, OUTDOOR, WIDTH, RESULT = range(7)
+WHAT = {ROLE: "role", HEIGHT: "height", SEMANTICS: "semantics", OUTDOOR: "outdoor", WIDTH: "width"}
+EXPLANATIONS = {
+    LAYER: "Layers of the project that can have a role",
+    ROLE: "What the layer is to robots and operators",
+    HEIGHT: "Expression for metres above the ground; empty: the field height or height_m",
+    SEMANTICS: "Expression for the label, such as 'building,' || \"name\"; of a road its surface",
+    OUTDOOR: "Expression for true or false; empty: true",
+    WIDTH: "Expression for the metres of a road; empty: the field width_m or width",
+    RESULT: "What is published of the layer",
+}
+ROLE_NAMES = {"": "–", ROAD_CENTRELINE: "road centreline", "road_surface": "road surface"}
+
+_GREY, _RED, _AMBER = QColor("#8a949e"), QColor("#c1121f"), QColor("#9a5b00")
+
+
+def role_name(role: str) -> str:
+    """Return what a role is called on the screen."""
+    return ROLE_NAMES.get(role, role)
+
+
+def used_columns(role: str) -> tuple[int, ...]:
+    """Return the columns of expressions that count for a layer of ``role``."""
+    if role in OBSTACLE_ROLES:
+        return (HEIGHT, SEMANTICS, OUTDOOR)
+    if role == ROAD_CENTRELINE:
+        return (SEMANTICS, WIDTH)
+    return () if role in ("", ORTHOPHOTO) else (SEMANTICS,)
+
+
+class RoleTableModel(QAbstractTableModel):
+    """Rows of :class:`RoleRow`; ``edited`` says that one or more of them changed."""
+
+    edited = pyqtSignal()
+
+    def __init__(self, rows: Sequence[RoleRow], parent=None):
+        super().__init__(parent)
+        self.rows = list(rows)
+        self._results: dict[str, Measure | None] = {}
+
+    def show_result(self, layer_id: str, found: Measure | None) -> None:
+        """Show what a layer comes to; None while that is being found out."""
+        for k, row in enumerate(self.rows):
+            if row.layer_id == layer_id:
+                self._results[layer_id] = found
+                self.dataChanged.emit(self.index(k, RESULT), self.index(k, RESULT))
+
+    def set_up(self, setups: dict[str, LayerSetup]) -> None:
+        """Change several layers at once, by their ids."""
+        for row in self.rows:
+            row.setup = setups.get(row.layer_id, row.setup)
+        if self.rows:
+            self.dataChanged.emit(self.index(0, 0), self.index(len(self.rows) - 1, RESULT))
+        self.edited.emit()
+
+    def layer(self, index: QModelIndex) -> QgsMapLayer:
+        """Return the layer of a row."""
+        return self.rows[index.row()].layer
+
+    # --- Qt ---
+
+    def rowCount(self, parent=QModelIndex()):  # noqa: B008
+        return 0 if parent.isValid() else len(self.rows)
+
+    def columnCount(self, parent=QModelIndex()):  # noqa: B008
+        return 0 if parent.isValid() else len(TITLES)
+
+    def headerData(self, section, orientation, role=Qt.ItemDataRole.DisplayRole):
+        if orientation != Qt.Orientation.Horizontal:
+            return None
+        if role == Qt.ItemDataRole.DisplayRole:
+            return TITLES[section]
+        return EXPLANATIONS[section] if role == Qt.ItemDataRole.ToolTipRole else None
+
+    def flags(self, index):
+        plain = Qt.ItemFlag.ItemIsEnabled | Qt.ItemFlag.ItemIsSelectable
+        column = index.column()
+        editable = column == ROLE or column in used_columns(self.rows[index.row()].setup.role)
+        return plain | Qt.ItemFlag.ItemIsEditable if editable else plain
+
+    def data(self, index, role=Qt.ItemDataRole.DisplayRole):
+        row, column = self.rows[index.row()], index.column()
+        if role == Qt.ItemDataRole.EditRole:
+            return self._text(row, column)
+        if role == Qt.ItemDataRole.DisplayRole:
+            return self._shown(row, column)
+        if role == Qt.ItemDataRole.ToolTipRole:
+            return self._explained(row, column)
+        if role == Qt.ItemDataRole.ForegroundRole:
+            return self._colour(row, column)
+        return None
+
+    def setData(self, index, value, role=Qt.ItemDataRole.EditRole):
+        row, column = self.rows[index.row()], index.column()
+        if role != Qt.ItemDataRole.EditRole or column not in WHAT:
+            return False
+        before = row.setup
+        row.change(WHAT[column], str(value or ""))
+        if row.setup != before:
+            self.dataChanged.emit(self.index(index.row(), 0), self.index(index.row(), RESULT))
+            self.edited.emit()
+        return True
+
+    def _text(self, row: RoleRow, column: int) -> str:
+        if column in WHAT and column != ROLE:
+            return str(getattr(row.setup.expressions, WHAT[column]))
+        return row.setup.role if column == ROLE else row.name
+
+    def _shown(self, row: RoleRow, column: int) -> str:
+        if column == RESULT:
+            found = self._results.get(row.layer_id)
+            measured = row.setup.role and row.setup.role != ORTHOPHOTO
+            return str(found) if found is not None else ("…" if measured else "")
+        if column == ROLE:
+            return role_name(row.setup.role)
+        if column in WHAT and column not in used_columns(row.setup.role):
+            return ""
+        return self._text(row, column)
+
+    def _explained(self, row: RoleRow, column: int) -> str:
+        if column != RESULT:
+            return self._shown(row, column)
+        found = self._results.get(row.layer_id)
+        if found is None:
+            return ""
+        shown = [found.refused] if found.refused else list(found.warnings[:20])
+        more = len(found.warnings) - 20
+        return "\n".join([*shown, f"and {more} more"] if more > 0 else shown)
+
+    def _colour(self, row: RoleRow, column: int) -> Any:
+        found = self._results.get(row.layer_id)
+        if column == RESULT and found is not None and (found.refused or found.warnings):
+            return _RED if found.refused else _AMBER
+        return _GREY if not row.setup.role else None

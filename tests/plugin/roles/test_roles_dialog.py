@@ -1,0 +1,273 @@
+"""The dialog *Layer roles*: what it shows, what it keeps and when, and that it never makes one wait."""
+
+from __future__ import annotations
+
+import threading
+import time
+
+import pytest
+from fleet_supervisor.plugin.roles.picture import COLOURS, GROUND
+from fleet_supervisor.plugin.roles.preview_view import PreviewView
+from fleet_supervisor.plugin.roles.roles_action import RolesAction
+from fleet_supervisor.plugin.roles.roles_dialog import RolesDialog
+from fleet_supervisor.plugin.roles.table_model import HEIGHT, LAYER, RESULT, ROLE, SEMANTICS, WIDTH
+from fleet_supervisor.plugin.sites.profile_file import PROFILES, find_profile
+from fleet_supervisor.plugin.sites.roles import LayerExpressions, LayerSetup, setup_of
+from qgis.core import QgsApplication, QgsCoordinateReferenceSystem
+from qgis.gui import QgsFieldExpressionWidget, QgsMessageBar
+from qgis.PyQt import sip
+from qgis.PyQt.QtCore import QCoreApplication, QEvent, Qt
+from qgis.PyQt.QtTest import QTest
+from qgis.PyQt.QtWidgets import (
+    QApplication,
+    QComboBox,
+    QDialogButtonBox,
+    QLabel,
+    QMainWindow,
+    QPushButton,
+    QTableView,
+)
+
+LEFT = Qt.MouseButton.LeftButton
+BUTTONS = QDialogButtonBox.StandardButton
+
+
+def cell(dialog, layer, column):
+    """Return the index of a cell."""
+    (row,) = (k for k, row in enumerate(dialog.model.rows) if row.name == layer)
+    return dialog.model.index(row, column)
+
+
+def put(dialog, layer, column, text):
+    assert dialog.model.setData(cell(dialog, layer, column), text)
+
+
+def press(dialog, button):
+    QTest.mouseClick(dialog.findChild(QDialogButtonBox).button(button), LEFT)
+
+
+def said(dialog):
+    return dialog.findChild(QLabel, "fleet_roles_summary").text()
+
+
+def message(dialog):
+    return dialog.findChild(QgsMessageBar).currentItem().text()
+
+
+def of_layer(project, name):
+    (layer,) = project.mapLayersByName(name)
+    return setup_of(layer)
+
+
+def edit(dialog, layer, column, kind):
+    """Open the editor of a cell as a double click does, and return it."""
+    table = dialog.findChild(QTableView, "fleet_roles_table")
+    place = table.visualRect(cell(dialog, layer, column)).center()
+    QTest.mouseClick(table.viewport(), LEFT, Qt.KeyboardModifier.NoModifier, place)
+    QTest.mouseDClick(table.viewport(), LEFT, Qt.KeyboardModifier.NoModifier, place)
+    (editor,) = (found for found in table.findChildren(kind) if not sip.isdeleted(found))
+    return editor
+
+
+def shows(image, colour):
+    """Tell whether a pixel has about this colour; smooth lines seldom have it exactly."""
+    wanted = colour.getRgb()[:3]
+    pixels = (image.pixelColor(x, y).getRgb() for x in range(image.width()) for y in range(image.height()))
+    return any(all(abs(a - b) < 25 for a, b in zip(pixel, wanted, strict=False)) for pixel in pixels)
+
+
+def test_the_table_shows_each_layer_and_what_it_comes_to(dialog):
+    names = [dialog.model.index(k, LAYER).data() for k in range(dialog.model.rowCount())]
+    assert names == ["barriers", "buildings", "roads"]
+    assert cell(dialog, "buildings", RESULT).data() == "2 obstacles, 6 segments, 1 warning"
+    assert "1 height is not known" in cell(dialog, "buildings", RESULT).data(Qt.ItemDataRole.ToolTipRole)
+    assert cell(dialog, "barriers", RESULT).data() == ""
+    assert said(dialog) == "2 obstacles of 6 segments, 0 roads, 0 surfaces, 0 keepouts, 1 warning"
+
+
+def test_a_role_chosen_by_the_mouse_is_counted_and_drawn(dialog, wait):
+    roles = edit(dialog, "roads", ROLE, QComboBox)
+    assert [roles.itemText(k) for k in range(roles.count())] == [
+        "–",
+        "obstacle",
+        "stairs",
+        "furniture",
+        "road centreline",
+    ]
+    roles.setCurrentIndex(4)
+    roles.activated.emit(4)
+    wait(lambda: cell(dialog, "roads", RESULT).data() == "1 road, 1 segment")
+    wait(lambda: not dialog.preview.busy)
+    assert "1 road," in said(dialog)
+    image = dialog.findChild(PreviewView, "fleet_roles_preview").image
+    assert image.pixelColor(1, 1) == GROUND
+    assert all(shows(image, COLOURS[role]) for role in ("obstacle", "road_centreline"))
+    assert not shows(image, COLOURS["keepout"])
+
+
+def test_an_expression_is_chosen_in_qgis_own_widget(dialog, wait):
+    editor = edit(dialog, "buildings", HEIGHT, QgsFieldExpressionWidget)
+    assert editor.layer().name() == "buildings"
+    editor.setExpression("7 + 1")
+    dialog.findChild(QTableView).setFocus()
+    table = dialog.findChild(QTableView)
+    table.commitData(editor)
+    assert cell(dialog, "buildings", HEIGHT).data() == "7 + 1"
+    wait(lambda: cell(dialog, "buildings", RESULT).data() == "2 obstacles, 6 segments")
+
+
+def test_an_expression_that_is_none_is_told_in_its_row(dialog, wait):
+    put(dialog, "buildings", HEIGHT, "7 +")
+    wait(lambda: cell(dialog, "buildings", RESULT).data() == "refused")
+    assert "'7 +' for the layer buildings is not one" in cell(dialog, "buildings", RESULT).data(
+        Qt.ItemDataRole.ToolTipRole
+    )
+    wait(lambda: "1 layer refused" in said(dialog))
+
+
+def test_only_expressions_that_count_can_be_edited(dialog):
+    put(dialog, "roads", ROLE, "road_centreline")
+    editable = {
+        column: bool(cell(dialog, "roads", column).flags() & Qt.ItemFlag.ItemIsEditable)
+        for column in (LAYER, ROLE, HEIGHT, SEMANTICS, WIDTH, RESULT)
+    }
+    assert editable == {LAYER: False, ROLE: True, HEIGHT: False, SEMANTICS: True, WIDTH: True, RESULT: False}
+
+
+def test_nothing_is_kept_before_apply(dialog, project):
+    apply = dialog.findChild(QDialogButtonBox).button(BUTTONS.Apply)
+    assert not apply.isEnabled()
+    put(dialog, "barriers", ROLE, "obstacle")
+    put(dialog, "barriers", HEIGHT, "2")
+    assert of_layer(project, "barriers") == LayerSetup() and not project.isDirty()
+    press(dialog, BUTTONS.Apply)
+    assert of_layer(project, "barriers") == LayerSetup("obstacle", LayerExpressions(height="2"))
+    assert project.isDirty() and not apply.isEnabled() and dialog.isVisible()
+
+
+def test_cancel_keeps_nothing_and_ok_everything(project, wait):
+    for button, kept in ((BUTTONS.Cancel, ""), (BUTTONS.Ok, "obstacle")):
+        dialog = RolesDialog(project)
+        dialog.open()
+        put(dialog, "barriers", ROLE, "obstacle")
+        press(dialog, button)
+        assert not dialog.isVisible()
+        assert of_layer(project, "barriers").role == kept
+
+
+def test_a_profile_sets_up_the_layers_it_knows(dialog, project, wait):
+    profiles = dialog.findChild(QComboBox, "fleet_roles_profile")
+    profiles.setCurrentIndex(profiles.findData(str(PROFILES / "openstreetmap.toml")))
+    QTest.mouseClick(dialog.findChild(QPushButton, "fleet_roles_apply_profile"), LEFT)
+    wait(lambda: not dialog.preview.busy)
+    assert cell(dialog, "barriers", RESULT).data() == "1 obstacle, 2 segments, 1 warning"
+    assert cell(dialog, "roads", ROLE).data() == "road centreline"
+    assert of_layer(project, "roads") == LayerSetup()
+    press(dialog, BUTTONS.Apply)
+    assert of_layer(project, "roads").role == "road_centreline"
+
+
+def test_a_broken_profile_changes_nothing_and_says_why(dialog, tmp_path):
+    broken = tmp_path / "mine.toml"
+    broken.write_text("[[layers]]\nnames = ['roads']\nrole = 'raod'\n")
+    dialog.apply_profile(broken)
+    assert "layers[0].role is 'raod'" in message(dialog)
+    assert cell(dialog, "roads", ROLE).data() == "–"
+    dialog.apply_profile(find_profile("upc_campus_nord"))
+    assert "knows none of these layers" in message(dialog)
+
+
+def test_a_project_that_cannot_carry_a_site_is_told(project, wait):
+    project.setCrs(QgsCoordinateReferenceSystem("EPSG:3857"))
+    dialog = RolesDialog(project)
+    dialog.open()
+    wait(lambda: "its metres are not metres" in said(dialog))
+    dialog.reject()
+
+
+@pytest.fixture
+def city(project, make_layer):
+    """Enough buildings to read for a while."""
+    squares = [
+        (f"Polygon(({x} {y}, {x + 5} {y}, {x + 5} {y + 5}, {x} {y}))", "3")
+        for x in range(0, 1000, 10)
+        for y in range(0, 1000, 10)
+    ]
+    layer = make_layer("city buildings", "Polygon", "&field=height:string", squares)
+    project.addMapLayer(layer)
+    return layer
+
+
+def test_the_window_goes_on_while_layers_are_read(dialog, project, city, wait):
+    city.setCustomProperty("fleet/role", "obstacle")
+    dialog = RolesDialog(project)
+    dialog.open()
+    longest, turns = 0.0, 0
+    while dialog.preview.busy:
+        before = time.monotonic()
+        QApplication.processEvents()
+        longest = max(longest, time.monotonic() - before)
+        turns += 1
+        time.sleep(0.002)
+    assert cell(dialog, "city buildings", RESULT).data() == "10000 obstacles, 30000 segments"
+    assert turns > 20 and longest < 0.5
+    dialog.reject()
+
+
+def test_closing_in_the_middle_leaves_no_thread_at_the_layers(project, city):
+    city.setCustomProperty("fleet/role", "obstacle")
+    dialog = RolesDialog(project)
+    dialog.open()
+    dialog.preview._timer.timeout.emit()
+    QApplication.processEvents()
+    task = dialog.preview._task
+    assert task is not None
+    before = time.monotonic()
+    dialog.reject()
+    assert time.monotonic() - before < 1.0
+    assert not dialog.preview.busy
+    QgsApplication.taskManager().cancelAll()
+    end = time.monotonic() + 5
+    while QgsApplication.taskManager().countActiveTasks() and time.monotonic() < end:
+        QApplication.processEvents()
+    assert QgsApplication.taskManager().countActiveTasks() == 0
+    assert threading.active_count() < 50
+
+
+def test_removing_a_layer_closes_the_dialog(dialog, project):
+    project.removeMapLayer(project.mapLayersByName("roads")[0].id())
+    assert not dialog.isVisible()
+
+
+class Window:
+    """What the menu entry needs of QGIS's window."""
+
+    def __init__(self):
+        self.main = QMainWindow()
+        self.menu = []
+
+    def mainWindow(self):
+        return self.main
+
+    def addPluginToMenu(self, menu, action):
+        self.menu.append((menu, action))
+
+    def removePluginMenu(self, menu, action):
+        self.menu.remove((menu, action))
+
+
+def test_the_menu_entry_opens_one_dialog_and_goes_without_a_trace(qgis_app):
+    window = Window()
+    entry = RolesAction(window, "Fleet Supervisor")
+    assert [(menu, action.objectName()) for menu, action in window.menu] == [
+        ("Fleet Supervisor", "fleet_layer_roles")
+    ]
+    entry.action.trigger()
+    entry.action.trigger()
+    (dialog,) = window.main.findChildren(RolesDialog)
+    assert dialog.isVisible()
+    entry.remove()
+    QCoreApplication.sendPostedEvents(None, QEvent.Type.DeferredDelete)
+    assert window.menu == []
+    assert window.main.findChildren(RolesDialog) == []
+    assert sip.isdeleted(entry.action)
