@@ -51,13 +51,13 @@ def colours_of_labels(obstacles: Iterable[Obstacle]) -> dict[str, Colours]:
     return {label: _known(label) or colours[label] for label in order}
 
 
-def colours_of(obstacle: Obstacle, by_label: Mapping[str, Colours]) -> Colours:
-    """Return the colours of one obstacle: what stairs and ramps are is said by their shape type."""
-    if obstacle.shape_type is ShapeType.STAIRS:
+def colours_of(shape_type: int, semantics: str, by_label: Mapping[str, Colours]) -> Colours:
+    """Return the colours of an obstacle: what stairs and ramps are is said by their shape type."""
+    if shape_type == ShapeType.STAIRS:
         return STAIRS
-    if obstacle.shape_type is ShapeType.RAMP:
+    if shape_type == ShapeType.RAMP:
         return RAMP
-    return by_label[first_label(obstacle)]
+    return by_label[semantics.partition(",")[0]]
 
 
 def deepened(colour: str, height: float) -> str:

@@ -15,6 +15,9 @@ Cells = NDArray[Any]
 _NOISE_DIGITS = 6
 """Digits of a cell that count; what follows is floating point's, not the point's."""
 
+_FAR = 1e9
+"""cells; a file may hold any number, and integers do not hold all of them."""
+
 _BAND_CELLS = 1 << 21
 """cells that are summed up at once, so that memory stays far below that of whole grids of integers."""
 
@@ -65,7 +68,8 @@ def enclosed_cells(grid: Grid, a: NDArray[Any], b: NDArray[Any]) -> Cells:
 def _in_cells(grid: Grid, a: NDArray[Any], b: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
     """Return the lower and the upper end of each segment, (n, 2) each, in cells from the grid's corner."""
     origin = (grid.x_min, grid.y_min)
-    ends = [np.round((end.reshape(-1, 2) - origin) / grid.resolution, _NOISE_DIGITS) for end in (a, b)]
+    ends = [(end.reshape(-1, 2) - origin) / grid.resolution for end in (a, b)]
+    ends = [np.round(np.clip(end, -_FAR, _FAR), _NOISE_DIGITS) for end in ends]
     upward = (ends[0][:, 1] <= ends[1][:, 1])[:, None]
     return np.where(upward, ends[0], ends[1]), np.where(upward, ends[1], ends[0])
 

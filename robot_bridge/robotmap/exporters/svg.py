@@ -43,7 +43,7 @@ def svg_of(robot_map: RobotMap, title: str = "", size: float = 1000.0) -> bytes:
         *sheet.face(),
         *_shadows(sheet, solids, shapes),
         *_cut_areas(sheet, solids, by_label),
-        *_areas(sheet, robot_map, shapes, by_label),
+        *_areas(sheet, shapes, by_label),
         *_lines(sheet, robot_map, by_label),
         *_labels(sheet, shapes),
         *sheet.surround(title or _title(robot_map), _subtitle(robot_map)),
@@ -69,26 +69,23 @@ def _shadows(sheet: Sheet, solids: list[Solid], shapes: list[Shape]) -> Iterator
 def _cut_areas(sheet: Sheet, solids: list[Solid], by_label: Mapping[str, Colours]) -> Iterator[str]:
     for solid in solids:
         if solid.cut:
-            colours = colours_of(solid.obstacle, by_label)
+            colours = colours_of(solid.obstacle.shape_type, solid.obstacle.semantics, by_label)
             fill = deepened(colours.fill, float(solid.obstacle.height.max()))
             yield f'<path d="{_path(sheet, [solid.ring])}" fill="{fill}"/>'
         elif solid.obstacle.shape_type is ShapeType.STAIRS:
-            fill = colours_of(solid.obstacle, by_label).fill
+            fill = colours_of(solid.obstacle.shape_type, solid.obstacle.semantics, by_label).fill
             yield f'<path d="{_path(sheet, [solid.ring])}" fill="{fill}"/>'
 
 
-def _areas(
-    sheet: Sheet, robot_map: RobotMap, shapes: list[Shape], by_label: Mapping[str, Colours]
-) -> Iterator[str]:
-    by_id = {obstacle.id: obstacle for obstacle in robot_map.obstacles}
+def _areas(sheet: Sheet, shapes: list[Shape], by_label: Mapping[str, Colours]) -> Iterator[str]:
     areas = [shape for shape in shapes if shape.kind == "Polygon"]
     # Grounds come first, so that they do not cover what stands on them.
     for shape in sorted(areas, key=lambda area: not _is_ground(area)):
-        obstacle = by_id[shape.attributes["id"]]
-        colours = colours_of(obstacle, by_label)
+        shape_type = shape.attributes["shape_type"]
+        colours = colours_of(shape_type, shape.attributes["semantics"], by_label)
         fill = FACE if shape.attributes["courtyard"] else deepened(colours.fill, shape.attributes["height_m"])
         stroke = min(1.6, max(0.8, float(np.ptp(shape.parts[0], axis=0).max()) * sheet.scale / 6))
-        dashes = ' stroke-dasharray="6 4"' if obstacle.shape_type is ShapeType.RAMP else ""
+        dashes = ' stroke-dasharray="6 4"' if shape_type == ShapeType.RAMP else ""
         yield (
             f'<path d="{_path(sheet, shape.parts)}" fill="{fill}" fill-rule="evenodd" '
             f'stroke="{colours.stroke}" stroke-width="{stroke:.1f}" stroke-linejoin="round"{dashes}/>'
@@ -107,7 +104,7 @@ def _lines(sheet: Sheet, robot_map: RobotMap, by_label: Mapping[str, Colours]) -
             width = 1.2
         else:
             continue
-        stroke = colours_of(obstacle, by_label).stroke
+        stroke = colours_of(obstacle.shape_type, obstacle.semantics, by_label).stroke
         path = "".join(_open_path(sheet, line) for line in lines_of(obstacle))
         yield (
             f'<path d="{path}" fill="none" stroke="{stroke}" stroke-width="{width}" '
@@ -178,7 +175,7 @@ def _legend(robot_map: RobotMap, by_label: Mapping[str, Colours]) -> list[tuple[
     rows: dict[str, Colours] = {}
     for label in by_label:
         example = next(o for o in robot_map.obstacles if o.semantics.partition(",")[0] == label)
-        rows[label or "(no label)"] = colours_of(example, by_label)
+        rows[label or "(no label)"] = colours_of(example.shape_type, example.semantics, by_label)
     shown = list(rows.items())
     if len(shown) <= _LEGEND_ROWS:
         return shown
