@@ -56,6 +56,11 @@ class MapPlace:
         return self.frame.to_crs(points.reshape(-1, 2)).reshape(points.shape)
 
 
+def layer_crs(crs: QgsCoordinateReferenceSystem) -> QgsCoordinateReferenceSystem:
+    """Return ``crs``, or local metres where it is not valid."""
+    return crs if crs.isValid() else QgsCoordinateReferenceSystem.fromWkt(SITE_METRES)
+
+
 def map_parameters() -> list[QgsProcessingParameterDefinition]:
     """Return the parameters that name the file and say where the map lies if it does not."""
     place = [
@@ -155,7 +160,7 @@ def _crs(algorithm, parameters, context, meta, feedback) -> QgsCoordinateReferen
         f"The map's place is not known, because {why}: its layers are in local metres. Give SITE_CRS, "
         "ORIGIN and ROTATION to place it."
     )
-    return QgsCoordinateReferenceSystem.fromWkt(SITE_METRES)
+    return layer_crs(known)
 
 
 def _numbers(meta: Mapping[str, str], key: str, count: int) -> tuple[float, ...]:

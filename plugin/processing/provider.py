@@ -10,6 +10,7 @@ from qgis.PyQt.QtGui import QIcon
 from .check_robot_map import CheckRobotMap
 from .export_navigation_map import ExportNavigationMap
 from .export_robot_map import ExportRobotMap
+from .export_robot_map_tiles import ExportRobotMapTiles
 from .load_robot_map import LoadRobotMap
 from .publish_site import PublishSite
 
@@ -32,5 +33,6 @@ class FleetProvider(QgsProcessingProvider):
         self.addAlgorithm(ExportRobotMap())
         self.addAlgorithm(ExportNavigationMap())
         self.addAlgorithm(PublishSite())
+        self.addAlgorithm(ExportRobotMapTiles())
         self.addAlgorithm(LoadRobotMap())
         self.addAlgorithm(CheckRobotMap())

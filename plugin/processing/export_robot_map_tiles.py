@@ -1,0 +1,217 @@
+"""``fleet:exportrobotmaptiles``: obstacle layers in, many robot maps and an index of them out."""
+
+from __future__ import annotations
+
+import numpy as np
+from qgis.core import (
+    QgsProcessing,
+    QgsProcessingFeedback,
+    QgsProcessingMultiStepFeedback,
+    QgsProcessingOutputNumber,
+    QgsProcessingParameterBoolean,
+    QgsProcessingParameterExtent,
+    QgsProcessingParameterFeatureSink,
+    QgsProcessingParameterFeatureSource,
+    QgsProcessingParameterFolderDestination,
+    QgsProcessingParameterMultipleLayers,
+    QgsProcessingParameterNumber,
+    QgsWkbTypes,
+)
+
+from ...robot_bridge.robotmap.binary import encode
+from ...robot_bridge.robotmap.errors import RobotMapError
+from ...robot_bridge.robotmap.index import OutlineIndex
+from ...robot_bridge.robotmap.text import write_text
+from ..errors import FleetError
+from ..sites.reading import Reading, read_outlines
+from .errors import shown_by_processing
+from .export_plan import OBSTACLES, unopened_layer
+from .export_robot_map import BINARY, FORMAT, STRICT, format_parameters, marked, value_parameters
+from .map_file import layer_crs
+from .map_profile import profile_parameter
+from .map_window import EXTENT, PAPERS_SIDE_M, frame_parameters
+from .robot_map_algorithm import RobotMapAlgorithm, fields_of
+from .sinks import fill, polygon
+from .tile_folder import TileFolder
+from .tile_plan import (
+    FOLDER,
+    INDEX,
+    OVERLAP,
+    ROUTE,
+    SKIP_EMPTY,
+    TILE_HEIGHT,
+    TILE_WIDTH,
+    TilePlan,
+    tile_plan_of,
+    tiles_problem,
+)
+from .tile_windows import Tile, area_of
+
+_FIELDS = {
+    "tile": "string",
+    "file": "string",
+    "row": "integer",
+    "col": "integer",
+    "route": "integer",
+    "along_m": "double",
+    "x_min": "double",
+    "y_min": "double",
+    "x_max": "double",
+    "y_max": "double",
+    "obstacles": "integer",
+    "segments": "integer",
+    "bytes": "int8",
+    "bytes_per_m2": "double",
+}
+NUMBERS = {
+    "TILE_COUNT": "Tiles",
+    "OBSTACLE_COUNT": "Obstacles in all tiles",
+    "SEGMENT_COUNT": "Segments in all tiles",
+    "BYTES": "Size of all tiles [bytes]",
+    "WARNING_COUNT": "Warnings",
+}
+_REAL = QgsProcessingParameterNumber.Type.Double
+
+
+class ExportRobotMapTiles(RobotMapAlgorithm):
+    """Exports a site as many maps, in a grid or along a route."""
+
+    NAME = "exportrobotmaptiles"
+    TITLE = "Export robot map tiles"
+    SUMMARY = "Writes many robot maps, in a grid or along a route, and a layer that tells which is where."
+    ICON = "export_robot_map_tiles.svg"
+    TAGS = ("tiles", "grid", "route", "batch", "obstacle", "partial map")
+    STYLES = {INDEX: "robot_map_tiles.qml"}  # noqa: RUF012
+    HELP = """
+    <p>Writes one robot map for each tile, as <i>Export robot map</i> does for one window, and an index: a
+    polygon for each tile with its file, border, counts and bytes. The layers are read once.</p>
+    <p><b>Grid</b>: tiles of one size from the left-lower corner of the extent; the last ones reach beyond it.
+    <b>Route</b>: tiles centred on the lines of a layer, so close that two that follow each other share the
+    overlap. Sizes are in metres along the site's axes.</p>
+    <p>An obstacle has the same id in every tile that it reaches into. Either every tile and the index are
+    there at the end, or, after a cancel or an error, none of them.</p>
+    """
+
+    def initAlgorithm(self, configuration=None):
+        kinds = QgsProcessing.SourceType
+        for parameter in (
+            QgsProcessingParameterMultipleLayers(OBSTACLES, "Obstacle layers", kinds.TypeVectorAnyGeometry),
+            QgsProcessingParameterExtent(EXTENT, "Extent of a grid (or choose a route)", optional=True),
+            QgsProcessingParameterFeatureSource(
+                ROUTE, "Route, instead of a grid", [kinds.TypeVectorLine], optional=True
+            ),
+            QgsProcessingParameterNumber(TILE_WIDTH, "Width of a tile, along x [m]", _REAL, PAPERS_SIDE_M),
+            QgsProcessingParameterNumber(TILE_HEIGHT, "Height of a tile, along y [m]", _REAL, PAPERS_SIDE_M),
+            QgsProcessingParameterNumber(OVERLAP, "What neighbouring tiles share [m]", _REAL, 10.0),
+            QgsProcessingParameterBoolean(SKIP_EMPTY, "Leave out tiles without obstacles", False),
+            *frame_parameters(),
+            *value_parameters(),
+            profile_parameter(),
+            *format_parameters(),
+            QgsProcessingParameterFolderDestination(FOLDER, "Folder of the tiles"),
+            QgsProcessingParameterFeatureSink(INDEX, "Index of the tiles", kinds.TypeVectorPolygon),
+        ):
+            self.addParameter(parameter)
+        for name, title in NUMBERS.items():
+            self.addOutput(QgsProcessingOutputNumber(name, title))
+
+    def checkParameterValues(self, parameters, context):
+        problem = tiles_problem(parameters) or unopened_layer(parameters, context)
+        if problem:
+            return False, problem
+        fine, message = super().checkParameterValues(parameters, context)
+        if not fine:
+            return False, message
+        try:
+            tile_plan_of(self, parameters, context)
+        except (FleetError, RobotMapError) as error:
+            return False, str(error)
+        return True, ""
+
+    def prepareAlgorithm(self, parameters, context, feedback):
+        with shown_by_processing():
+            self._plan = tile_plan_of(self, parameters, context)
+        self._fields = fields_of(_FIELDS)
+        return True
+
+    def processAlgorithm(self, parameters, context, feedback):
+        plan = self._plan
+        steps = QgsProcessingMultiStepFeedback(2, feedback)
+        with shown_by_processing(), TileFolder(plan.folder) as folder:
+            if feedback.isCanceled():
+                return {}
+            reading = read_outlines(plan.sources, plan.site, area_of(plan.tiles), plan.default_height, steps)
+            steps.setCurrentStep(1)
+            maker = _TileMaker(plan, reading, *self._writing(parameters, context))
+            if not reading.complete or not maker.make_all(folder, steps):
+                return {}
+            folder.publish()
+            # Only now, so that no index tells of tiles that are not there.
+            sink, index = self.parameterAsSink(
+                parameters, INDEX, context, self._fields, QgsWkbTypes.Type.Polygon, layer_crs(plan.site.crs)
+            )
+            fill(sink, self._fields, maker.rows, QgsProcessingFeedback())
+        self.remember({INDEX: index})
+        feedback.setProgress(100)
+        return {FOLDER: str(plan.folder), INDEX: index, **maker.reported(feedback)}
+
+    def _writing(self, parameters, context) -> tuple[bool, bool, bool]:
+        """Return whether to write binary, to write strictly, and to leave out empty tiles."""
+        return (
+            self.parameterAsEnumString(parameters, FORMAT, context) == BINARY,
+            self.parameterAsBool(parameters, STRICT, context),
+            self.parameterAsBool(parameters, SKIP_EMPTY, context),
+        )
+
+
+class _TileMaker:
+    """Makes the tiles of a plan one by one; ``rows`` become the features of the index."""
+
+    def __init__(self, plan: TilePlan, reading: Reading, binary: bool, strict: bool, skip_empty: bool):
+        self._plan, self._reading = plan, reading
+        self._binary, self._strict, self._skip_empty = binary, strict, skip_empty
+        self._counts = np.zeros(3, dtype=np.int64)
+        # A note about an outline comes with every tile that it touches: said once.
+        self._notes: dict[str, None] = dict.fromkeys(reading.warnings)
+        self.rows: list = []
+
+    def make_all(self, folder: TileFolder, feedback) -> bool:
+        """Add every tile to ``folder``; return False when cancelled on the way."""
+        index = OutlineIndex(self._reading.outlines())
+        for number, tile in enumerate(self._plan.tiles, 1):
+            if feedback.isCanceled():
+                return False
+            self._make(tile, index, folder)
+            feedback.setProgress(100 * number / len(self._plan.tiles))
+        return not feedback.isCanceled()
+
+    def reported(self, feedback) -> dict[str, int]:
+        """Push the warnings and the sums, and return the figures of the outputs."""
+        for note in self._notes:
+            feedback.pushWarning(note)
+        warnings = len(self._notes)
+        obstacles, segments, size = (int(count) for count in self._counts)
+        if not obstacles:
+            feedback.pushWarning("There is no obstacle in any tile: check their place and the site CRS.")
+            warnings += 1
+        feedback.pushInfo(f"{len(self.rows)} tiles, {segments} segments, {size} bytes")
+        return dict(zip(NUMBERS, (len(self.rows), obstacles, segments, size, warnings), strict=True))
+
+    def _make(self, tile: Tile, index: OutlineIndex, folder: TileFolder) -> None:
+        robot_map = marked(index.map_of(tile.window, self._plan.meta), self._reading.estimated)
+        self._notes.update(dict.fromkeys(robot_map.warnings))
+        if self._skip_empty and not robot_map.obstacles:
+            return
+        text = write_text(robot_map, strict=self._strict)
+        content = encode(text) if self._binary else text.encode()
+        name = f"{tile.name}.{'rmap' if self._binary else 'txt'}"
+        folder.add(name, content)
+        counts = (len(robot_map.obstacles), robot_map.segment_count, len(content))
+        self._counts += counts
+        border = robot_map.border
+        x_min, y_min, x_max, y_max = border
+        ring = np.array([[x_min, y_min], [x_max, y_min], [x_max, y_max], [x_min, y_max], [x_min, y_min]])
+        outline = polygon([self._plan.site.frame.to_crs(ring)])
+        place = (tile.row, tile.column, tile.route, tile.along)
+        values = [tile.name, name, *place, *border, *counts, len(content) / border.area]
+        self.rows.append((outline, values))

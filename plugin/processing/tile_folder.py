@@ -1,0 +1,67 @@
+"""A folder of files that appear all together or not at all."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from contextlib import suppress
+from pathlib import Path
+
+from .whole_file import OutputError
+
+
+class TileFolder:
+    """Collects files beside ``target``'s own and moves them there at the end.
+
+    To be used in a ``with`` block; what was not published when it ends is removed, and so is a folder that
+    was made for it. Files of other names in ``target`` are left alone.
+
+    :raises OutputError: when the folder or a file in it cannot be written.
+    """
+
+    def __init__(self, target: Path):
+        self.target = target
+        self._stage = target / f".tiles.{os.getpid()}.part"
+        self._made: list[Path] = []
+
+    def __enter__(self) -> TileFolder:
+        self._made = [path for path in (self.target, *self.target.parents) if not path.exists()]
+        try:
+            self._stage.mkdir(parents=True)
+        except OSError as error:
+            self._clear()
+            raise self._failed(error) from error
+        return self
+
+    def add(self, name: str, content: bytes) -> None:
+        """Keep ``content`` to become the file ``name``."""
+        if (self.target / name).is_dir():
+            raise OutputError(f"{self.target / name} is a folder: choose another folder for the tiles.")
+        try:
+            (self._stage / name).write_bytes(content)
+        except OSError as error:
+            raise self._failed(error) from error
+
+    def publish(self) -> None:
+        """Put every file into its place."""
+        try:
+            for file in sorted(self._stage.iterdir()):
+                file.replace(self.target / file.name)
+        except OSError as error:
+            raise self._failed(error) from error
+        self._made = []
+
+    def __exit__(self, *exception: object) -> None:
+        self._clear()
+
+    def _clear(self) -> None:
+        shutil.rmtree(self._stage, ignore_errors=True)
+        for folder in self._made:
+            with suppress(OSError):
+                folder.rmdir()
+
+    def _failed(self, error: OSError) -> OutputError:
+        return OutputError(
+            f"The tiles cannot be written to {self.target}: {error.strerror or error}. Choose a folder that "
+            "may be written to, and check the free space."
+        )

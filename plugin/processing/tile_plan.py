@@ -1,0 +1,85 @@
+"""What an export of tiles will do, settled and checked before it starts."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from qgis.core import QgsProcessingAlgorithm, QgsProcessingContext
+
+from ..sites.placing import PlacingError, SitePlacing
+from ..sites.shapes import shapes_of
+from ..sites.site_crs import stated_crs
+from .errors import ParameterError
+from .export_plan import ObstaclePlan, obstacle_plan_of
+from .map_window import EXTENT, map_window
+from .tile_windows import Tile, TileSize, grid_tiles, route_tiles
+
+ROUTE, TILE_WIDTH, TILE_HEIGHT, OVERLAP = "ROUTE", "TILE_WIDTH", "TILE_HEIGHT", "OVERLAP"
+FOLDER, INDEX, SKIP_EMPTY = "OUTPUT", "INDEX", "SKIP_EMPTY"
+
+
+@dataclass(frozen=True)
+class TilePlan(ObstaclePlan):
+    """Everything that is needed of the parameters and layers to export tiles."""
+
+    tiles: list[Tile]
+    folder: Path
+
+
+def tiles_problem(parameters: Mapping[str, Any]) -> str:
+    """Return what is wrong with the choice of area, or nothing."""
+    has_extent, has_route = (parameters.get(name) not in (None, "") for name in (EXTENT, ROUTE))
+    if has_extent and has_route:
+        return "Both EXTENT and ROUTE are given: give one of them, for a grid or for tiles along a route."
+    if not has_extent and not has_route:
+        return "Neither EXTENT nor ROUTE is given: give an extent for a grid, or a layer of lines to follow."
+    return ""
+
+
+def tile_plan_of(
+    algorithm: QgsProcessingAlgorithm, parameters: Mapping[str, Any], context: QgsProcessingContext
+) -> TilePlan:
+    """Return the plan for ``parameters``; to be called in the main thread.
+
+    :raises FleetError: when a parameter or a layer cannot be used.
+    :raises WindowError: when the extent encloses nothing.
+    """
+    plan = obstacle_plan_of(algorithm, parameters, context)
+    numbers = (
+        algorithm.parameterAsDouble(parameters, n, context) for n in (TILE_WIDTH, TILE_HEIGHT, OVERLAP)
+    )
+    size = TileSize(*numbers)
+    if parameters.get(ROUTE) not in (None, ""):
+        tiles = route_tiles(_routes(algorithm, parameters, context, plan.site), size)
+    else:
+        area = map_window(algorithm, parameters, context, plan.site.crs, plan.site.frame)
+        tiles = grid_tiles(area.border, size)
+    folder = Path(algorithm.parameterAsFileOutput(parameters, FOLDER, context))
+    if folder.exists() and not folder.is_dir():
+        raise ParameterError(f"OUTPUT {folder} is a file: choose a folder for the tiles.")
+    return TilePlan(**vars(plan), tiles=tiles, folder=folder)
+
+
+def _routes(algorithm, parameters, context, site: SitePlacing) -> list[np.ndarray]:
+    """Return each line of ROUTE as (n, 2) metres in the site frame."""
+    source = algorithm.parameterAsSource(parameters, ROUTE, context)
+    if source is None:
+        raise ParameterError(f"ROUTE {parameters[ROUTE]} cannot be opened: choose a layer of lines.")
+    placing = site.of_layer(source.sourceName(), stated_crs(source.sourceCrs()))
+    routes = []
+    for feature in source.getFeatures():
+        if feature.geometry().isNull():
+            continue
+        try:
+            shapes = shapes_of(placing.to_metres(feature.geometry())).shapes
+        except PlacingError as error:
+            raise ParameterError(
+                f"ROUTE: feature {feature.id()} of {source.sourceName()} has no place in the site's CRS "
+                f"({error}): correct its geometry or the CRS."
+            ) from error
+        routes += [placing.to_site(shape.points) for shape in shapes]
+    return routes
