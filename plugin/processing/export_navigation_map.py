@@ -10,32 +10,29 @@ from typing import Any
 from qgis.core import (
     QgsProcessing,
     QgsProcessingAlgorithm,
+    QgsProcessingFeedback,
     QgsProcessingOutputFile,
     QgsProcessingOutputNumber,
     QgsProcessingParameterDefinition,
     QgsProcessingParameterEnum,
     QgsProcessingParameterExpression,
     QgsProcessingParameterFeatureSource,
-    QgsProcessingParameterFile,
     QgsProcessingParameterFolderDestination,
     QgsProcessingParameterNumber,
     QgsProcessingParameterString,
 )
 from qgis.PyQt.QtGui import QIcon
 
-from ...robot_bridge.robotmap.binary import decode
-from ...robot_bridge.robotmap.errors import TextError
-from ...robot_bridge.robotmap.model import RobotMap
-from ...robot_bridge.robotmap.text import read_text
 from .errors import ParameterError, shown_by_processing
-from .map_place import place_of
+from .map_file import MAP, file_problem, map_parameters, map_place, read_map_file
+from .map_place import PlacedMap
 from .mask_areas import areas_of, speed_by
 from .navigation_files import FORMATS as MADE
 from .navigation_files import Files, NavigationExport
 from .navigation_help import HELP
 from .whole_file import OutputError, write_whole
 
-INPUT, FORMATS, NAME, OUTPUT = "INPUT", "FORMATS", "NAME", "OUTPUT"
+FORMATS, NAME, OUTPUT = "FORMATS", "NAME", "OUTPUT"
 RESOLUTION, INSIDE, DRIVES_OVER = "RESOLUTION", "INSIDE", "DRIVES_OVER"
 KEEPOUTS, SPEED_AREAS, SPEED = "KEEPOUTS", "SPEED_AREAS", "SPEED"
 UNKNOWN, OCCUPIED = "unknown", "occupied"
@@ -43,6 +40,21 @@ UNKNOWN, OCCUPIED = "unknown", "occupied"
 ICON = Path(__file__).parents[2] / "resources" / "icons" / "export_navigation_map.svg"
 _REAL = QgsProcessingParameterNumber.Type.Double
 _POLYGONS = [QgsProcessing.SourceType.TypeVectorPolygon]
+
+
+_PLACED = frozenset(("keepout", "speed", "geojson", "geopackage"))
+"""Formats for which the map's place on the Earth matters."""
+
+
+class _Collector(QgsProcessingFeedback):
+    """Keeps warnings for later, so that they are counted with the others."""
+
+    def __init__(self, warnings: list[str]):
+        super().__init__(False)
+        self._warnings = warnings
+
+    def pushWarning(self, warning):
+        self._warnings.append(warning)
 
 
 class ExportNavigationMap(QgsProcessingAlgorithm):
@@ -91,15 +103,19 @@ class ExportNavigationMap(QgsProcessingAlgorithm):
 
     def checkParameterValues(self, parameters, context):
         # Before QGIS's own checks, which say that a value is wrong and not why.
-        problem = _number_problem(parameters) or self._choice_problem(parameters, context)
+        problem = (
+            file_problem(parameters)
+            or _number_problem(parameters)
+            or self._choice_problem(parameters, context)
+        )
         return (False, problem) if problem else super().checkParameterValues(parameters, context)
 
     def processAlgorithm(self, parameters, context, feedback):
         formats = self.parameterAsEnumStrings(parameters, FORMATS, context)
-        source = Path(self.parameterAsFile(parameters, INPUT, context))
+        source = Path(self.parameterAsFile(parameters, MAP, context))
         folder = Path(self.parameterAsString(parameters, OUTPUT, context))
         with shown_by_processing():
-            export = self._plan(source, parameters, context)
+            export = self._plan(source, formats, parameters, context)
             self._read_areas(export, formats, parameters, context, feedback)
             made: dict[str, Files] = {}
             for number, format in enumerate(formats):
@@ -116,26 +132,29 @@ class ExportNavigationMap(QgsProcessingAlgorithm):
         feedback.setProgress(100)
         return _results(made, folder, len(export.warnings))
 
-    def _plan(self, source: Path, parameters, context) -> NavigationExport:
-        robot_map = _read(source)
+    def _plan(self, source: Path, formats, parameters, context) -> NavigationExport:
+        robot_map = read_map_file(source)
+        warnings = list(robot_map.warnings)
+        # Grids and pictures stay in the site's metres, wherever those are.
+        heard = warnings if _PLACED.intersection(formats) else []
+        place = map_place(self, parameters, context, robot_map.meta, _Collector(heard))
         return NavigationExport(
             robot_map=robot_map,
-            place=place_of(robot_map, context.transformContext()),
+            place=PlacedMap(place, context.transformContext()),
             name=_name(self.parameterAsString(parameters, NAME, context), source),
             resolution=self.parameterAsDouble(parameters, RESOLUTION, context),
             inside=self.parameterAsEnumString(parameters, INSIDE, context),
             drives_over=self.parameterAsDouble(parameters, DRIVES_OVER, context),
-            warnings=list(robot_map.warnings),
+            warnings=warnings,
         )
 
     def _read_areas(self, export: NavigationExport, formats, parameters, context, feedback) -> None:
         """Read the layers of the masks that are wanted."""
-        site = export.place.placing
+        site = export.place.layers
         wanted = [name for name in ("keepout", "speed") if name in formats]
-        if wanted and export.place.frame is None:
+        if wanted and export.place.is_local:
             export.warnings.append(
-                "The map names no CRS that QGIS knows: the coordinates of the keepout and speed layers are "
-                "taken as its own metres."
+                "The coordinates of the keepout and speed layers are taken as the map's own metres."
             )
         if "keepout" in wanted:
             source = self._layer(parameters, KEEPOUTS, context)
@@ -168,10 +187,9 @@ class ExportNavigationMap(QgsProcessingAlgorithm):
 
 
 def _parameters() -> list[QgsProcessingParameterDefinition]:
+    robot_map, *place = map_parameters()
     return [
-        QgsProcessingParameterFile(
-            INPUT, "Robot map", fileFilter="Robot maps (*.txt *.map *.rmap *.bin);;All files (*)"
-        ),
+        robot_map,
         QgsProcessingParameterEnum(
             FORMATS,
             "Formats",
@@ -197,6 +215,7 @@ def _parameters() -> list[QgsProcessingParameterDefinition]:
             SPEED, "Speed limit of each area [m/s]", parentLayerParameterName=SPEED_AREAS, optional=True
         ),
         QgsProcessingParameterString(NAME, "Name of the files (default: the robot map's)", optional=True),
+        *place,
         QgsProcessingParameterFolderDestination(OUTPUT, "Folder"),
     ]
 
@@ -217,26 +236,6 @@ def _number_problem(parameters: Mapping[str, Any]) -> str:
             wanted = "above 0, such as 0.05" if positive else "of 0 or more"
             return f"{name} is {value}: give a number of metres {wanted}."
     return ""
-
-
-def _read(file: Path) -> RobotMap:
-    """Return the map in a file, text or binary."""
-    try:
-        content = file.read_bytes()
-        if content.startswith(b"RMAP"):
-            return decode(content)
-        return read_text(content.decode())
-    except OSError as error:
-        raise ParameterError(
-            f"The robot map {file} cannot be read: {error.strerror or error}. Choose a file of "
-            "fleet:exportrobotmap."
-        ) from error
-    except UnicodeDecodeError as error:
-        raise ParameterError(
-            f"{file} is no robot map: it is neither UTF-8 text nor binary ({error})."
-        ) from error
-    except TextError as error:
-        raise ParameterError(f"{file} is no robot map: {error}") from error
 
 
 def _name(given: str, source: Path) -> str:

@@ -17,7 +17,7 @@ from qgis.core import (
 from ...robot_bridge.robotmap.exporters.geopackage import column_value, geopackage_layers, wkb_of
 from ...robot_bridge.robotmap.exporters.shapes import Shape
 from ...robot_bridge.robotmap.model import RobotMap
-from .map_place import MapPlace
+from .map_place import PlacedMap
 from .whole_file import OutputError
 
 _WKB_TYPES = {
@@ -28,8 +28,8 @@ _WKB_TYPES = {
 _FIELD_TYPES = {bool: "bool", int: "int8", float: "double"}
 
 
-def write_geopackage(robot_map: RobotMap, target: Path, place: MapPlace) -> None:
-    """Write the layers of a map to the new file ``target``, in the site's CRS where QGIS knows it.
+def write_geopackage(robot_map: RobotMap, target: Path, place: PlacedMap) -> None:
+    """Write the layers of a map to the new file ``target``, in the site's CRS, or in local metres.
 
     :raises OutputError: naming the layer that could not be written, and why.
     """
@@ -37,7 +37,7 @@ def write_geopackage(robot_map: RobotMap, target: Path, place: MapPlace) -> None
         _write_layer(name, shapes, target, place)
 
 
-def _write_layer(name: str, shapes: Sequence[Shape], target: Path, place: MapPlace) -> None:
+def _write_layer(name: str, shapes: Sequence[Shape], target: Path, place: PlacedMap) -> None:
     options = QgsVectorFileWriter.SaveVectorOptions()
     options.driverName, options.layerName = "GPKG", name
     # Of the format's versions the one that GDAL 3.6 and older read.
@@ -47,12 +47,11 @@ def _write_layer(name: str, shapes: Sequence[Shape], target: Path, place: MapPla
     fields = _fields(shapes[0])
     kind = _WKB_TYPES[shapes[0].kind]
     writer = QgsVectorFileWriter.create(
-        str(target), fields, kind, place.crs, place.transform_context, options
+        str(target), fields, kind, place.place.crs, place.transform_context, options
     )
-    to_crs = None if place.frame is None else place.frame.to_crs
     for shape in shapes:
         geometry = QgsGeometry()
-        geometry.fromWkb(wkb_of(shape, to_crs))
+        geometry.fromWkb(wkb_of(shape, place.place.points))
         feature = QgsFeature(fields)
         feature.setGeometry(geometry)
         feature.setAttributes([column_value(value) for value in shape.attributes.values()])

@@ -16,7 +16,7 @@ from ...robot_bridge.robotmap.exporters.shapes import obstacle_shapes, segment_s
 from ...robot_bridge.robotmap.exporters.svg import svg_of
 from ...robot_bridge.robotmap.model import RobotMap
 from .geopackage_by_qgis import write_geopackage
-from .map_place import MapPlace
+from .map_place import PlacedMap
 from .svg_picture import png_of
 
 Files = dict[str, bytes]
@@ -30,7 +30,7 @@ class NavigationExport:
     """A map, where it lies, and what to make of it; ``warnings`` grow while files are made."""
 
     robot_map: RobotMap
-    place: MapPlace
+    place: PlacedMap
     name: str
     resolution: float
     inside: Inside

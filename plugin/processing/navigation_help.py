@@ -15,13 +15,14 @@ never rounded up; where areas overlap the lower one holds.</li>
 <li><i>geopackage</i>: the same in the site's CRS.</li>
 <li><i>svg</i>, <i>png</i>: a picture for people.</li>
 </ul>
-<p><b>Keepout and speed layers</b> are polygons in any CRS. Where the map names no CRS that QGIS knows, layers
-are taken to be in its own metres, and a warning says so.</p>
+<p><b>Keepout and speed layers</b> are polygons in any CRS. Where the map's place is not known, layers
+are taken to be in its own metres, and a warning says so; <i>SITE_CRS</i>, <i>ORIGIN</i> and <i>ROTATION</i>
+give it one.</p>
 <p><b>Robots drive over</b> obstacles that are lower: 0 keeps every kerb. Ramps are always driven on, stairs
 are obstacles, also from the side.</p>
 <p>Existing files are replaced, each in one step, after all of them could be made. docs/navigation-maps.md
 says what is in each.</p>
 <p>From a script, with no display:</p>
 <pre>qgis_process run fleet:exportnavigationmap -- \\
-  INPUT=campus.txt FORMATS=occupancy FORMATS=svg RESOLUTION=0.05 OUTPUT=campus</pre>
+  MAP=campus.txt FORMATS=occupancy FORMATS=svg RESOLUTION=0.05 OUTPUT=campus</pre>
 """

@@ -84,7 +84,7 @@ def export(provider, tmp_path):
         listener = feedback or Listener()
         context = QgsProcessingContext()
         context.setProject(QgsProject())
-        everything = {"INPUT": str(source), "OUTPUT": str(tmp_path / "out"), **parameters}
+        everything = {"MAP": str(source), "OUTPUT": str(tmp_path / "out"), **parameters}
         results = processing.run(
             "fleet:exportnavigationmap",
             everything,
@@ -229,10 +229,10 @@ def test_what_cannot_be_done_is_said_and_writes_nothing(export, robot_map, tmp_p
 @pytest.mark.parametrize(
     ("content", "words"),
     [
-        (MAP[:-60].encode(), "is no robot map: line .* was cut off"),
-        (b"\xff\xfe\x00", "neither UTF-8 text nor binary"),
+        (MAP[:-60].encode(), "site.txt cannot be read: line .* was cut off"),
+        (b"\xff\xfe\x00", "neither UTF-8"),
         (encode(MAP)[:-5], "check"),
-        (b"", "is no robot map"),
+        (b"", "site.txt cannot be read: line"),
     ],
 )
 def test_a_file_that_is_no_map_is_named(export, tmp_path, content, words):
@@ -254,7 +254,20 @@ def test_a_map_without_a_place_has_no_geojson_and_takes_layers_as_they_are(expor
     local = make_layer("zones", "Polygon", features=[("Polygon((20 10, 30 10, 30 15, 20 15, 20 10))", 1.0)])
     results, _, warnings = export(robot_map, FORMATS=["keepout", "geopackage", "svg"], KEEPOUTS=local)
     assert value_at(results["KEEPOUT"], 25, 12) == 0
-    assert len(warnings) == 1 and "taken as its own metres" in warnings[0]
+    assert len(warnings) == 2 == results["WARNING_COUNT"]
+    assert "it names no CRS" in warnings[0] and "taken as the map's own metres" in warnings[1]
+    _, _, warnings = export(robot_map, FORMATS=["occupancy", "svg"])
+    assert warnings == []
+
+
+def test_a_map_without_a_place_can_be_given_one(export, robot_map, areas):
+    _, folder, _ = export(robot_map, FORMATS=["geojson", "keepout"], KEEPOUTS=areas)
+    said = (folder / "site_segments.geojson").read_text().partition('"features"')[2]
+    robot_map.write_text("".join(line for line in MAP.splitlines(True) if not line.startswith("%")))
+    place = {"SITE_CRS": "EPSG:32633", "ORIGIN": "640420,5193480"}
+    given, folder, warnings = export(robot_map, FORMATS=["geojson", "keepout"], KEEPOUTS=areas, **place)
+    assert (folder / "site_segments.geojson").read_text().partition('"features"')[2] == said
+    assert value_at(given["KEEPOUT"], 25, 12) == 0 and warnings == []
 
 
 def test_an_expression_that_is_none_is_refused(export, robot_map, areas):
@@ -307,7 +320,7 @@ def test_a_process_without_a_display_and_packages_exports_what_another_exported(
     )
     assert done.status == 0, done.said
     done = qgis_process(
-        *("run", "fleet:exportnavigationmap", "--", f"INPUT={source}", "RESOLUTION=0.1"),
+        *("run", "fleet:exportnavigationmap", "--", f"MAP={source}", "RESOLUTION=0.1"),
         *(f"FORMATS={name}" for name in ("occupancy", "geojson", "geopackage", "svg", "png")),
         f"OUTPUT={tmp_path / 'nav'}",
         packages=False,
@@ -322,9 +335,9 @@ def test_a_process_without_a_display_and_packages_exports_what_another_exported(
 def test_a_refused_export_says_why_and_has_another_exit_status(qgis_process, tmp_path):
     (tmp_path / "broken.txt").write_text("border;\n0;1;\n")
     done = qgis_process(
-        *("run", "fleet:exportnavigationmap", "--", f"INPUT={tmp_path / 'broken.txt'}"),
+        *("run", "fleet:exportnavigationmap", "--", f"MAP={tmp_path / 'broken.txt'}"),
         f"OUTPUT={tmp_path / 'nav'}",
     )
     assert done.status != 0
-    assert "broken.txt is no robot map: line 2" in done.said and "Traceback" not in done.said
+    assert "broken.txt cannot be read: line 2" in done.said and "Traceback" not in done.said
     assert not (tmp_path / "nav").exists()
