@@ -45,8 +45,8 @@ class PlacedMap:
         """
         if self.is_local:
             raise ParameterError(
-                "GeoJSON needs longitudes and latitudes, and the map's place is not known: give SITE_CRS, ORIGIN "
-                "and ROTATION, or choose geopackage, which keeps the site's metres."
+                "GeoJSON needs longitudes and latitudes, and the map's place is not known: give SITE_CRS, "
+                "ORIGIN and ROTATION, or choose geopackage, which keeps the site's metres."
             )
         line = QgsLineString(*self.place.points(xy).T.tolist())
         target = QgsCoordinateReferenceSystem(WGS_84)
