@@ -32,7 +32,7 @@ from .preview_view import PreviewView
 from .rows import rows_of
 from .table_model import HEIGHT, LAYER, OUTDOOR, RESULT, ROLE, SEMANTICS, WIDTH, RoleTableModel
 
-WIDTHS = {LAYER: 140, ROLE: 125, HEIGHT: 110, SEMANTICS: 190, OUTDOOR: 90, WIDTH: 95}
+WIDTHS = {LAYER: 140, ROLE: 150, HEIGHT: 110, SEMANTICS: 175, OUTDOOR: 90, WIDTH: 95}
 
 
 class RolesDialog(QDialog):

@@ -30,16 +30,12 @@ _CHOICES = {
 
 @dataclass
 class RoleRow:
-    """A layer and what the dialog says it is."""
+    """A layer and what the dialog says it is; id and name can be asked for when the layer is gone."""
 
     layer: QgsMapLayer
+    layer_id: str
     name: str
     setup: LayerSetup
-
-    @property
-    def layer_id(self) -> str:
-        """The layer's id in the project."""
-        return str(self.layer.id())
 
     @property
     def roles(self) -> tuple[str, ...]:
@@ -63,7 +59,7 @@ def rows_of(project: QgsProject) -> list[RoleRow]:
     """Return a row for each layer of lines, areas or pixels, by name."""
     layers = [layer for layer in project.mapLayers().values() if _can_have_a_role(layer)]
     return [
-        RoleRow(layer, layer.name(), setup_of(layer))
+        RoleRow(layer, layer.id(), layer.name(), setup_of(layer))
         for layer in sorted(layers, key=lambda layer: (layer.name().lower(), layer.id()))
     ]
 

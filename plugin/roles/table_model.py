@@ -11,6 +11,7 @@ from qgis.PyQt.QtGui import QColor
 
 from ..sites.roles import OBSTACLE_ROLES, ORTHOPHOTO, ROAD_CENTRELINE, LayerSetup
 from .measure import Measure
+from .picture import COLOURS
 from .rows import RoleRow
 
 TITLES = ("Layer", "Role", "Height [m]", "Label", "Outdoors", "Width [m]", "Comes to")
@@ -104,6 +105,8 @@ class RoleTableModel(QAbstractTableModel):
             return self._explained(row, column)
         if role == Qt.ItemDataRole.ForegroundRole:
             return self._colour(row, column)
+        if role == Qt.ItemDataRole.DecorationRole and column == ROLE:
+            return COLOURS.get(row.setup.role)
         return None
 
     def setData(self, index, value, role=Qt.ItemDataRole.EditRole):

@@ -141,3 +141,15 @@ def test_openstreetmap_needs_none_of_its_fields(qgis_app, tags):
     assert setup.role == "obstacle"
     columns = QgsExpression(setup.expressions.height).referencedColumns()
     assert columns <= {QgsFeatureRequest.ALL_ATTRIBUTES}
+
+
+def test_the_profile_in_the_guide_is_one(qgis_app, profile, root):
+    guide = (root / "docs" / "site-preparation.md").read_text(encoding="utf-8")
+    lines = guide.partition('    name = "Our campus"')
+    example = "\n".join(
+        line[4:] for line in "".join(lines[1:]).splitlines() if line[:4].isspace() or not line
+    )
+    ours = profile(example.partition("qgis_process")[0])
+    assert ours.name == "Our campus"
+    assert ours.setup_for(layer("Sheds", "Polygon", "&field=roof:double")).role == "obstacle"
+    assert ours.setup_for(layer("roads")).expressions.width == '"lanes" * 3.25'

@@ -1,0 +1,61 @@
+"""Take the picture of the dialog *Layer roles* over the sample project, in a QGIS of its own under Xvfb.
+
+python scripts/roles_picture.py [docs/images/roles-dialog.png]
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+from plugin_files import ROOT
+from stage.errors import StageError
+from stage.picture import reduce_colours
+from stage.processes import Processes, leave_on_signals
+from stage.qgis import Profile, virtual_screen
+from stage.session import follow, start_qgis
+
+FOLDER = ROOT / "build" / "roles_picture"
+PROJECT = ROOT / "resources" / "sample_site" / "sample_site.qgz"
+SCREEN = (1360, 850)
+TIMEOUT = 90.0
+
+
+def run(picture: Path) -> None:
+    """Open QGIS and let it save ``picture``.
+
+    :raises StageError: when something does not come up.
+    """
+    FOLDER.mkdir(parents=True, exist_ok=True)
+    with Processes(FOLDER / "logs") as processes:
+        display = virtual_screen(processes, *SCREEN)
+        profile = Profile(FOLDER / "profile", link=False)
+        plan = {
+            "journal": str(FOLDER / "journal.jsonl"),
+            "project": str(PROJECT),
+            "picture": str(picture),
+            "window": SCREEN,
+        }
+        qgis = start_qgis(processes, profile, "roles_session.py", plan, display)
+        for entry in follow(processes, qgis, Path(plan["journal"]), TIMEOUT):
+            print(entry["text"], flush=True)
+    reduce_colours(picture)
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    default = ROOT / "docs" / "images" / "roles-dialog.png"
+    parser.add_argument("picture", type=Path, nargs="?", default=default, metavar="PNG")
+    picture = parser.parse_args().picture.resolve()
+    leave_on_signals()
+    try:
+        run(picture)
+    except StageError as error:
+        print(f"roles_picture: error: {error}", file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
