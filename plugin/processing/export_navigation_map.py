@@ -105,6 +105,7 @@ class ExportNavigationMap(QgsProcessingAlgorithm):
         # Before QGIS's own checks, which say that a value is wrong and not why.
         problem = (
             file_problem(parameters)
+            or _format_problem(parameters)
             or _number_problem(parameters)
             or self._choice_problem(parameters, context)
         )
@@ -218,6 +219,18 @@ def _parameters() -> list[QgsProcessingParameterDefinition]:
         *place,
         QgsProcessingParameterFolderDestination(OUTPUT, "Folder"),
     ]
+
+
+def _format_problem(parameters: Mapping[str, Any]) -> str:
+    """Return which format is none, or nothing."""
+    value = parameters.get(FORMATS)
+    given = value.split(",") if isinstance(value, str) else value
+    if not isinstance(given, (list, tuple)):
+        return ""
+    unknown = [name for name in given if name not in MADE]
+    if unknown or not given:
+        return f"FORMATS is {', '.join(map(str, unknown)) or 'empty'}: choose of {', '.join(MADE)}."
+    return ""
 
 
 def _number_problem(parameters: Mapping[str, Any]) -> str:

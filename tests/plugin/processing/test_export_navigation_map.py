@@ -212,6 +212,8 @@ def test_the_png_shows_the_hall_in_its_place(export, robot_map):
     ("parameters", "words"),
     [
         ({"FORMATS": ["keepout"]}, "FORMATS has keepout, which needs KEEPOUTS"),
+        ({"FORMATS": "png,dxf"}, "FORMATS is dxf: choose of occupancy, keepout, speed, geojson, "),
+        ({"FORMATS": []}, "FORMATS is empty: choose of occupancy"),
         ({"FORMATS": ["speed"]}, "FORMATS has speed, which needs SPEED_AREAS"),
         ({"RESOLUTION": 0}, "RESOLUTION is 0: give a number of metres above 0"),
         ({"RESOLUTION": "fine"}, "RESOLUTION is fine: give a number of metres"),
