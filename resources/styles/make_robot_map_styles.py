@@ -29,6 +29,7 @@ from qgis.core import (
     QgsUnitTypes,
     QgsVectorLayer,
     QgsVectorLayerSimpleLabeling,
+    QgsWkbTypes,
 )
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtGui import QColor, QFont
@@ -36,10 +37,10 @@ from qgis.PyQt.QtGui import QColor, QFont
 HERE = Path(__file__).resolve().parent
 HEIGHTS = (
     (-1e9, 0.0, "0 m: level", "#8d99a6"),
-    (0.0, 0.5, "up to 0.5 m", "#6ecf9f"),
-    (0.5, 1.5, "up to 1.5 m", "#f6d743"),
-    (1.5, 4.0, "up to 4 m", "#f28a2e"),
-    (4.0, 1e9, "higher", "#d7263d"),
+    (0.0, 0.5, "up to 0.5 m", "#fde725"),
+    (0.5, 1.5, "up to 1.5 m", "#5ee06a"),
+    (1.5, 4.0, "up to 4 m", "#22c3dd"),
+    (4.0, 1e9, "higher", "#b14bff"),
 )
 SEVERITIES = {"error": ("Error", "#e01b24"), "warning": ("Warning", "#ff8c1a"), "info": ("Info", "#1c71d8")}
 
@@ -139,6 +140,11 @@ def _labels(field: str) -> QgsVectorLayerSimpleLabeling:
     letters.setBuffer(halo)
     settings = QgsPalLayerSettings()
     settings.fieldName = field
+    settings.placement = QgsPalLayerSettings.Placement.AroundPoint
+    settings.dist = 1.6
+    settings.geometryGeneratorEnabled = True
+    settings.geometryGenerator = "point_on_surface($geometry)"
+    settings.geometryGeneratorType = QgsWkbTypes.GeometryType.PointGeometry
     settings.setFormat(letters)
     settings.scaleVisibility, settings.minimumScale, settings.maximumScale = True, 2500, 0
     return QgsVectorLayerSimpleLabeling(settings)

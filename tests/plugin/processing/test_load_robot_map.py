@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -247,3 +248,17 @@ def test_a_process_says_what_is_wrong_and_fails(qgis_process, tmp_path):
     done = qgis_process("run", "fleet:loadrobotmap", "--", f"MAP={file}", f"SEGMENTS={tmp_path / 's.gpkg'}")
     assert done.status != 0
     assert "it was cut off" in done.said and "Traceback" not in done.said
+
+
+@pytest.mark.parametrize("name", ["loadrobotmap", "checkrobotmap", "exportrobotmaptiles"])
+def test_the_algorithms_have_help_an_icon_and_a_style_for_their_layers(provider, root, name):
+    algorithm = provider.algorithm(name)
+    assert len(algorithm.shortHelpString()) > 300 and algorithm.shortDescription()
+    assert not algorithm.icon().isNull() and Path(algorithm.svgIconPath()).is_file()
+    layers = {output.name() for output in algorithm.outputDefinitions()}
+    assert algorithm.STYLES and set(algorithm.STYLES) <= layers
+    for style in algorithm.STYLES.values():
+        kind = "Polygon" if style.split(".")[0].endswith(("areas", "border", "tiles")) else "LineString"
+        layer = QgsVectorLayer(f"{kind}?field=height_m:double", "x", "memory")
+        said, fine = layer.loadNamedStyle(str(root / "resources" / "styles" / style))
+        assert fine, said
