@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import json
 import sqlite3
+import sys
 
 import numpy as np
 import pytest
 import shapely
 from osgeo import ogr
 
-from robot_bridge.robotmap.exporters.errors import ExportError
+from robot_bridge.robotmap.exporters.errors import ExportError, MissingPackageError
 from robot_bridge.robotmap.exporters.geopackage import write_geopackage
 from robot_bridge.sites.map_frame import frame_of_map
 
@@ -81,3 +82,10 @@ def test_a_folder_that_is_not_there_is_named_and_nothing_is_left(make_map, house
     with pytest.raises(ExportError, match="is there already"):
         write_geopackage(make_map([(house, {})], (10, 20, 30, 40)), tmp_path / "map.gpkg")
     assert (tmp_path / "map.gpkg").read_text() == "a map of somebody else's"
+
+
+def test_without_pyogrio_it_says_what_to_install(make_map, house, tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "pyogrio", None)
+    with pytest.raises(MissingPackageError, match="needs the Python package pyogrio"):
+        write_geopackage(make_map([(house, {})], (10, 20, 30, 40)), tmp_path / "map.gpkg")
+    assert list(tmp_path.iterdir()) == []
