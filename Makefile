@@ -16,7 +16,7 @@ PROFILE ?= default
 LINK ?=
 export PYTHON
 
-.PHONY: help setup demo test lint desktop screenshots install package clean
+.PHONY: help setup demo test lint desktop screenshots install package clean bench
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -49,6 +49,9 @@ install: $(READY) ## put the plugin into your QGIS profile (PROFILE=name, LINK=1
 
 package: $(READY) ## build the zip for plugins.qgis.org
 	@$(RUN) scripts/package.py
+
+bench: $(READY) ## measure the robot maps on the real data beside the project; see docs/benchmarks.md
+	@$(RUN) scripts/bench.py
 
 clean: ## remove build/ (what was built, not the environment)
 	rm -rf build

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -61,15 +62,22 @@ class BoxGrid:
         touch: NDArray[Any] = (self._sides[which] <= limits).all(axis=1)
         return touch
 
-    def _corners(self, border: Border) -> list[list[int]]:
-        corners = np.array([[border.x_min, border.y_min], [border.x_max, border.y_max]])
-        cells: list[list[int]] = self._cells(corners).clip(-_FARTHEST, _FARTHEST).tolist()
-        return cells
+    def _corners(self, border: Border) -> tuple[tuple[int, int], tuple[int, int]]:
+        """Return the columns and rows of the border's corners, as :meth:`_cells` does for many."""
+        x, y = self._origin.tolist()
+        return (
+            (_cell(border.x_min, x, self._cell), _cell(border.y_min, y, self._cell)),
+            (_cell(border.x_max, x, self._cell), _cell(border.y_max, y, self._cell)),
+        )
 
     def _cells(self, points: NDArray[Any]) -> NDArray[Any]:
         cells = np.floor((points - self._origin) / self._cell)
         numbers: NDArray[Any] = cells.clip(-2.0 * _FARTHEST, 2.0 * _FARTHEST).astype(np.int64)
         return numbers
+
+
+def _cell(value: float, origin: float, size: float) -> int:
+    return int(max(-_FARTHEST, min(_FARTHEST, math.floor((value - origin) / size))))
 
 
 def _key(column: Any, row: NDArray[Any]) -> NDArray[Any]:

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from .model import Border, ShapeType
 from .outlines import Outlines
 
-_ON_BORDER = 1e-9
-"""metres; what a cut coordinate may be off the border that it was cut at by floating point."""
+_ON_BORDER = 1e-7
+"""metres; how far floating point may put a cut off its border where coordinates are large."""
 
 CLOSED_TYPES = (ShapeType.CLOSED_POLYGON, ShapeType.CLOSED_CURVE, ShapeType.RAMP)
 _IS_CLOSED = np.array([t in [int(closed) for closed in CLOSED_TYPES] for t in range(len(ShapeType) + 1)])
@@ -156,11 +156,12 @@ def _cut_point(points: NDArray[Any], border: Border) -> NDArray[Any]:
     stub that a segment leaves in a corner would become a wall along the border.
     """
     low, high = np.array([border.x_min, border.y_min]), np.array([border.x_max, border.y_max])
-    rounded = np.clip(np.round(points, 2), low, high)
-    step_in = 0.01
-    rounded = np.where((rounded == low) & (points > low + _ON_BORDER), low + step_in, rounded)
-    rounded = np.where((rounded == high) & (points < high - _ON_BORDER), high - step_in, rounded)
-    return np.round(rounded, 2)
+    rounded: NDArray[Any] = np.round(points, 2).clip(low, high)
+    beside = ((rounded == low) | (rounded == high)) & (np.abs(points - rounded) > _ON_BORDER)
+    if beside.any():
+        step_in = np.where(rounded == low, 0.01, -0.01)
+        rounded = np.where(beside, np.round(rounded + step_in, 2), rounded)
+    return rounded
 
 
 def without_vanished(segments: Segments) -> Segments:

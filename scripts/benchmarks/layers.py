@@ -18,7 +18,10 @@ Place = Callable[[np.ndarray], np.ndarray]
 
 def features(file: Path, layer: str, columns: tuple[str, ...] = ()) -> Iterator[tuple[str, Any, tuple]]:
     """Yield source, shapely geometry and the values of ``columns`` for each feature that shapely can hold."""
-    _, ids, wkb, values = pyogrio.raw.read(file, layer, columns=list(columns), return_fids=True)
+    meta, ids, wkb, columns_read = pyogrio.raw.read(file, layer, columns=list(columns), return_fids=True)
+    # They come in the order of the file.
+    named = dict(zip(meta["fields"], columns_read, strict=True))
+    values = [named[name] for name in columns]
     # Some rings in the data have two points, which shapely has no geometry for.
     geometries = shapely.from_wkb(wkb, on_invalid="ignore")
     for k, (fid, geometry) in enumerate(zip(ids, geometries, strict=True)):

@@ -1,0 +1,64 @@
+"""Whether a window takes longer in a larger city: cities that are made up, each measured by itself."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from robot_bridge.robotmap.binary import encode
+from robot_bridge.robotmap.builder import Window
+from robot_bridge.robotmap.index import OutlineIndex
+from robot_bridge.robotmap.model import ShapeType
+from robot_bridge.robotmap.outlines import Outlines
+
+from .clock import each, in_a_process, megabytes, once, table
+
+PITCH = 20.0
+SIZES = (10_000, 100_000, 1_000_000)
+
+
+def city(count: int) -> Outlines:
+    """Return ``count`` turned square buildings, 20 m apart: 25 in 100 m × 100 m."""
+    side = int(np.ceil(np.sqrt(count)))
+    chance = np.random.default_rng(3)
+    number = np.arange(count)
+    centres = PITCH * np.column_stack([number % side, number // side]) + chance.uniform(-1, 1, (count, 2))
+    angles = chance.uniform(0, np.pi / 2, (count, 1)) + np.pi / 2 * np.array([0, 1, 2, 3, 0])
+    reach = chance.uniform(4, 9, (count, 1))
+    points = centres[:, None] + np.stack([reach * np.cos(angles), reach * np.sin(angles)], axis=2)
+    return Outlines(
+        coordinates=points.reshape(-1, 2),
+        offsets=np.arange(count + 1) * 5,
+        shape_type=np.full(count, int(ShapeType.CLOSED_POLYGON), dtype=np.int8),
+        courtyard=np.zeros(count, dtype=bool),
+        height=chance.uniform(3, 30, count).round(2),
+        outdoor=np.ones(count, dtype=bool),
+        semantics=["building"] * count,
+        source=[f"buildings:{k}" for k in range(count)],
+    )
+
+
+def measure(count: int) -> list[str]:
+    """Return one line of the table."""
+    outlines = city(count)
+    before = megabytes()
+    index, indexing = once(lambda: OutlineIndex(outlines))
+    memory = megabytes() - before
+    side = PITCH * np.sqrt(count)
+    places = np.random.default_rng(5).uniform(100, side - 100, (300, 2)).tolist()
+    windows = [Window(x, y, 100, 100) for x, y in places]
+    extraction = each(lambda w: index.segments_in(w.border), windows)
+    complete = each(lambda w: encode(index.map_of(w)), windows)
+    return [
+        f"{count:,}".replace(",", " "),
+        str(extraction),
+        str(complete),
+        f"{indexing:.2f}",
+        f"{memory:.0f}",
+    ]
+
+
+def growth_table() -> str:
+    """Return the table of all sizes."""
+    code = "import json; from benchmarks.growth import measure; print(json.dumps(measure({})))"
+    lines = [in_a_process(code.format(count)) for count in SIZES]
+    return table(("obstacles", "extraction, ms", "complete GetMap, ms", "indexing, s", "index, MB"), lines)
