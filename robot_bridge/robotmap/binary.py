@@ -39,7 +39,7 @@ def encode(content: RobotMap | str, codec: int = CODEC_TEXT) -> bytes:
     """Return a map, or a map's text, in the binary format.
 
     The default is codec 1: a robot reads it with zstd and what it has for text, and so does every robot made
-    before codec 2. Codec 2 is a third to a tenth of that size and is for who asks for it.
+    before codec 2. Codec 2 is about a third of that size and is for who asks for it.
 
     Raises BinaryError for a text that is too long, or that codec 2 cannot give back byte for byte: one with
     comments or with more than centimetres. Raises MissingCodecError without zstandard, or without cbor2 for
