@@ -48,7 +48,6 @@ class LivePreview(QObject):
         self._known: dict[object, Measure] = {}
         self._size, self._ratio = QSize(400, 300), 1.0
         self._task: PreviewTask | None = None
-        self._stopped = False
         self._timer = QTimer(self)
         self._timer.setSingleShot(True)
         self._timer.setInterval(DELAY_MS)
@@ -75,7 +74,6 @@ class LivePreview(QObject):
 
     def stop(self) -> None:
         """End what is under way, for good, and wait until no thread touches it."""
-        self._stopped = True
         self._timer.stop()
         task, self._task = self._task, None
         if task is None:
@@ -126,8 +124,7 @@ class LivePreview(QObject):
     def _keep(self, key: object, found: Measure) -> None:
         self._known[key] = found
         layer_id, setup = key
-        # What the worker said last may come after the layers have gone.
-        if not self._stopped and any(row.layer_id == layer_id and row.setup == setup for row in self._rows):
+        if any(row.layer_id == layer_id and row.setup == setup for row in self._rows):
             self.measured.emit(layer_id, found)
 
     def _ended(self) -> None:

@@ -169,13 +169,17 @@ class RolesDialog(QDialog):
         self._view.resized.connect(
             lambda: self.preview.resize(self._view.size(), self._view.devicePixelRatioF())
         )
-        # A row speaks of its layer: without it the dialog has nothing to show or to keep.
-        self._project.layersWillBeRemoved.connect(self.reject)
+        self._project.layersWillBeRemoved.connect(self._close_without)
         self._show_changed()
 
     def _accept(self) -> None:
         self.apply()
         self.accept()
+
+    def _close_without(self, layer_ids: list[str]) -> None:
+        # A row speaks of its layer: without it the dialog has nothing to show or to keep.
+        if any(row.layer_id in layer_ids for row in self.model.rows):
+            self.reject()
 
     def _show_changed(self) -> None:
         changed = any(row.setup != setup_of(row.layer) for row in self.model.rows)

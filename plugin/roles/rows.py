@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 from qgis.core import QgsMapLayer, QgsProject, QgsRasterLayer, QgsVectorLayer, QgsWkbTypes
 
+from ..desk.robot_layer import MARK
 from ..sites.roles import (
     FURNITURE,
     KEEPOUT,
@@ -22,6 +23,7 @@ from ..sites.roles import (
 _LINES = (OBSTACLE, STAIRS, FURNITURE, ROAD_CENTRELINE)
 _POLYGONS = (OBSTACLE, RAMP, FURNITURE, ROAD_SURFACE, KEEPOUT)
 _CHOICES = {
+    QgsWkbTypes.GeometryType.PointGeometry: (FURNITURE,),
     QgsWkbTypes.GeometryType.LineGeometry: _LINES,
     QgsWkbTypes.GeometryType.PolygonGeometry: _POLYGONS,
     QgsWkbTypes.GeometryType.UnknownGeometry: tuple(dict.fromkeys((*_LINES, *_POLYGONS))),
@@ -56,7 +58,7 @@ class RoleRow:
 
 
 def rows_of(project: QgsProject) -> list[RoleRow]:
-    """Return a row for each layer of lines, areas or pixels, by name."""
+    """Return a row for each layer that can have a role, by name; the desk's live robots have none."""
     layers = [layer for layer in project.mapLayers().values() if _can_have_a_role(layer)]
     return [
         RoleRow(layer, layer.id(), layer.name(), setup_of(layer))
@@ -65,6 +67,8 @@ def rows_of(project: QgsProject) -> list[RoleRow]:
 
 
 def _can_have_a_role(layer: QgsMapLayer) -> bool:
+    if layer.customProperty(MARK):
+        return False
     if isinstance(layer, QgsVectorLayer):
         return layer.isValid() and layer.isSpatial() and layer.geometryType() in _CHOICES
     return isinstance(layer, QgsRasterLayer)

@@ -9,7 +9,7 @@ from qgis.core import QgsMapLayer
 from qgis.PyQt.QtCore import QAbstractTableModel, QModelIndex, Qt, pyqtSignal
 from qgis.PyQt.QtGui import QColor
 
-from ..sites.roles import OBSTACLE_ROLES, ORTHOPHOTO, ROAD_CENTRELINE, LayerSetup
+from ..sites.roles import FURNITURE, OBSTACLE_ROLES, ORTHOPHOTO, ROAD_CENTRELINE, LayerSetup
 from .measure import Measure
 from .picture import COLOURS
 from .rows import RoleRow
@@ -23,7 +23,7 @@ EXPLANATIONS = {
     HEIGHT: "Expression for metres above the ground; empty: the field height or height_m",
     SEMANTICS: "Expression for the label, such as 'building,' || \"name\"; of a road its surface",
     OUTDOOR: "Expression for true or false; empty: true",
-    WIDTH: "Expression for the metres of a road; empty: the field width_m or width",
+    WIDTH: "Expression for the metres across, of a road or of furniture that is points",
     RESULT: "What is published of the layer",
 }
 ROLE_NAMES = {"": "–", ROAD_CENTRELINE: "road centreline", "road_surface": "road surface"}
@@ -39,7 +39,8 @@ def role_name(role: str) -> str:
 def used_columns(role: str) -> tuple[int, ...]:
     """Return the columns of expressions that count for a layer of ``role``."""
     if role in OBSTACLE_ROLES:
-        return (HEIGHT, SEMANTICS, OUTDOOR)
+        columns = (HEIGHT, SEMANTICS, OUTDOOR)
+        return (*columns, WIDTH) if role == FURNITURE else columns
     if role == ROAD_CENTRELINE:
         return (SEMANTICS, WIDTH)
     return () if role in ("", ORTHOPHOTO) else (SEMANTICS,)

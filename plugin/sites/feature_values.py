@@ -12,6 +12,9 @@ from .roles import RAMP, LayerExpressions
 HEIGHT_FIELDS = ("height", "height_m")
 """Fields that hold a height in metres where no expression says otherwise."""
 
+POST_ACROSS_M = 0.5
+"""How far across a piece of furniture is that is drawn as a point and says nothing of its size."""
+
 _FLAGS = {"1": True, "true": True, "yes": True, "0": False, "false": False, "no": False}
 
 
@@ -48,6 +51,7 @@ class FeatureValues:
         self._height = rules.rule("height", expressions.height or rules.column(*HEIGHT_FIELDS))
         self._semantics = rules.rule("semantics", expressions.semantics)
         self._outdoor = rules.rule("outdoor", expressions.outdoor)
+        self._across = rules.rule("width", expressions.width)
         self.warnings = rules.warnings
 
     def of(self, feature: QgsFeature) -> Values:
@@ -62,6 +66,18 @@ class FeatureValues:
             outdoor=self._outdoor_of(notes),
             notes=notes,
         )
+
+    def across(self, feature: QgsFeature, notes: list[str]) -> float:
+        """Return how many metres the point ``feature`` stands for are across."""
+        self._rules.at(feature)
+        value = self._rules.value("width", self._across, notes)
+        if value is None or value == "":
+            return POST_ACROSS_M
+        metres = as_metres(value)
+        if metres is None or metres <= 0:
+            notes.append(f"its width {value!r} is not a number of metres above 0; {POST_ACROSS_M:g} is used")
+            return POST_ACROSS_M
+        return metres
 
     def _height_of(self, notes: list[str]) -> float | None:
         value = self._rules.value("height", self._height, notes)

@@ -19,7 +19,7 @@ from qgis.core import (
 )
 
 from .errors import LayerTypeError
-from .roles import LayerExpressions, LayerSetup, setup_of
+from .roles import FURNITURE, LayerExpressions, LayerSetup, setup_of
 from .site_crs import stated_crs
 
 
@@ -55,10 +55,10 @@ def obstacle_sources(
     An expression that ``setups`` has for a layer wins over the one in ``general``. ``context`` is what
     expressions see besides the layer.
 
-    :raises LayerTypeError: naming the layer that holds neither lines nor polygons.
+    :raises LayerTypeError: naming the layer that holds neither lines nor polygons; points are furniture only.
     """
     for layer in layers:
-        _check(layer)
+        _check(layer, setups(layer).role)
     names = _unique([plain_name(layer) for layer in layers])
     return [
         _source(layer, name, setups(layer), general, context)
@@ -66,18 +66,19 @@ def obstacle_sources(
     ]
 
 
-def _check(layer: QgsVectorLayer) -> None:
+def _check(layer: QgsVectorLayer, role: str) -> None:
     name = plain_name(layer)
     if not layer.isValid():
         raise LayerTypeError(
             f"The layer {name} cannot be opened ({layer.source()}): repair its data source or leave it out."
         )
     points = QgsWkbTypes.GeometryType.PointGeometry
-    if not layer.isSpatial() or layer.geometryType() == points:
+    of_points = layer.isSpatial() and layer.geometryType() == points
+    if not layer.isSpatial() or (of_points and role != FURNITURE):
         held = "points" if layer.isSpatial() else "no geometry"
         raise LayerTypeError(
             f"The layer {name} holds {held}, and only lines and polygons are obstacles: leave it "
-            "out, or give it an extent first (for example with Buffer)."
+            "out, give it an extent first (for example with Buffer), or the role furniture."
         )
 
 

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from qgis.core import QgsFeature, QgsFeedback, QgsRectangle
+from qgis.core import QgsFeature, QgsFeedback, QgsGeometry, QgsRectangle, QgsWkbTypes
 
 from ...robot_bridge.robotmap.outlines import OutlineRow, Outlines
 from .feature_values import FeatureValues
 from .obstacle_source import ObstacleSource
 from .placing import Bounds, LayerPlacing, PlacingError, SitePlacing
 from .roles import OBSTACLE_ROLES, RAMP, STAIRS
-from .shapes import Shape, shapes_of
+from .shapes import Shape, Shapes, posts_of, shapes_of
 
 NAMED = 5
 """How many features a warning about a whole layer names."""
@@ -96,7 +96,7 @@ class _LayerReader:
         if not self._may_touch(geometry.boundingBox()):
             return
         try:
-            shapes, notes = shapes_of(self._placing.to_metres(geometry), self.source.role)
+            shapes, notes = self._shapes(feature, self._placing.to_metres(geometry))
         except PlacingError as error:
             shapes, notes = [], [f"cannot be transformed into the site's CRS ({error}); it is left out"]
         if shapes:
@@ -122,6 +122,13 @@ class _LayerReader:
                 f"Layer {name}: its role {role} wants {wanted}; other features are exported as plain "
                 f"obstacles ({_features(self._odd_for_role)})"
             )
+
+    def _shapes(self, feature: QgsFeature, geometry: QgsGeometry) -> Shapes:
+        if geometry.type() != QgsWkbTypes.GeometryType.PointGeometry:
+            return shapes_of(geometry, self.source.role)
+        notes: list[str] = []
+        posts = posts_of(geometry, self._values.across(feature, notes))
+        return Shapes(posts.shapes, [*notes, *posts.notes])
 
     def _may_touch(self, box: QgsRectangle) -> bool:
         """Tell whether a feature with this bounding box must be looked at."""

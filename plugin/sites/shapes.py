@@ -61,6 +61,19 @@ def shapes_of(geometry: QgsGeometry, role: str = "") -> Shapes:
     return Shapes([*shapes, *(Shape(line, opened) for line in lines)], notes)
 
 
+def posts_of(geometry: QgsGeometry, across: float) -> Shapes:
+    """Return an octagon around each point of ``geometry``, in metres, that holds a circle ``across``."""
+    points = np.array([(point.x(), point.y()) for point in geometry.vertices()]).reshape(-1, 2)
+    if not np.isfinite(points).all():
+        return Shapes(
+            [], ["has a coordinate that is no number or has no place in the site's CRS; it is left out"]
+        )
+    angles = np.radians(np.arange(22.5, 360.0, 45.0))
+    corners = np.column_stack([np.cos(angles), np.sin(angles)]) * (across / 2 / np.cos(np.radians(22.5)))
+    ring = np.concatenate([corners, corners[:1]])
+    return Shapes([Shape(point + ring, ShapeType.CLOSED_POLYGON) for point in points], [])
+
+
 def _closed_type(role: str, curved: bool) -> ShapeType:
     if role == RAMP:
         return ShapeType.RAMP

@@ -50,7 +50,9 @@ def project(qgis_app):
     )
     roads = memory_layer("roads", "LineString", "&field=width:string", [("LineString(0 40, 90 40)", "4")])
     keep_setup(buildings, LayerSetup("obstacle", LayerExpressions(semantics="'house'")))
-    project.addMapLayers([buildings, barriers, roads, memory_layer("trees", "Point")])
+    project.addMapLayers(
+        [buildings, barriers, roads, memory_layer("trees", "Point", features=[("Point(5 50)",)])]
+    )
     project.setDirty(False)
     yield project
     project.clear()

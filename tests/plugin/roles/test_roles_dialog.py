@@ -78,7 +78,7 @@ def shows(image, colour):
 
 def test_the_table_shows_each_layer_and_what_it_comes_to(dialog):
     names = [dialog.model.index(k, LAYER).data() for k in range(dialog.model.rowCount())]
-    assert names == ["barriers", "buildings", "roads"]
+    assert names == ["barriers", "buildings", "roads", "trees"]
     assert cell(dialog, "buildings", RESULT).data() == "2 obstacles, 6 segments, 1 warning"
     assert "1 height is not known" in cell(dialog, "buildings", RESULT).data(Qt.ItemDataRole.ToolTipRole)
     assert cell(dialog, "barriers", RESULT).data() == ""
@@ -114,6 +114,13 @@ def test_an_expression_is_chosen_in_qgis_own_widget(dialog, wait):
     table.commitData(editor)
     assert cell(dialog, "buildings", HEIGHT).data() == "7 + 1"
     wait(lambda: cell(dialog, "buildings", RESULT).data() == "2 obstacles, 6 segments")
+
+
+def test_points_can_be_furniture_of_a_width(dialog, wait):
+    assert dialog.model.rows[3].roles == ("", "furniture")
+    put(dialog, "trees", ROLE, "furniture")
+    assert cell(dialog, "trees", WIDTH).flags() & Qt.ItemFlag.ItemIsEditable
+    wait(lambda: cell(dialog, "trees", RESULT).data() == "1 obstacle, 8 segments, 1 warning")
 
 
 def test_an_expression_that_is_none_is_told_in_its_row(dialog, wait):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+import shapely
 from fleet_supervisor.plugin.sites.errors import ExpressionError, LayerTypeError
 from fleet_supervisor.plugin.sites.roles import (
     KEEPOUT,
@@ -147,3 +148,21 @@ def test_a_cancel_stops_the_reading_at_once(make_layer, read):
     feedback.cancel()
     reading = read(make_layer(features=[(LINE,)] * 3), feedback=feedback)
     assert (reading.complete, reading.rows) == (False, [])
+
+
+def test_points_of_furniture_become_octagons_that_hold_a_circle_of_their_width(make_layer, read):
+    trees = [("Point(10 5)", 2.0), ("MultiPoint((0 0), (4 0))", None), ("Point(7 7)", -1.0)]
+    layer = make_layer("trees", "Point", fields="&field=across:double&field=height:double", features=trees)
+    layer.setCustomProperty("fleet/role", "furniture")
+    layer.setCustomProperty("fleet/width", '"across"')
+    reading = read(layer)
+    assert [row.source for row in reading.rows] == ["trees:1", "trees:2", "trees:2", "trees:3"]
+    octagon = shapely.Polygon(reading.rows[0].points)
+    assert octagon.is_valid and len(reading.rows[0].points) == 9
+    assert octagon.contains(shapely.Point(10, 5).buffer(0.999))
+    assert octagon.exterior.distance(shapely.Point(10, 5)) == pytest.approx(1.0)
+    assert shapely.Polygon(reading.rows[2].points).centroid.coords[0] == pytest.approx((4.0, 0.0))
+    assert shapely.Polygon(reading.rows[1].points).exterior.distance(shapely.Point(0, 0)) == pytest.approx(
+        0.25
+    )
+    assert any("feature 3: its width -1.0 is not a number" in warning for warning in reading.warnings)
