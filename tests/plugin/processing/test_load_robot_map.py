@@ -262,3 +262,12 @@ def test_the_algorithms_have_help_an_icon_and_a_style_for_their_layers(provider,
         layer = QgsVectorLayer(f"{kind}?field=height_m:double", "x", "memory")
         said, fine = layer.loadNamedStyle(str(root / "resources" / "styles" / style))
         assert fine, said
+
+
+def test_binary_without_zstandard_says_what_to_install(qgis_process, tmp_path):
+    file = tmp_path / "given.map"
+    file.write_bytes(encode(PLACED + HOUSE))
+    words = ("run", "fleet:loadrobotmap", "--", f"MAP={file}", f"SEGMENTS={tmp_path / 's.gpkg'}")
+    done = qgis_process(*words, packages=False)
+    assert done.status != 0
+    assert "needs the Python package zstandard" in done.said and "Traceback" not in done.said

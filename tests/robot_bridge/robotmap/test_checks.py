@@ -150,9 +150,9 @@ def test_the_papers_sample_lacks_three_of_its_four_faces(fig_2):
 
 @pytest.mark.parametrize(("end", "count"), [(9.0, 0), (9.93, 1), (9.99, 0), (10.0, 0)])
 def test_a_wall_that_ends_just_short_of_a_house_is_a_gap(end, count):
-    house, line = square(10, 10, id=1), wall((2, 12), (end, 12), id=2)
-    findings = found(house, line, kind=Kind.GAP)
-    assert len(findings) == count
+    house, line, far = square(10, 10, id=1), wall((2, 12), (end, 12), id=2), wall((30, 2), (35, 2), id=3)
+    findings = found(house, line, far, kind=Kind.GAP)
+    assert [finding.obstacle for finding in findings] == [2] * count
     if count:
         assert findings[0].segments.tolist() == [[[9.93, 12.0], [10.0, 12.0]]]
         assert "0.07 m short of obstacle 1" in findings[0].text
@@ -176,8 +176,9 @@ def test_a_segment_without_length_is_found():
 
 
 def test_an_obstacle_that_is_there_twice_is_a_duplicate():
-    (finding,) = found(square(10, 10, id=1), square(10, 10, id=2), kind=Kind.DUPLICATE)
-    assert finding.obstacle == 2 and "is all in obstacle 1" in finding.text
+    (finding,) = found(square(10, 10, id=1), square(10, 10, id=2))
+    assert (finding.kind, finding.obstacle) == (Kind.DUPLICATE, 2)
+    assert "is all in obstacle 1" in finding.text
     assert len(finding.segments) == 4
 
 
