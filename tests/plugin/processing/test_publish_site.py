@@ -281,3 +281,21 @@ def test_helsinki_is_published_by_its_profile_with_every_loss_named(qgis_process
     assert {"building", "retaining_wall", "bollard"} <= kinds
     assert any(warning.startswith("Layer buildings, feature ") for warning in done.warnings)
     assert any("heights are not known and estimated as 3 m" in warning for warning in done.warnings)
+
+
+def test_the_papers_campus_in_local_metres_is_published_by_its_profile(qgis_process, data, tmp_path):
+    campus = data / "upc_campus_nord" / "upc_campus_nord_local.gpkg"
+    layers = ("buildings", "walls", "step_edges", "furniture")
+    words = [f"OBSTACLES={campus}|layername={name}" for name in layers]
+    words += ["PROFILE=upc_campus_nord", "SITE_ID=campus", "SITE_CRS=EPSG:25831", "ORIGIN=426000,4582000"]
+    done = qgis_process("run", "fleet:publishsite", "--", *words, "LOCAL=true", f"FOLDER={tmp_path}")
+    assert done.status == 0, done.said
+    site = read_site(tmp_path)
+    # The model's own metres are the site frame's, whatever place it is published at.
+    np.testing.assert_allclose(tuple(site.bounds), (-40, -1, 101, 124))
+    labels = [label.partition(",")[0] for label in site.outlines.semantics]
+    assert (labels.count("building"), labels.count("wall"), labels.count("stairs")) == (12, 1618, 503)
+    furniture = set(labels) - {"building", "wall", "stairs"}
+    assert "litter_bin" in furniture and len(furniture) > 4
+    pier = (4.50, 12.20)  # of the paper's Fig. 2
+    assert np.hypot(*(site.outlines.coordinates - pier).T).min() < 0.05
