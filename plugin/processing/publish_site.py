@@ -155,7 +155,7 @@ class PublishSite(QgsProcessingAlgorithm):
         feedback.pushInfo(
             f"Site {settings.id} version {settings.version} is published in {plan.folder}: "
             f"{figures[1]} obstacle outlines, {figures[2]} centrelines, {figures[3]} road surfaces, "
-            f"{figures[4]} keepouts; bounds {', '.join(f'{edge:g}' for edge in settings.bounds)} m"
+            f"{figures[4]} keepouts; bounds {', '.join(f'{edge:.10g}' for edge in settings.bounds)} m"
         )
         return {FOLDER: str(plan.folder), ID: settings.id, **dict(zip(NUMBERS, figures, strict=True))}
 
