@@ -95,8 +95,7 @@ def publish(folder: Path, content: SiteContent, settings: SiteSettings, feedback
             (partial / SETTINGS_FILE).write_text(settings_text(settings), encoding="utf-8")
             if feedback.isCanceled():
                 return False
-            for name in (GEOPACKAGE_FILE, SETTINGS_FILE):
-                (partial / name).replace(folder / name)
+            _replace(partial, folder)
         finally:
             shutil.rmtree(partial, ignore_errors=True)
     except OSError as error:
@@ -105,6 +104,22 @@ def publish(folder: Path, content: SiteContent, settings: SiteSettings, feedback
             "and the free space."
         ) from error
     return True
+
+
+def _replace(partial: Path, folder: Path) -> None:
+    """Put both files of ``partial`` in the place of those in ``folder``, or leave these as they were."""
+    layers, earlier = folder / GEOPACKAGE_FILE, partial / "earlier.gpkg"
+    if layers.exists():
+        shutil.copyfile(layers, earlier)
+    (partial / GEOPACKAGE_FILE).replace(layers)
+    try:
+        (partial / SETTINGS_FILE).replace(folder / SETTINGS_FILE)
+    except OSError:
+        if earlier.exists():
+            earlier.replace(layers)
+        else:
+            layers.unlink()
+        raise
 
 
 def check_publication_values(settings: SiteSettings, folder: Path) -> None:

@@ -171,6 +171,18 @@ def test_a_cancel_leaves_the_publication_that_was_there(publish, yard, make_laye
     assert content_of(folder) == before
 
 
+def test_a_second_file_that_cannot_be_replaced_gives_back_the_first(publish, yard, tmp_path):
+    folder = publish(**yard).folder
+    layers = (folder / "site.gpkg").read_bytes()
+    # A folder of that name cannot be replaced by a file.
+    (folder / "site.toml").unlink()
+    (folder / "site.toml" / "in the way").mkdir(parents=True)
+    with pytest.raises(QgsProcessingException, match="The site cannot be published in"):
+        publish(**yard)
+    assert sorted(entry.name for entry in folder.iterdir()) == ["site.gpkg", "site.toml"]
+    assert (folder / "site.gpkg").read_bytes() == layers
+
+
 def test_a_folder_that_cannot_be_written_is_named(refused, yard, tmp_path):
     (tmp_path / "file").write_text("in the way")
     said = refused(**yard, FOLDER=str(tmp_path / "file" / "site"))
