@@ -17,7 +17,8 @@ from .segments import CLOSED_TYPES
 def simplified(row: OutlineRow, tolerance: float) -> OutlineRow:
     """Return ``row`` with corners left out (Douglas and Peucker, 1973), within ``tolerance`` metres of it.
 
-    An outline that would cross itself or vanish stays as it is, and so do stairs and what is no sound line.
+    An outline that would cross itself, vanish or end up farther off (GEOS may move the corner where a ring
+    begins beyond the tolerance) stays as it is, and so do stairs and what is no sound line.
     Raises MissingGeometryError without shapely.
     """
     shapely = shapely_module()
@@ -29,7 +30,10 @@ def simplified(row: OutlineRow, tolerance: float) -> OutlineRow:
         return row
     fewer = shapely.simplify(line, tolerance, preserve_topology=True)
     points = shapely.get_coordinates(fewer)
-    return replace(row, points=points) if _sound(points, closed) else row
+    if not _sound(points, closed):
+        return row
+    off = shapely.hausdorff_distance(shapely.LineString(points), shapely.LineString(row.points))
+    return replace(row, points=points) if off <= tolerance else row
 
 
 def without_short_segments(row: OutlineRow, shortest: float) -> OutlineRow:

@@ -7,7 +7,7 @@ import sys
 import numpy as np
 import pytest
 import shapely
-from hypothesis import assume, given, settings
+from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
 from robot_bridge.robotmap.builder import Window, build_map
@@ -203,6 +203,8 @@ coordinate = st.integers(0, 300).map(lambda n: n / 100)
 corners = st.lists(st.tuples(coordinate, coordinate), min_size=3, max_size=14, unique=True)
 
 
+# A ring whose first corner GEOS moves farther than it was told to.
+@example([(0.01, 0.02), (0.0, 0.03), (0.0, 0.0), (0.03, 0.0), (0.01, 0.01)], True, 0.02)
 @settings(max_examples=200, deadline=None)
 @given(corners, st.booleans(), st.integers(1, 60).map(lambda n: n / 100))
 def test_a_simplified_outline_is_within_its_tolerance_and_never_crosses_itself(points, closed, tolerance):
