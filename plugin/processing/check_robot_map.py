@@ -16,8 +16,8 @@ from qgis.core import (
 
 from ...robot_bridge.robotmap.checks import CHECKS, Finding, Limits, SegmentTable, Severity
 from .errors import shown_by_processing
+from .fleet_algorithm import FleetAlgorithm, fields_of
 from .map_file import MAP, MapPlace, file_problem, map_parameters, map_place, read_map_file
-from .robot_map_algorithm import RobotMapAlgorithm, fields_of
 from .sinks import fill, lines
 
 FINDINGS = "FINDINGS"
@@ -36,7 +36,7 @@ NUMBERS = {
 }
 
 
-class CheckRobotMap(RobotMapAlgorithm):
+class CheckRobotMap(FleetAlgorithm):
     """Checks a robot map and shows each finding at its place."""
 
     NAME = "checkrobotmap"

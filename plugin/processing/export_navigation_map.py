@@ -9,7 +9,6 @@ from typing import Any
 
 from qgis.core import (
     QgsProcessing,
-    QgsProcessingAlgorithm,
     QgsProcessingFeedback,
     QgsProcessingOutputFile,
     QgsProcessingOutputNumber,
@@ -21,9 +20,9 @@ from qgis.core import (
     QgsProcessingParameterNumber,
     QgsProcessingParameterString,
 )
-from qgis.PyQt.QtGui import QIcon
 
 from .errors import ParameterError, shown_by_processing
+from .fleet_algorithm import FleetAlgorithm
 from .map_file import MAP, file_problem, map_parameters, map_place, read_map_file
 from .map_place import PlacedMap
 from .mask_areas import areas_of, speed_by
@@ -37,7 +36,6 @@ RESOLUTION, INSIDE, DRIVES_OVER = "RESOLUTION", "INSIDE", "DRIVES_OVER"
 KEEPOUTS, SPEED_AREAS, SPEED = "KEEPOUTS", "SPEED_AREAS", "SPEED"
 UNKNOWN, OCCUPIED = "unknown", "occupied"
 
-ICON = Path(__file__).parents[2] / "resources" / "icons" / "export_navigation_map.svg"
 _REAL = QgsProcessingParameterNumber.Type.Double
 _POLYGONS = [QgsProcessing.SourceType.TypeVectorPolygon]
 
@@ -57,41 +55,28 @@ class _Collector(QgsProcessingFeedback):
         self._warnings.append(warning)
 
 
-class ExportNavigationMap(QgsProcessingAlgorithm):
+class ExportNavigationMap(FleetAlgorithm):
     """Writes a robot map as Nav2 grids and masks, GeoJSON, GeoPackage and pictures."""
 
-    def name(self):
-        return "exportnavigationmap"
-
-    def displayName(self):
-        return "Export navigation map"
-
-    def group(self):
-        return "Robot maps"
-
-    def groupId(self):
-        return "robotmaps"
-
-    def tags(self):
-        return [
-            *("robot", "map", "nav2", "ros", "occupancy grid", "pgm", "costmap", "keepout", "speed", "mask"),
-            *("geojson", "geopackage", "svg", "png"),
-        ]
-
-    def shortDescription(self):
-        return "Writes a robot map as Nav2 occupancy grid and masks, GeoJSON, GeoPackage, SVG or PNG."
-
-    def shortHelpString(self):
-        return HELP
-
-    def icon(self):
-        return QIcon(str(ICON))
-
-    def svgIconPath(self):
-        return str(ICON)
-
-    def createInstance(self):
-        return ExportNavigationMap()
+    NAME = "exportnavigationmap"
+    TITLE = "Export navigation map"
+    SUMMARY = "Writes a robot map as Nav2 occupancy grid and masks, GeoJSON, GeoPackage, SVG or PNG."
+    HELP = HELP
+    ICON = "export_navigation_map.svg"
+    TAGS = (
+        "nav2",
+        "ros",
+        "occupancy grid",
+        "pgm",
+        "costmap",
+        "keepout",
+        "speed",
+        "mask",
+        "geojson",
+        "geopackage",
+        "svg",
+        "png",
+    )
 
     def initAlgorithm(self, configuration=None):
         for parameter in _parameters():

@@ -27,10 +27,10 @@ from ..sites.reading import Reading, read_outlines
 from .errors import shown_by_processing
 from .export_plan import OBSTACLES, unopened_layer
 from .export_robot_map import BINARY, FORMAT, STRICT, format_parameters, marked, value_parameters
+from .fleet_algorithm import FleetAlgorithm, fields_of
 from .map_file import layer_crs
 from .map_profile import profile_parameter
 from .map_window import EXTENT, PAPERS_SIDE_M, frame_parameters
-from .robot_map_algorithm import RobotMapAlgorithm, fields_of
 from .sinks import fill, polygon
 from .tile_folder import TileFolder
 from .tile_plan import (
@@ -73,7 +73,7 @@ NUMBERS = {
 _REAL = QgsProcessingParameterNumber.Type.Double
 
 
-class ExportRobotMapTiles(RobotMapAlgorithm):
+class ExportRobotMapTiles(FleetAlgorithm):
     """Exports a site as many maps, in a grid or along a route."""
 
     NAME = "exportrobotmaptiles"

@@ -19,8 +19,8 @@ from qgis.core import (
 from ...robot_bridge.robotmap.exporters.shapes import Shape, obstacle_shapes, segment_shapes
 from ...robot_bridge.robotmap.model import Border, RobotMap
 from .errors import shown_by_processing
+from .fleet_algorithm import FleetAlgorithm, fields_of
 from .map_file import MAP, MapPlace, file_problem, map_parameters, map_place, read_map_file
-from .robot_map_algorithm import RobotMapAlgorithm, fields_of
 from .sinks import fill, line, lines, polygon
 
 AREAS, LINES, SEGMENTS, BORDER = "AREAS", "LINES", "SEGMENTS", "BORDER"
@@ -67,7 +67,7 @@ NUMBERS = {"OBSTACLE_COUNT": "Obstacles", "SEGMENT_COUNT": "Segments", "WARNING_
 Row = tuple[QgsGeometry, Sequence[Any]]
 
 
-class LoadRobotMap(RobotMapAlgorithm):
+class LoadRobotMap(FleetAlgorithm):
     """Turns a robot map back into layers, with every attribute that it holds."""
 
     NAME = "loadrobotmap"

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from pathlib import Path
 
 from qgis.core import (
     QgsProcessing,
-    QgsProcessingAlgorithm,
     QgsProcessingOutputNumber,
     QgsProcessingOutputString,
     QgsProcessingParameterBoolean,
@@ -19,7 +17,6 @@ from qgis.core import (
     QgsProcessingParameterNumber,
     QgsProcessingParameterString,
 )
-from qgis.PyQt.QtGui import QIcon
 
 from ...robot_bridge.sites.settings import Bounds, LivenessLimits
 from ..errors import FleetError
@@ -29,6 +26,7 @@ from ..sites.publication import publish
 from ..sites.site_content import SiteContent
 from .errors import ParameterError, shown_by_processing
 from .export_plan import DEFAULT_HEIGHT
+from .fleet_algorithm import FleetAlgorithm
 from .map_profile import profile_parameter
 from .map_window import frame_parameters
 from .publish_help import HELP
@@ -61,44 +59,21 @@ NUMBERS = {
     "WARNING_COUNT": "Warnings",
 }
 ID = "ID"
-ICON = Path(__file__).parents[2] / "resources" / "icons" / "publish_site.svg"
 
 _REAL = QgsProcessingParameterNumber.Type.Double
 _LIMITS = LivenessLimits()
 
 
-class PublishSite(QgsProcessingAlgorithm):
+class PublishSite(FleetAlgorithm):
     """Publishes the project's layers as the site that a gateway serves (design, section 3)."""
 
-    def name(self):
-        return "publishsite"
-
-    def displayName(self):
-        return "Publish site"
-
-    def group(self):
-        return "Sites"
-
-    def groupId(self):
-        return "sites"
-
-    def tags(self):
-        return ["robot", "gateway", "site", "publish", "obstacle", "road", "keepout", "qgis_process"]
-
-    def shortDescription(self):
-        return "Writes the layers of a site, by their roles, into the folder that a gateway serves."
-
-    def shortHelpString(self):
-        return HELP
-
-    def icon(self):
-        return QIcon(str(ICON))
-
-    def svgIconPath(self):
-        return str(ICON)
-
-    def createInstance(self):
-        return PublishSite()
+    GROUP = ("sites", "Sites")
+    NAME = "publishsite"
+    TITLE = "Publish site"
+    SUMMARY = "Writes the layers of a site, by their roles, into the folder that a gateway serves."
+    HELP = HELP
+    ICON = "publish_site.svg"
+    TAGS = ("gateway", "site", "publish", "obstacle", "road", "keepout", "qgis_process")
 
     def initAlgorithm(self, configuration=None):
         site = [

@@ -1,4 +1,4 @@
-"""What algorithms about robot maps have in common: their place in the toolbox, styled results."""
+"""What the algorithms have in common: their place in the toolbox, their help, styled results."""
 
 from __future__ import annotations
 
@@ -10,9 +10,11 @@ from qgis.PyQt.QtGui import QIcon
 RESOURCES = Path(__file__).parents[2] / "resources"
 
 
-class RobotMapAlgorithm(QgsProcessingAlgorithm):
-    """An algorithm of the group *Robot maps*; subclasses say who they are in their class attributes."""
+class FleetAlgorithm(QgsProcessingAlgorithm):
+    """An algorithm of the provider; subclasses say who they are in their class attributes."""
 
+    GROUP = ("robotmaps", "Robot maps")
+    """Id and title of its group in the toolbox."""
     NAME = ""
     TITLE = ""
     SUMMARY = ""
@@ -29,10 +31,10 @@ class RobotMapAlgorithm(QgsProcessingAlgorithm):
         return self.TITLE
 
     def group(self):
-        return "Robot maps"
+        return self.GROUP[1]
 
     def groupId(self):
-        return "robotmaps"
+        return self.GROUP[0]
 
     def tags(self):
         return ["robot", "map", *self.TAGS]
