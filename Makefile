@@ -41,8 +41,10 @@ lint: $(READY) ## check style, types and import rules only
 desktop: $(READY) ## open QGIS Desktop with the plugin, the sample site and three driving robots
 	@$(RUN) scripts/desktop.py
 
-screenshots: $(READY) ## make docs/images/desktop.png: the same window, under Xvfb
+screenshots: $(READY) build/run ## make the pictures in docs/images, in real windows under Xvfb
 	@$(RUN) scripts/desktop.py --screenshot docs/images/desktop.png
+	@$(RUN) scripts/roles_picture.py
+	@$(HEADLESS) $(RUN) scripts/robot_map_pictures.py
 
 install: $(READY) ## put the plugin into your QGIS profile (PROFILE=name, LINK=1 links this folder)
 	@$(RUN) scripts/install_plugin.py --profile "$(PROFILE)" $(if $(LINK),--link)

@@ -15,7 +15,7 @@ from .glyphs import state_icon
 from .picture import STATES, RobotView
 
 COLUMNS = ("Robot", "State", "Task", "Speed", "Batt.", "Age", "Link")
-WIDEST = ("robot-0", "offline", "", "0.0 m/s", "Batt.", "00.0 s", "websocket")
+WIDEST = ("robot-0", "offline", "", "0.0 m/s", "100%", "00.0 s", "websocket")
 TASK = COLUMNS.index("Task")
 _FLAGS = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
 # A number on Qt 5, an enum on Qt 6; a model has to hand out the number.
@@ -166,9 +166,9 @@ class RobotTable(QTableView):
         header = self.horizontalHeader()
         header.setHighlightSections(False)
         header.setMinimumSectionSize(24)
-        for column, widest in enumerate(WIDEST):
-            extra = 30 if column == 0 else 10
-            self.setColumnWidth(column, metrics.horizontalAdvance(widest) + extra)
+        for column, texts in enumerate(zip(COLUMNS, WIDEST, strict=True)):
+            extra = 30 if column == 0 else 12
+            self.setColumnWidth(column, max(map(metrics.horizontalAdvance, texts)) + extra)
         header.setSectionResizeMode(TASK, QHeaderView.ResizeMode.Stretch)
 
     def _pulled(self) -> None:
