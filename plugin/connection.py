@@ -7,13 +7,13 @@ import threading
 
 from qgis.PyQt.QtCore import QObject, QThread
 
-from .desk.wire.addresses import check_address
-from .desk.wire.client import DeskClient
-from .desk.wire.mailbox import Mailbox, News
-from .desk.wire.outbox import Order
-from .desk.wire.status import LinkStatus, Phase
 from .errors import NotSentError
 from .websocket_library import websocket_library
+from .wire.addresses import check_address
+from .wire.client import DeskClient
+from .wire.mailbox import Mailbox, News
+from .wire.outbox import Order
+from .wire.status import LinkStatus, Phase
 
 STOP_WITHIN_MS = 3000
 CANCEL_WITHIN = 0.3

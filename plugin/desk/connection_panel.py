@@ -9,8 +9,8 @@ from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtWidgets import QAction, QGridLayout, QLabel, QLineEdit, QSizePolicy, QToolButton, QWidget
 
 from ...robot_bridge.messages import SiteReport
-from .wire.addresses import DEFAULT_URL
-from .wire.status import LinkStatus, Phase
+from ..wire.addresses import DEFAULT_URL
+from ..wire.status import LinkStatus, Phase
 
 URL_KEY = "fleet_supervisor/url"
 OPERATOR_KEY = "fleet_supervisor/operator"

@@ -12,6 +12,9 @@ from qgis.PyQt.QtCore import QObject, QTimer, pyqtSignal
 from ...robot_bridge.messages import SiteReport
 from ..connection import Connection
 from ..errors import FleetError, NotSentError, PlacementError
+from ..wire.mailbox import News
+from ..wire.outbox import Order
+from ..wire.status import LinkStatus, Phase
 from .checks import LayerCheck, check_bounds
 from .command_book import CommandBook
 from .drafts import Draft, DraftBoard, Findings, Point
@@ -19,9 +22,6 @@ from .orders import Orders
 from .picture import RobotPicture
 from .placement import Placement
 from .trails import Trails
-from .wire.mailbox import News
-from .wire.outbox import Order
-from .wire.status import LinkStatus, Phase
 
 PULL_EVERY_MS = 100
 

@@ -10,8 +10,8 @@ from qgis.PyQt.QtCore import QObject, pyqtSignal
 
 from ...robot_bridge.messages import Abort, AbortAll, Send, to_json
 from ..errors import NotSentError
+from ..wire.outbox import Answer, Order
 from .drafts import Draft
-from .wire.outbox import Answer, Order
 
 SLOW_AFTER = 5.0
 

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from ...robot_bridge.liveness import liveness
 from ...robot_bridge.messages import RobotReport, RobotState
-from .wire.mailbox import Sighting
+from ..wire.mailbox import Sighting
 
 STATES = (RobotState.FRESH, RobotState.STALE, RobotState.LOST, RobotState.OFFLINE)
 

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 import numpy.typing as npt
 
-from .wire.mailbox import Sighting
+from ..wire.mailbox import Sighting
 
 Points = npt.NDArray[np.float64]
 

@@ -8,6 +8,7 @@ from qgis.PyQt.QtCore import QObject, Qt
 from qgis.PyQt.QtWidgets import QToolBar
 
 from ..errors import FleetError
+from ..wire.status import Phase
 from .actions import Actions
 from .cone_tool import ConeTool
 from .desk import Desk
@@ -16,7 +17,6 @@ from .live_view import LiveView
 from .notices import Notices
 from .route_tool import RouteTool
 from .select_tool import SelectTool
-from .wire.status import Phase
 
 MENU = "Fleet Supervisor"
 

@@ -9,9 +9,9 @@ import time
 
 import pytest
 from fleet_supervisor.plugin.connection import Connection
-from fleet_supervisor.plugin.desk.wire.outbox import Order
-from fleet_supervisor.plugin.desk.wire.status import Phase
 from fleet_supervisor.plugin.errors import AddressError, NotSentError
+from fleet_supervisor.plugin.wire.outbox import Order
+from fleet_supervisor.plugin.wire.status import Phase
 from qgis.PyQt.QtCore import QThread
 
 
@@ -282,7 +282,7 @@ def test_a_fault_in_the_worker_becomes_a_state_and_not_a_crash(connection, gatew
         await asyncio.sleep(0)
         raise RuntimeError("a screw came loose")
 
-    monkeypatch.setattr("fleet_supervisor.plugin.desk.wire.client.DeskClient.run", broken)
+    monkeypatch.setattr("fleet_supervisor.plugin.wire.client.DeskClient.run", broken)
     connection.open(gateway.url, "anna")
     assert "a screw came loose" in reason_when(connection, wait, Phase.FAILED)
 

@@ -10,11 +10,11 @@ import pytest
 from fleet_supervisor.plugin.desk.command_book import CommandBook, in_words
 from fleet_supervisor.plugin.desk.picture import STATES, RobotPicture
 from fleet_supervisor.plugin.desk.trails import Trails
-from fleet_supervisor.plugin.desk.wire.backoff import Backoff
-from fleet_supervisor.plugin.desk.wire.mailbox import MOST_COMMANDS, Mailbox, Sighting
-from fleet_supervisor.plugin.desk.wire.outbox import Order, Outbox
-from fleet_supervisor.plugin.desk.wire.protocol import DeskProtocol
 from fleet_supervisor.plugin.errors import LinkError
+from fleet_supervisor.plugin.wire.backoff import Backoff
+from fleet_supervisor.plugin.wire.mailbox import MOST_COMMANDS, Mailbox, Sighting
+from fleet_supervisor.plugin.wire.outbox import Order, Outbox
+from fleet_supervisor.plugin.wire.protocol import DeskProtocol
 from fleet_supervisor.robot_bridge.messages import (
     CommandReport,
     CommandState,

@@ -10,7 +10,7 @@ import threading
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
-from ....robot_bridge.messages import CommandReport, RobotReport, SiteReport
+from ...robot_bridge.messages import CommandReport, RobotReport, SiteReport
 from .outbox import Answer
 from .status import LinkStatus, Phase
 

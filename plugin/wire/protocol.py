@@ -8,7 +8,7 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from ....robot_bridge.messages import (
+from ...robot_bridge.messages import (
     PROTOCOL_VERSION,
     CommandReport,
     GetCommands,
@@ -21,7 +21,7 @@ from ....robot_bridge.messages import (
     site_report,
     to_json,
 )
-from ...errors import LinkError
+from ..errors import LinkError
 from .mailbox import Mailbox
 from .outbox import Answer, Order, Outbox
 

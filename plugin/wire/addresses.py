@@ -7,7 +7,7 @@ import ssl
 from types import ModuleType
 from urllib.parse import urlsplit
 
-from ...errors import AddressError, LinkError
+from ..errors import AddressError, LinkError
 
 DEFAULT_URL = "ws://127.0.0.1:8765/desk"
 

@@ -7,7 +7,7 @@ import time
 from types import ModuleType
 from typing import Any
 
-from ...errors import LinkError
+from ..errors import LinkError
 from .addresses import explain
 from .backoff import Backoff
 from .mailbox import Mailbox
