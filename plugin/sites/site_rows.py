@@ -12,6 +12,7 @@ from ...robot_bridge.robotmap.outlines import OutlineRow
 from ...robot_bridge.sites.features import Area
 from ...robot_bridge.sites.frame import SiteFrame
 from ...robot_bridge.sites.layers import CENTRELINES, KEEPOUTS, OBSTACLES, SURFACES, LayerSpec
+from ...robot_bridge.sites.obstacle_layer import obstacle_values
 from .site_content import SiteContent
 from .wkb import line_wkb, multi_line_wkb, polygon_wkb
 
@@ -53,14 +54,7 @@ def _obstacle_row(rows: Sequence[OutlineRow], frame: SiteFrame) -> SiteRow:
         wkb = polygon_wkb([_shut(ring) for ring in points])
     else:
         wkb = line_wkb(points[0])
-    values = {
-        "source": row.source,
-        "semantics": row.semantics,
-        "height_m": row.height,
-        "outdoor": row.outdoor,
-        "shape_type": int(row.shape_type),
-    }
-    return SiteRow(wkb, values)
+    return SiteRow(wkb, obstacle_values(row))
 
 
 def _centreline_rows(content: SiteContent, frame: SiteFrame) -> Iterator[SiteRow]:

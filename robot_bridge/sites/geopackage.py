@@ -110,7 +110,9 @@ def _read(file: Path, spec: LayerSpec, crs: str) -> Layer:
     meta, ids, wkb, columns = _pyogrio().raw.read(str(file), layer=spec.name, return_fids=True)
     values = dict(zip((str(name) for name in meta["fields"]), columns, strict=True))
     for name in spec.fields:
-        if name not in values:
+        if name in spec.defaults:
+            values.setdefault(name, np.full(len(ids), spec.defaults[name]))
+        elif name not in values:
             raise LayerError(f"{file}, layer {spec.name}: the field {name!r} is missing. {_REPAIR}")
     _check_crs(file, spec, meta["crs"], crs)
     layer = Layer(spec, ids, _geometries(wkb, ids, spec, file), {name: values[name] for name in spec.fields})

@@ -2,22 +2,36 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 
 @dataclass(frozen=True)
 class LayerSpec:
-    """A layer's name, its OGR geometry type and its fields with the numpy type of each."""
+    """A layer's name, its OGR geometry type and its fields with the numpy type of each.
+
+    ``defaults`` are the fields that a site of an older version may lack, with what they are then.
+    """
 
     name: str
     geometry: str
     fields: dict[str, type]
+    defaults: Mapping[str, float | str] = field(default_factory=dict)
 
 
 OBSTACLES = LayerSpec(
     "obstacles",
     "Unknown",
-    {"source": str, "semantics": str, "height_m": float, "outdoor": bool, "shape_type": int},
+    {
+        "source": str,
+        "semantics": str,
+        "height_m": float,
+        "outdoor": bool,
+        "shape_type": int,
+        "base_m": float,
+        "ext": str,
+    },
+    defaults={"base_m": 0.0, "ext": ""},
 )
 CENTRELINES = LayerSpec("road_centrelines", "LineString", {"width_m": float, "surface": str})
 SURFACES = LayerSpec("road_surfaces", "Polygon", {"surface": str})

@@ -10,6 +10,7 @@ import numpy as np
 from ..robotmap.model import ShapeType
 from ..robotmap.outlines import OutlineRow, Outlines
 from .errors import LayerError
+from .extras import extras_of, extras_text
 from .frame import Points, SiteFrame
 from .geopackage import Layer, layer_of
 from .layers import OBSTACLES
@@ -29,18 +30,28 @@ def obstacle_layer(outlines: Outlines, frame: SiteFrame) -> Layer:
     columns: dict[str, list[Any]] = {name: [] for name in OBSTACLES.fields}
     for first, last in _groups(outlines):
         geometries.append(_geometry(outlines, first, last, frame))
-        columns["source"].append(outlines.source[first])
-        columns["semantics"].append(outlines.semantics[first])
-        columns["height_m"].append(outlines.height[first])
-        columns["outdoor"].append(outlines.outdoor[first])
-        columns["shape_type"].append(outlines.shape_type[first])
+        for name, value in obstacle_values(outlines.row(first)).items():
+            columns[name].append(value)
     return layer_of(OBSTACLES, geometries, columns)
+
+
+def obstacle_values(row: OutlineRow) -> dict[str, Any]:
+    """Return the fields of the feature that ``row`` is published as."""
+    return {
+        "source": row.source,
+        "semantics": row.semantics,
+        "height_m": row.height,
+        "outdoor": row.outdoor,
+        "shape_type": int(row.shape_type),
+        "base_m": row.base,
+        "ext": extras_text(row.ext),
+    }
 
 
 def outlines_of(layer: Layer, frame: SiteFrame, place: str) -> Outlines:
     """Return the outlines in ``layer``; ``place`` is its file, for messages.
 
-    :raises LayerError: naming the feature whose geometry or shape type is not one of an obstacle.
+    :raises LayerError: naming the feature whose geometry, shape type or extras are not those of an obstacle.
     """
     rows: list[OutlineRow] = []
     for k in range(len(layer)):
@@ -48,6 +59,7 @@ def outlines_of(layer: Layer, frame: SiteFrame, place: str) -> Outlines:
         where = f"{place}, layer {OBSTACLES.name}, feature {layer.ids[k]}"
         if shape_type not in {int(member) for member in ShapeType}:
             raise LayerError(f"{where}: shape_type is {shape_type}; write 1 to 6 (paper 1, section II).")
+        extras = extras_of(layer.values["ext"][k], where)
         for points, courtyard in _lines(layer.geometries[k], ShapeType(shape_type), where):
             rows.append(
                 OutlineRow(
@@ -58,6 +70,8 @@ def outlines_of(layer: Layer, frame: SiteFrame, place: str) -> Outlines:
                     source=layer.values["source"][k] or "",
                     courtyard=courtyard,
                     outdoor=bool(layer.values["outdoor"][k]),
+                    base=float(layer.values["base_m"][k]),
+                    ext=extras,
                 )
             )
     return Outlines.from_rows(rows)

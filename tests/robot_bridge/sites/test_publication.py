@@ -14,6 +14,7 @@ import shapely
 
 from robot_bridge.robotmap.model import ShapeType
 from robot_bridge.robotmap.outlines import OutlineRow, Outlines
+from robot_bridge.robotmap.text import write_text
 from robot_bridge.sites.errors import LayerError, SettingsError, SiteError
 from robot_bridge.sites.features import Area, Centreline
 from robot_bridge.sites.publication import read_site, write_site
@@ -40,12 +41,20 @@ ROWS = [
     OutlineRow(
         ring(30, 0, 40, 10), ShapeType.CLOSED_POLYGON, 4.0, "building,B", "buildings:2", outdoor=False
     ),
-    OutlineRow(np.array([[0, 20], [10, 20], [10, 25]]), ShapeType.OPEN_POLYGON, 2.0, "wall", "walls:1"),
+    OutlineRow(
+        np.array([[0, 20], [10, 20], [10, 25]]),
+        ShapeType.OPEN_POLYGON,
+        2.0,
+        "wall",
+        "walls:1",
+        base=0.4,
+        ext={"h": "est", "a=b,": 'ä"\\;'},
+    ),
     OutlineRow(ring(50, 1, 51, 2), ShapeType.CLOSED_CURVE, 3.0, "column,C1", "columns:1"),
     OutlineRow(
         np.array([[20, 30], [16, 30], [20, 29.7], [16, 29.7]]), ShapeType.STAIRS, 0.15, "stairs", "stairs:1"
     ),
-    OutlineRow(ring(25, 30, 32, 32), ShapeType.RAMP, 0.0, "ramp", "ramp:1"),
+    OutlineRow(ring(25, 30, 32, 32), ShapeType.RAMP, 0.0, "ramp", "ramp:1", ext={"n": "0,-0.0995,0.995"}),
 ]
 OBSTACLES = Outlines.from_rows(ROWS)
 ROADS = [Centreline(np.array([[0.0, 15.0], [50.0, 15.0], [55.0, 18.0]]), 3.5, "asphalt")]
@@ -86,6 +95,29 @@ def test_obstacles_come_back_as_they_were(folder):
         assert np.array_equal(getattr(found, name), getattr(OBSTACLES, name)), name
     assert list(found.semantics) == list(OBSTACLES.semantics)
     assert list(found.source) == list(OBSTACLES.source)
+    assert found.base.tolist() == [0.0, 0.0, 0.0, 0.4, 0.0, 0.0, 0.0]
+    assert found.ext == [dict(row.ext) for row in ROWS]
+
+
+def test_a_courtyard_says_what_its_building_says(tmp_path):
+    walls = [replace(row, base=1.5, ext={"h": "est"}) for row in ROWS[:2]]
+    write_site(tmp_path / "site", SETTINGS, Outlines.from_rows(walls))
+    found = read_site(tmp_path / "site").outlines
+    assert found.base.tolist() == [1.5, 1.5]
+    assert found.ext == [{"h": "est"}] * 2
+
+
+def test_the_maps_of_a_site_carry_what_its_obstacles_have_to_say(folder):
+    text = write_text(read_site(folder).map_around(20.0, 20.0, 6400.0))
+    assert ";wall;src=walls:1,h=est," in text
+    assert ";ramp;src=ramp:1,n=0,-0.0995,0.995;" in text
+
+
+def test_a_site_of_an_older_version_lacks_bases_and_extras_and_is_read(folder):
+    edit(folder, "alter table obstacles drop column base_m", "alter table obstacles drop column ext")
+    found = read_site(folder).outlines
+    assert list(found.source) == list(OBSTACLES.source)
+    assert (found.base, found.ext) == (None, None)
 
 
 def test_roads_and_areas_come_back_as_they_were(folder):
@@ -197,6 +229,10 @@ def test_a_layer_in_another_crs_is_named(folder):
             "update obstacles set height_m = null where fid = 2",
             "feature 2: it has no finite number in height_m",
         ),
+        ("update obstacles set base_m = null where fid = 2", "feature 2: it has no finite number in base_m"),
+        ("update obstacles set ext = 'h=est' where fid = 2", "feature 2: its ext is 'h=est', and not a JSON"),
+        ("update obstacles set ext = '[]' where fid = 2", "feature 2: its ext is '[]', and not a JSON"),
+        ("""update obstacles set ext = '{"n": 1}'""", "feature 1: its ext is '{\"n\": 1}', and not a JSON"),
         ("update obstacles set geom = null where fid = 4", "feature 4: it has no geometry"),
         ("update road_centrelines set width_m = 0", "road_centrelines, feature 1: width_m is 0"),
         (
