@@ -18,8 +18,13 @@ field <i>height</i> or <i>height_m</i>, the layer's name, true. Where no height 
 is used, said in a warning and marked <i>h=est</i> in the map.</p>
 <p><b>Map profile</b>: a file that says by layer name what layers are: <i>openstreetmap</i>,
 <i>upc_campus_nord</i> or the path of one's own. It wins over what the layers keep.</p>
-<p><b>Format</b>: text, or binary (the text compressed, with a check sum), which needs the Python package
-zstandard. The file <i>docs/robot-map.md</i> of the project describes both, and exports from a script.</p>
+<p><b>Smaller maps</b> (advanced, each off unless asked for): only what the robot's plane meets, without
+walls between or inside buildings, lines joined, fewer corners, no short segments, heights in steps. The log
+says how many obstacles and segments there were before and after. Walls between buildings, corners and short
+segments need the Python package shapely 2.</p>
+<p><b>Format</b>: text; binary (the text compressed, with a check sum), which needs the Python package
+zstandard; compact (about a third of binary, whole centimetres), which needs cbor2 too. The file
+<i>docs/robot-map.md</i> of the project describes them, and exports from a script.</p>
 <p>Broken geometry is repaired where that is safe and left out where it is not. Each time a warning names the
 layer and the feature; the export goes on.</p>
 """

@@ -18,6 +18,7 @@ from qgis.core import (
 )
 
 from ...robot_bridge.robotmap.builder import Window
+from ...robot_bridge.robotmap.shaping import Shaping
 from ..sites.errors import LayerTypeError
 from ..sites.obstacle_source import ObstacleSource, obstacle_sources
 from ..sites.placing import SitePlacing
@@ -25,7 +26,9 @@ from ..sites.reading import check_sources
 from ..sites.roles import LayerExpressions
 from ..sites.site_crs import site_crs_for
 from .errors import ParameterError
+from .map_format import MapFormat, format_of
 from .map_profile import setups_of
+from .map_shaping import shaping_of
 from .map_window import LOCAL, SITE_CRS, map_window, site_frame
 from .whole_file import OutputError
 
@@ -38,11 +41,13 @@ Parameters = Mapping[str, Any]
 
 @dataclass(frozen=True)
 class ObstaclePlan:
-    """What is read, and where it lies; usable from any thread."""
+    """What is read, where it lies, what is made of it and how it is written; usable from any thread."""
 
     sources: list[ObstacleSource]
     site: SitePlacing
     default_height: float
+    shaping: Shaping
+    format: MapFormat
 
     @property
     def meta(self) -> dict[str, str]:
@@ -87,6 +92,7 @@ def obstacle_plan_of(
     """Return what is read for ``parameters``; to be called in the main thread.
 
     :raises FleetError: when a parameter or a layer cannot be used.
+    :raises RobotMapError: when something asked for needs a package that this Python does not have.
     """
     layers = obstacle_layers(algorithm, parameters, context)
     # As strings: parameterAsExpression replaces what is no expression by the default, in silence.
@@ -100,7 +106,13 @@ def obstacle_plan_of(
     local = algorithm.parameterAsBool(parameters, LOCAL, context)
     site = SitePlacing(crs, frame, context.transformContext(), local)
     check_sources(sources, site)
-    return ObstaclePlan(sources, site, default_height(algorithm, parameters, context))
+    return ObstaclePlan(
+        sources,
+        site,
+        default_height(algorithm, parameters, context),
+        shaping_of(algorithm, parameters, context),
+        format_of(algorithm, parameters, context),
+    )
 
 
 def unopened_layer(parameters: Parameters, context: QgsProcessingContext) -> str:

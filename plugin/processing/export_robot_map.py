@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 
 from qgis.core import (
     QgsProcessing,
     QgsProcessingAlgorithm,
     QgsProcessingOutputNumber,
-    QgsProcessingParameterBoolean,
     QgsProcessingParameterDefinition,
-    QgsProcessingParameterEnum,
     QgsProcessingParameterExpression,
     QgsProcessingParameterFileDestination,
     QgsProcessingParameterMultipleLayers,
@@ -19,11 +16,9 @@ from qgis.core import (
 )
 from qgis.PyQt.QtGui import QIcon
 
-from ...robot_bridge.robotmap.binary import encode
 from ...robot_bridge.robotmap.builder import Window, build_map
 from ...robot_bridge.robotmap.errors import RobotMapError
 from ...robot_bridge.robotmap.model import RobotMap
-from ...robot_bridge.robotmap.text import write_text
 from ..errors import FleetError
 from ..sites.reading import Reading, read_outlines
 from .errors import shown_by_processing
@@ -38,12 +33,12 @@ from .export_plan import (
     plan_of,
     unopened_layer,
 )
+from .map_format import format_parameters
 from .map_profile import profile_parameter
+from .map_shaping import shaped_outlines, shaping_parameters
 from .map_window import window_parameters, window_problem
 from .whole_file import write_whole
 
-FORMAT, STRICT = "FORMAT", "STRICT"
-TEXT, BINARY = "text", "binary"
 NUMBERS = {
     "OBSTACLE_COUNT": "Obstacles",
     "SEGMENT_COUNT": "Segments",
@@ -51,8 +46,6 @@ NUMBERS = {
     "BYTES_PER_M2": "Compactness [bytes/m²]",
     "WARNING_COUNT": "Warnings",
 }
-ESTIMATED = {"h": "est"}
-"""The extra of an obstacle whose height nobody knows."""
 
 ICON = Path(__file__).parents[2] / "resources" / "icons" / "export_robot_map.svg"
 
@@ -98,6 +91,7 @@ class ExportRobotMap(QgsProcessingAlgorithm):
             *window_parameters(),
             *value_parameters(),
             profile_parameter(),
+            *shaping_parameters(),
             *format_parameters(),
             QgsProcessingParameterFileDestination(
                 OUTPUT, "Robot map", "Robot map, text (*.txt);;Robot map, binary (*.rmap)"
@@ -127,10 +121,9 @@ class ExportRobotMap(QgsProcessingAlgorithm):
             reading = read_outlines(plan.sources, plan.site, border, plan.default_height, feedback)
             if not reading.complete:
                 return {}
-            robot_map = marked(build_map(reading.outlines(), plan.window, plan.meta), reading.estimated)
-            text = write_text(robot_map, strict=self.parameterAsBool(parameters, STRICT, context))
-            binary = self.parameterAsEnumString(parameters, FORMAT, context) == BINARY
-            content = encode(text) if binary else text.encode()
+            outlines = shaped_outlines(reading, plan.shaping, plan.window, feedback)
+            robot_map = build_map(outlines, plan.window, plan.meta)
+            text, content = plan.format.written(robot_map)
             if feedback.isCanceled():
                 return {}
             write_whole(plan.target, content)
@@ -169,31 +162,6 @@ def value_parameters() -> list[QgsProcessingParameterDefinition]:
             OUTDOOR_EXPRESSION, "Whether each feature is outdoors (default: true)", optional=True
         ),
     ]
-
-
-def format_parameters() -> list[QgsProcessingParameterDefinition]:
-    """Return the parameters that say how a map is written."""
-    return [
-        QgsProcessingParameterEnum(
-            FORMAT, "Format", options=[TEXT, BINARY], defaultValue=TEXT, usesStaticStrings=True
-        ),
-        QgsProcessingParameterBoolean(
-            STRICT, "Only what the paper's Fig. 2 has: no leading lines, no extras", defaultValue=False
-        ),
-    ]
-
-
-def marked(robot_map: RobotMap, estimated: set[str]) -> RobotMap:
-    """Return the map with the obstacles of the sources in ``estimated`` marked."""
-    return replace(
-        robot_map,
-        obstacles=tuple(
-            replace(obstacle, ext={**obstacle.ext, **ESTIMATED})
-            if obstacle.ext.get("src") in estimated
-            else obstacle
-            for obstacle in robot_map.obstacles
-        ),
-    )
 
 
 def _reported(reading: Reading, robot_map: RobotMap, feedback) -> int:

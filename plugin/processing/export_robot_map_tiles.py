@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from qgis.core import (
     QgsProcessing,
@@ -18,18 +20,19 @@ from qgis.core import (
     QgsWkbTypes,
 )
 
-from ...robot_bridge.robotmap.binary import encode
+from ...robot_bridge.robotmap.builder import Window
 from ...robot_bridge.robotmap.errors import RobotMapError
 from ...robot_bridge.robotmap.index import OutlineIndex
-from ...robot_bridge.robotmap.text import write_text
 from ..errors import FleetError
-from ..sites.reading import Reading, read_outlines
+from ..sites.reading import read_outlines
 from .errors import shown_by_processing
 from .export_plan import OBSTACLES, unopened_layer
-from .export_robot_map import BINARY, FORMAT, STRICT, format_parameters, marked, value_parameters
+from .export_robot_map import value_parameters
 from .fleet_algorithm import FleetAlgorithm, fields_of
 from .map_file import layer_crs
+from .map_format import format_parameters
 from .map_profile import profile_parameter
+from .map_shaping import shaped_outlines, shaping_parameters
 from .map_window import EXTENT, PAPERS_SIDE_M, frame_parameters
 from .sinks import fill, polygon
 from .tile_folder import TileFolder
@@ -88,6 +91,8 @@ class ExportRobotMapTiles(FleetAlgorithm):
     <p><b>Grid</b>: tiles of one size from the left-lower corner of the extent; the last ones reach beyond it.
     <b>Route</b>: tiles centred on the lines of a layer, so close that two that follow each other share the
     overlap. Sizes are in metres along the site's axes.</p>
+    <p><b>Advanced</b>: obstacles are reduced as in <i>Export robot map</i>, before the tiles are cut. The log
+    says how many obstacles and segments the whole area had before and after.</p>
     <p>An obstacle has the same id in every tile that it reaches into. Either every tile and the index are
     there at the end, or, after a cancel or an error, none of them.</p>
     """
@@ -107,6 +112,7 @@ class ExportRobotMapTiles(FleetAlgorithm):
             *frame_parameters(),
             *value_parameters(),
             profile_parameter(),
+            *shaping_parameters(),
             *format_parameters(),
             QgsProcessingParameterFolderDestination(FOLDER, "Folder of the tiles"),
             QgsProcessingParameterFeatureSink(INDEX, "Index of the tiles", kinds.TypeVectorPolygon),
@@ -140,10 +146,15 @@ class ExportRobotMapTiles(FleetAlgorithm):
         with shown_by_processing(), TileFolder(plan.folder) as folder:
             if feedback.isCanceled():
                 return {}
-            reading = read_outlines(plan.sources, plan.site, area_of(plan.tiles), plan.default_height, steps)
+            area = area_of(plan.tiles)
+            reading = read_outlines(plan.sources, plan.site, area, plan.default_height, steps)
             steps.setCurrentStep(1)
-            maker = _TileMaker(plan, reading, *self._writing(parameters, context))
-            if not reading.complete or not maker.make_all(folder, steps):
+            if not reading.complete:
+                return {}
+            outlines = shaped_outlines(reading, plan.shaping, Window.from_bounds(*area), feedback)
+            skip_empty = self.parameterAsBool(parameters, SKIP_EMPTY, context)
+            maker = _TileMaker(plan, reading.warnings, skip_empty)
+            if not maker.make_all(OutlineIndex(outlines), folder, steps):
                 return {}
             folder.publish()
             # Only now, so that no index tells of tiles that are not there.
@@ -155,29 +166,19 @@ class ExportRobotMapTiles(FleetAlgorithm):
         feedback.setProgress(100)
         return {FOLDER: str(plan.folder), INDEX: index, **maker.reported(feedback)}
 
-    def _writing(self, parameters, context) -> tuple[bool, bool, bool]:
-        """Return whether to write binary, to write strictly, and to leave out empty tiles."""
-        return (
-            self.parameterAsEnumString(parameters, FORMAT, context) == BINARY,
-            self.parameterAsBool(parameters, STRICT, context),
-            self.parameterAsBool(parameters, SKIP_EMPTY, context),
-        )
-
 
 class _TileMaker:
     """Makes the tiles of a plan one by one; ``rows`` become the features of the index."""
 
-    def __init__(self, plan: TilePlan, reading: Reading, binary: bool, strict: bool, skip_empty: bool):
-        self._plan, self._reading = plan, reading
-        self._binary, self._strict, self._skip_empty = binary, strict, skip_empty
+    def __init__(self, plan: TilePlan, warnings: Sequence[str], skip_empty: bool):
+        self._plan, self._skip_empty = plan, skip_empty
         self._counts = np.zeros(3, dtype=np.int64)
         # A note about an outline comes with every tile that it touches: said once.
-        self._notes: dict[str, None] = dict.fromkeys(reading.warnings)
+        self._notes: dict[str, None] = dict.fromkeys(warnings)
         self.rows: list = []
 
-    def make_all(self, folder: TileFolder, feedback) -> bool:
+    def make_all(self, index: OutlineIndex, folder: TileFolder, feedback) -> bool:
         """Add every tile to ``folder``; return False when cancelled on the way."""
-        index = OutlineIndex(self._reading.outlines())
         for number, tile in enumerate(self._plan.tiles, 1):
             if feedback.isCanceled():
                 return False
@@ -198,13 +199,12 @@ class _TileMaker:
         return dict(zip(NUMBERS, (len(self.rows), obstacles, segments, size, warnings), strict=True))
 
     def _make(self, tile: Tile, index: OutlineIndex, folder: TileFolder) -> None:
-        robot_map = marked(index.map_of(tile.window, self._plan.meta), self._reading.estimated)
+        robot_map = index.map_of(tile.window, self._plan.meta)
         self._notes.update(dict.fromkeys(robot_map.warnings))
         if self._skip_empty and not robot_map.obstacles:
             return
-        text = write_text(robot_map, strict=self._strict)
-        content = encode(text) if self._binary else text.encode()
-        name = f"{tile.name}.{'rmap' if self._binary else 'txt'}"
+        content = self._plan.format.written(robot_map)[1]
+        name = f"{tile.name}.{self._plan.format.suffix}"
         folder.add(name, content)
         counts = (len(robot_map.obstacles), robot_map.segment_count, len(content))
         self._counts += counts

@@ -1,0 +1,161 @@
+"""The parameters that reduce outlines to what a robot needs, before a map is built of them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+from qgis.core import (
+    QgsProcessingAlgorithm,
+    QgsProcessingContext,
+    QgsProcessingFeedback,
+    QgsProcessingParameterBoolean,
+    QgsProcessingParameterDefinition,
+    QgsProcessingParameterNumber,
+)
+
+from ...robot_bridge.robotmap.builder import Window, build_map
+from ...robot_bridge.robotmap.dissolving import shapely_module
+from ...robot_bridge.robotmap.outlines import Outlines
+from ...robot_bridge.robotmap.shaping import Shaping, shaped
+from ..sites.reading import Reading
+from .errors import ParameterError
+
+PLANE_LOW, PLANE_HIGH, HEIGHT_STEP = "PLANE_LOW", "PLANE_HIGH", "HEIGHT_STEP"
+DISSOLVE, CHAIN, TOLERANCE, SHORTEST = "DISSOLVE", "CHAIN", "TOLERANCE", "SHORTEST"
+ESTIMATED = {"h": "est"}
+"""The extra of an obstacle whose height nobody knows."""
+
+_UNSHAPED = Shaping()
+_HEIGHTS = {
+    PLANE_LOW: (
+        "Robot's plane: from this height above the ground [m]",
+        "What is not higher than this is left out: the robot drives over it. Stairs and ramps stay. Give the "
+        "lower and the upper height together, or neither.",
+    ),
+    PLANE_HIGH: (
+        "Robot's plane: up to this height above the ground [m]",
+        "What begins at this height or above it is left out: the robot drives under it.",
+    ),
+}
+_FLAGS = {
+    DISSOLVE: (
+        "Leave out walls between buildings that touch and lines inside or along buildings",
+        "No robot outside can meet them. What stays keeps its height and its source. Needs the Python "
+        "package shapely 2.",
+    ),
+    CHAIN: (
+        "Join lines that meet end to end into one obstacle",
+        "Only lines that are alike in height, label and all else. The source of a joined line is that of its "
+        "first part and how many others are in it, such as walls:3+7.",
+    ),
+}
+_LENGTHS = {
+    TOLERANCE: (
+        "Fewer corners: how far an outline may then be from the drawn one [m]",
+        "0 is off. An outline that would cross itself stays as it is. Needs the Python package shapely 2.",
+    ),
+    SHORTEST: (
+        "Shortest segment: corners nearer than this to the one before are left out [m]",
+        "0 is off. Ends of lines stay and rings keep three corners. Needs the Python package shapely 2.",
+    ),
+    HEIGHT_STEP: (
+        "Heights are rounded up to a multiple of this [m]",
+        "0 is off. Half a metre makes a compact map smaller still, and no obstacle lower than it is.",
+    ),
+}
+_REAL = QgsProcessingParameterNumber.Type.Double
+
+
+def shaping_parameters() -> list[QgsProcessingParameterDefinition]:
+    """Return the parameters: advanced, each off unless it is asked for."""
+    described: list[tuple[QgsProcessingParameterDefinition, str]] = [
+        *((QgsProcessingParameterNumber(n, t, _REAL, optional=True), h) for n, (t, h) in _HEIGHTS.items()),
+        *((QgsProcessingParameterBoolean(n, t, defaultValue=False), h) for n, (t, h) in _FLAGS.items()),
+        *((QgsProcessingParameterNumber(n, t, _REAL, 0.0), h) for n, (t, h) in _LENGTHS.items()),
+    ]
+    for parameter, help in described:
+        parameter.setHelp(help)
+        parameter.setFlags(parameter.flags() | QgsProcessingParameterDefinition.Flag.FlagAdvanced)
+    return [parameter for parameter, _ in described]
+
+
+def shaping_of(
+    algorithm: QgsProcessingAlgorithm, parameters: Mapping[str, Any], context: QgsProcessingContext
+) -> Shaping:
+    """Return what is asked for.
+
+    :raises ParameterError: when a value cannot be used.
+    :raises MissingGeometryError: when something asked for needs a package that this Python does not have.
+    """
+    lengths = {name: algorithm.parameterAsDouble(parameters, name, context) for name in _LENGTHS}
+    for name, value in lengths.items():
+        if not 0 <= value < math.inf:
+            raise ParameterError(f"{name} is {value:g}: give a number of metres of 0 or more.")
+    dissolve, chain = (algorithm.parameterAsBool(parameters, name, context) for name in _FLAGS)
+    if dissolve or lengths[TOLERANCE] or lengths[SHORTEST]:
+        _check_shapely()
+    return Shaping(
+        plane=_plane(algorithm, parameters, context),
+        height_step=lengths[HEIGHT_STEP],
+        dissolve=dissolve,
+        chain=chain,
+        tolerance=lengths[TOLERANCE],
+        shortest=lengths[SHORTEST],
+    )
+
+
+def shaped_outlines(
+    reading: Reading, shaping: Shaping, area: Window, feedback: QgsProcessingFeedback
+) -> Outlines:
+    """Return the outlines of which maps are built, and say what ``shaping`` has changed in ``area``.
+
+    Heights that nobody knows are marked before, so that lines are joined only with their like.
+
+    :raises MissingGeometryError: when a package is missing.
+    """
+    outlines = Outlines.from_rows(
+        [
+            replace(row, ext={**row.ext, **ESTIMATED}) if row.source in reading.estimated else row
+            for row in reading.rows
+        ]
+    )
+    if shaping == _UNSHAPED:
+        return outlines
+    made = shaped(outlines, shaping)
+    before, after = (_counts(some, area) for some in (outlines, made))
+    feedback.pushInfo(
+        f"Reduced from {before[0]} obstacles with {before[1]} segments to {after[0]} with {after[1]}"
+    )
+    return made
+
+
+def _counts(outlines: Outlines, area: Window) -> tuple[int, int]:
+    robot_map = build_map(outlines, area)
+    return len(robot_map.obstacles), robot_map.segment_count
+
+
+def _plane(algorithm, parameters, context) -> tuple[float, float] | None:
+    given = [parameters.get(name) not in (None, "") for name in _HEIGHTS]
+    if not any(given):
+        return None
+    if not all(given):
+        missing, other = (PLANE_HIGH, PLANE_LOW) if given[0] else (PLANE_LOW, PLANE_HIGH)
+        raise ParameterError(f"{other} is given and {missing} is not: give both heights in metres, or none.")
+    low, high = (algorithm.parameterAsDouble(parameters, name, context) for name in _HEIGHTS)
+    if not -math.inf < low < high < math.inf:
+        raise ParameterError(
+            f"PLANE_LOW is {low:g} and PLANE_HIGH {high:g}: give the lower and the upper height in metres."
+        )
+    return low, high
+
+
+def _check_shapely() -> None:
+    version = shapely_module().__version__
+    if int(version.partition(".")[0]) < 2:
+        raise ParameterError(
+            f"DISSOLVE, TOLERANCE and SHORTEST need the Python package shapely 2, and {version} is installed "
+            "here: install a newer one (python3 -m pip install 'shapely>=2'), or leave them off."
+        )

@@ -1,0 +1,221 @@
+"""What reduces an export, and the compact format, by ``processing.run`` and by ``qgis_process``."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from fleet_supervisor.robot_bridge.robotmap.binary import decode, decode_text
+from fleet_supervisor.robot_bridge.robotmap.model import ShapeType
+from qgis.core import (
+    QgsProcessingContext,
+    QgsProcessingException,
+    QgsProcessingParameterDefinition,
+    QgsProject,
+)
+
+HERE = {"CENTER": "20,20", "WIDTH": 80, "HEIGHT": 80}
+LEFT = "Polygon((10 10, 20 10, 20 20, 10 20, 10 10))"
+RIGHT = "Polygon((20 10, 30 10, 30 20, 20 20, 20 10))"
+SHAPING = ("PLANE_LOW", "PLANE_HIGH", "HEIGHT_STEP", "DISSOLVE", "CHAIN", "TOLERANCE", "SHORTEST")
+
+
+@pytest.fixture
+def houses(make_layer):
+    """Two houses with a wall between them."""
+    return make_layer("houses", "Polygon", features=[(LEFT, 4.0), (RIGHT, 6.0)])
+
+
+@pytest.fixture
+def lines(make_layer):
+    """Return a layer of lines of height 1.5 m, or of the height given after the WKT."""
+
+    def make(*wkts):
+        return make_layer("walls", features=[(w, 1.5) if isinstance(w, str) else w for w in wkts])
+
+    return make
+
+
+def segments(robot_map):
+    """Return every segment as (n, 4), in the order of the map."""
+    return np.concatenate([np.hstack([o.a, o.b]) for o in robot_map.obstacles]).tolist()
+
+
+def test_nothing_is_reduced_unless_asked_for(export, houses):
+    done = export(houses, **HERE)
+    assert done.results["SEGMENT_COUNT"] == 8
+    assert "Reduced" not in done.log
+
+
+@pytest.mark.parametrize("name", ["exportrobotmap", "exportrobotmaptiles"])
+def test_each_option_is_advanced_and_explained(provider, name):
+    for option in SHAPING:
+        definition = provider.algorithm(name).parameterDefinition(option)
+        assert definition.flags() & QgsProcessingParameterDefinition.Flag.FlagAdvanced, option
+        assert len(definition.help()) > 40, option
+        assert not definition.defaultValue(), option
+
+
+def test_what_ends_below_the_plane_is_left_out_and_said(export, lines):
+    kerb, wall = ("LineString(0 5, 50 5)", 0.3), ("LineString(0 8, 50 8)", 0.31)
+    done = export(lines(kerb, wall), PLANE_LOW=0.3, PLANE_HIGH=1.0, **HERE)
+    assert [obstacle.ext["src"] for obstacle in done.map.obstacles] == ["walls:2"]
+    assert "Reduced from 2 obstacles with 2 segments to 1 with 1" in done.log
+
+
+def test_heights_are_rounded_up_in_steps(export, lines):
+    layer = lines(("LineString(0 5, 50 5)", 1.5), ("LineString(0 8, 50 8)", 1.51))
+    robot_map = export(layer, HEIGHT_STEP=0.5, **HERE).map
+    assert [obstacle.height.tolist() for obstacle in robot_map.obstacles] == [[1.5], [2.0]]
+
+
+def test_the_wall_between_two_houses_is_dissolved_and_each_part_keeps_its_house(export, houses):
+    done = export(houses, DISSOLVE=True, **HERE)
+    assert not [s for s in segments(done.map) if s[0] == s[2] == 20]
+    assert done.results["SEGMENT_COUNT"] == 6
+    assert {(o.ext["src"], o.height[0]) for o in done.map.obstacles} == {("houses:1", 4.0), ("houses:2", 6.0)}
+    assert {o.shape_type for o in done.map.obstacles} == {ShapeType.OPEN_POLYGON}
+    assert "Reduced from 2 obstacles with 8 segments to 2 with 6" in done.log
+
+
+def test_lines_that_meet_are_chained(export, lines):
+    done = export(lines("LineString(0 5, 9 5)", "LineString(9 5, 9 9)"), CHAIN=True, **HERE)
+    (obstacle,) = done.map.obstacles
+    assert obstacle.ext["src"] == "walls:1+1"
+    assert segments(done.map) == [[0, 5, 9, 5], [9, 5, 9, 9]]
+    assert "Reduced from 2 obstacles with 2 segments to 1 with 2" in done.log
+
+
+def test_a_known_and_an_estimated_height_are_not_chained_and_a_chain_of_estimates_says_so(export, lines):
+    first, second = "LineString(0 5, 9 5)", "LineString(9 5, 9 9)"
+    known = export(lines((first, 3.0), (second, None)), CHAIN=True, **HERE)
+    assert [obstacle.ext.get("h") for obstacle in known.map.obstacles] == [None, "est"]
+    (estimated,) = export(lines((first, None), (second, None)), CHAIN=True, **HERE).map.obstacles
+    assert estimated.ext == {"src": "walls:1+1", "h": "est"}
+
+
+def test_a_tolerance_leaves_out_corners_within_it_only(export, lines):
+    layer = lines("LineString(0 5, 10 5.04, 20 5)", "LineString(0 9, 10 9.06, 20 9)")
+    assert export(layer, TOLERANCE=0.05, **HERE).results["SEGMENT_COUNT"] == 3
+
+
+def test_segments_shorter_than_the_shortest_are_left_out(export, lines):
+    layer = lines("LineString(0 5, 5 5, 5 5.09, 20 9)", "LineString(0 15, 5 15, 5 15.11, 20 19)")
+    assert export(layer, SHORTEST=0.1, **HERE).results["SEGMENT_COUNT"] == 5
+
+
+@pytest.mark.parametrize("option", [{"DISSOLVE": True}, {"CHAIN": True}, {"TOLERANCE": 1, "SHORTEST": 1}])
+def test_where_there_is_nothing_to_reduce_the_map_is_as_without(export, make_layer, lines, option):
+    wall = lines("LineString(0 5, 50 5)")
+    assert export(wall, **HERE, **option).text == export(wall, **HERE).text
+    nothing = export(make_layer("none", features=[]), **HERE, **option)
+    assert nothing.results["OBSTACLE_COUNT"] == 0
+
+
+@pytest.mark.parametrize(
+    ("parameters", "words"),
+    [
+        ({"TOLERANCE": -1}, "TOLERANCE is -1: give a number of metres of 0 or more"),
+        ({"SHORTEST": float("nan")}, "SHORTEST is nan: give a number of metres"),
+        ({"HEIGHT_STEP": -0.5}, "HEIGHT_STEP is -0.5: give a number of metres"),
+        ({"PLANE_LOW": 0.3}, "PLANE_LOW is given and PLANE_HIGH is not: give both"),
+        ({"PLANE_HIGH": 1}, "PLANE_HIGH is given and PLANE_LOW is not: give both"),
+        ({"PLANE_LOW": 1, "PLANE_HIGH": 1}, "PLANE_LOW is 1 and PLANE_HIGH 1: give the lower"),
+    ],
+)
+def test_a_value_that_cannot_be_used_is_named_before_the_run(provider, lines, parameters, words):
+    everything = {"OBSTACLES": [lines("LineString(0 5, 50 5)")], "OUTPUT": "map.txt", **HERE, **parameters}
+    context = QgsProcessingContext()
+    context.setProject(QgsProject())
+    fine, message = provider.algorithm("exportrobotmap").create().checkParameterValues(everything, context)
+    assert not fine and words in message
+
+
+@pytest.mark.parametrize("strict", [False, True])
+def test_compact_holds_the_very_text(export, houses, strict):
+    parameters = {**HERE, "STRICT": strict}
+    text = export(houses, **parameters).text
+    assert export(houses, FORMAT="binary", **parameters).file.read_bytes()[5] == 1
+    done = export(houses, FORMAT="compact", **parameters)
+    assert done.file.read_bytes()[5] == 2
+    assert done.text == text
+    assert done.results["BYTES"] == done.file.stat().st_size
+    assert f"{done.results['BYTES']} bytes in binary" in done.log
+    assert ("src=" in text, "%crs" in text) == (not strict, not strict)
+
+
+def test_a_format_that_is_none_is_refused(export, houses):
+    with pytest.raises(QgsProcessingException, match="FORMAT"):
+        export(houses, FORMAT="binary, compact", **HERE)
+
+
+def test_tiles_are_reduced_before_they_are_cut(provider, houses, listener, tmp_path):
+    import processing
+
+    context = QgsProcessingContext()
+    context.setProject(QgsProject())
+    results = processing.run(
+        "fleet:exportrobotmaptiles",
+        {
+            "OBSTACLES": [houses],
+            "EXTENT": "0,40,0,40",
+            "TILE_WIDTH": 20,
+            "TILE_HEIGHT": 40,
+            "OVERLAP": 0,
+            "DISSOLVE": True,
+            "FORMAT": "compact",
+            "OUTPUT": str(tmp_path / "out"),
+            "INDEX": "memory:",
+        },
+        context=context,
+        feedback=listener,
+    )
+    files = sorted((tmp_path / "out").iterdir())
+    assert [file.suffix for file in files] == [".rmap", ".rmap"]
+    assert {file.read_bytes()[5] for file in files} == {2}
+    made = [s for file in files for s in segments(decode(file.read_bytes()))]
+    assert len(made) == 6 and not [s for s in made if s[0] == s[2] == 20]
+    assert results["SEGMENT_COUNT"] == 6
+    assert "Reduced from 2 obstacles with 8 segments to 2 with 6" in listener.infos
+
+
+@pytest.fixture(scope="module")
+def export_campus(data, export_by_process):
+    def run(**parameters):
+        file = data / "upc_campus_nord" / "upc_campus_nord_local.gpkg"
+        layers = [f"{file}|layername={name}" for name in ("buildings", "walls", "furniture")]
+        return export_by_process(*layers, CENTER="48,48", WIDTH=104, HEIGHT=104, **parameters)
+
+    return run
+
+
+def test_the_campus_dissolved_and_chained_is_half_as_large(export_campus):
+    done, file = export_campus(DISSOLVE="true", CHAIN="true")
+    assert done.status == 0, done.said
+    assert "Reduced from 1496 obstacles with 2139 segments to 473 with 1362" in done.said
+    assert done.result("SEGMENT_COUNT") == 1362
+    assert done.result("BYTES_PER_M2") < 7
+    compact, binary = export_campus(DISSOLVE="true", CHAIN="true", FORMAT="compact", output="campus.rmap")
+    assert decode_text(binary.read_bytes()) == file.read_text()
+    assert compact.result("BYTES_PER_M2") < 0.4
+
+
+@pytest.mark.parametrize(
+    ("parameters", "words"),
+    [
+        ({"DISSOLVE": "true"}, "need the Python package shapely 2"),
+        ({"FORMAT": "compact"}, "needs the Python"),
+    ],
+)
+def test_a_missing_package_is_named_before_the_run_and_nothing_is_written(export_campus, parameters, words):
+    done, file = export_campus(**parameters, packages=False)
+    assert done.status != 0
+    assert words in done.said and "Traceback" not in done.said
+    # What QGIS prints when it turns parameters down, before it reads a layer.
+    assert "did not run" in done.said or "Unable to execute" in done.said or "ERROR" in done.said
+    assert not file.exists()
+
+
+def test_without_packages_what_needs_none_still_runs(export_campus):
+    done, _ = export_campus(CHAIN="true", PLANE_LOW=0.3, PLANE_HIGH=1, HEIGHT_STEP=0.5, packages=False)
+    assert done.status == 0, done.said
+    assert "Reduced from 1496 obstacles with 2139 segments to" in done.said
