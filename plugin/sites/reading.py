@@ -5,17 +5,22 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
+import numpy as np
 from qgis.core import QgsFeature, QgsFeedback, QgsGeometry, QgsRectangle, QgsWkbTypes
 
 from ...robot_bridge.robotmap.outlines import OutlineRow, Outlines
 from .feature_values import FeatureValues
 from .obstacle_source import ObstacleSource
 from .placing import Bounds, LayerPlacing, PlacingError, SitePlacing
+from .ramps import normal_extra
 from .roles import OBSTACLE_ROLES, RAMP, STAIRS
 from .shapes import Shape, Shapes, posts_of, shapes_of
 
 NAMED = 5
 """How many features a warning about a whole layer names."""
+
+ESTIMATED = {"h": "est"}
+"""The extra of an obstacle whose height nobody knows."""
 
 
 @dataclass
@@ -144,22 +149,35 @@ class _LayerReader:
             reading.estimated.add(source)
         if any(_odd(shape, self.source.role) for shape in shapes):
             self._odd_for_role.append(feature.id())
-        reading.rows.extend(
-            OutlineRow(
-                points=self._placing.to_site(shape.points),
-                shape_type=shape.shape_type,
-                height=values.height,
-                semantics=values.semantics,
-                source=source,
-                courtyard=shape.courtyard,
-                outdoor=values.outdoor,
+        notes, ext = list(values.notes), {}
+        for shape in shapes:
+            points = self._placing.to_site(shape.points)
+            if not shape.courtyard:
+                # A courtyard is in the surface of the ring around it and says the same.
+                ext = _extras(shape, points, values.estimated, notes)
+            reading.rows.append(
+                OutlineRow(
+                    points=points,
+                    shape_type=shape.shape_type,
+                    height=values.height,
+                    semantics=values.semantics,
+                    source=source,
+                    courtyard=shape.courtyard,
+                    outdoor=values.outdoor,
+                    ext=ext,
+                )
             )
-            for shape in shapes
-        )
-        return values.notes
+        return notes
 
     def _named(self, feature: QgsFeature, note: str) -> str:
         return f"Layer {self.source.name}, feature {feature.id()}: {note}"
+
+
+def _extras(shape: Shape, points: np.ndarray, estimated: bool, notes: list[str]) -> dict[str, str]:
+    """Return what else ``shape`` has to say, whose ``points`` are (n, 2) in the site frame."""
+    if shape.z is not None:
+        return normal_extra(points, shape.z, notes)
+    return dict(ESTIMATED) if estimated else {}
 
 
 def _odd(shape: Shape, role: str) -> bool:

@@ -9,6 +9,7 @@ from qgis.core import QgsAbstractGeometry, QgsGeometry
 
 from ...robot_bridge.robotmap.model import ShapeType
 from .parts import parts_of
+from .ramps import corner_heights
 from .roles import RAMP, STAIRS
 from .soundness import lines_with_length, risers_of, sound_polygons
 
@@ -17,11 +18,15 @@ SAGITTA_M = 0.02
 
 
 class Shape(NamedTuple):
-    """One outline: ``points`` is (n, 2) in the geometry's coordinates, rings repeat their first point."""
+    """One outline: ``points`` is (n, 2) in the geometry's coordinates, rings repeat their first point.
+
+    ``z`` is (n,), the height of each point of a ramp in metres, NaN where the geometry does not say it.
+    """
 
     points: np.ndarray
     shape_type: ShapeType
     courtyard: bool = False
+    z: np.ndarray | None = None
 
 
 class Shapes(NamedTuple):
@@ -54,6 +59,8 @@ def shapes_of(geometry: QgsGeometry, role: str = "") -> Shapes:
     notes = [*parts.notes, *polygon_notes, *line_notes]
     closed = _closed_type(role, curved)
     shapes = [Shape(ring, closed, k > 0) for polygon in polygons for k, ring in enumerate(polygon)]
+    if role == RAMP:
+        shapes = _with_heights(shapes, geometry)
     if role == STAIRS and len(lines) > 1:
         risers, bent = risers_of(lines)
         return Shapes([*shapes, Shape(risers, ShapeType.STAIRS)], [*notes, *bent])
@@ -72,6 +79,14 @@ def posts_of(geometry: QgsGeometry, across: float) -> Shapes:
     corners = np.column_stack([np.cos(angles), np.sin(angles)]) * (across / 2 / np.cos(np.radians(22.5)))
     ring = np.concatenate([corners, corners[:1]])
     return Shapes([Shape(point + ring, ShapeType.CLOSED_POLYGON) for point in points], [])
+
+
+def _with_heights(ramps: list[Shape], geometry: QgsGeometry) -> list[Shape]:
+    heights = corner_heights(geometry)
+    return [
+        ramp._replace(z=np.array([heights.get((x, y), np.nan) for x, y in ramp.points.tolist()]))
+        for ramp in ramps
+    ]
 
 
 def _closed_type(role: str, curved: bool) -> ShapeType:

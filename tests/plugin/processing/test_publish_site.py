@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from fleet_supervisor.plugin.sites.roles import LayerExpressions, LayerSetup, keep_setup
 from fleet_supervisor.robot_bridge.robotmap.binary import decode_text
-from fleet_supervisor.robot_bridge.robotmap.text import read_text
+from fleet_supervisor.robot_bridge.robotmap.text import read_text, write_text
 from fleet_supervisor.robot_bridge.sites.errors import LayerError
 from fleet_supervisor.robot_bridge.sites.publication import read_site
 from qgis.core import QgsProcessingContext, QgsProcessingException, QgsProject
@@ -228,10 +228,30 @@ def test_a_local_crs_is_refused_with_the_way_out(refused, publish, make_layer):
     np.testing.assert_allclose(site.outlines.coordinates, [[0, 0], [5, 0]], atol=1e-6)
 
 
+def test_what_a_robot_is_told_of_estimated_heights_and_ramps_outlives_publishing(publish, make_layer):
+    slope = "PolygonZ((30 0 5, 40 0 5, 40 2 6, 30 2 6, 30 0 5))"
+    ramp = make_layer("ramp", "PolygonZ", features=[(slope,)])
+    keep_setup(ramp, LayerSetup("ramp"))
+    house = make_layer("house", "Polygon", features=[(RING,)])
+    wall = make_layer("wall", fields="&field=height:double", features=[("LineString(0 20, 9 20)", 2.0)])
+    site = read_site(publish(OBSTACLES=[house, wall, ramp]).folder)
+    text = write_text(site.map_around(20.0, 10.0, 3600.0))
+    assert text.count("src=house:1,h=est;") == 2
+    assert ";wall;src=wall:1;" in text
+    assert ";ramp;src=ramp:1,n=0,-0.4472,0.8944;" in text
+
+
 def shapes(robot_map):
     """Return what a map says, whatever its obstacles are numbered."""
     return sorted(
-        (o.semantics, o.ext.get("src"), int(o.shape_type), o.height.tolist(), o.a.tolist(), o.b.tolist())
+        (
+            o.semantics,
+            sorted(o.ext.items()),
+            int(o.shape_type),
+            o.height.tolist(),
+            o.a.tolist(),
+            o.b.tolist(),
+        )
         for o in robot_map.obstacles
     )
 
@@ -293,6 +313,8 @@ def test_helsinki_is_published_by_its_profile_with_every_loss_named(qgis_process
     assert {"building", "retaining_wall", "bollard"} <= kinds
     assert any(warning.startswith("Layer buildings, feature ") for warning in done.warnings)
     assert any("heights are not known and estimated as 3 m" in warning for warning in done.warnings)
+    estimated = [row.height for row in site.outlines.rows() if row.ext == {"h": "est"}]
+    assert len(estimated) > 100 and set(estimated) == {3.0}
 
 
 def test_the_papers_campus_in_local_metres_is_published_by_its_profile(qgis_process, data, tmp_path):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import pytest
 import shapely
 from fleet_supervisor.plugin.sites.errors import ExpressionError, LayerTypeError
@@ -42,6 +44,7 @@ def test_text_is_a_height_where_it_is_a_number_of_metres(make_layer, read):
         "Layer walls: 4 heights are not known and estimated as 3 m (features 4, 5, 6, 7)",
     ]
     assert reading.estimated == {"walls:4", "walls:5", "walls:6", "walls:7"}
+    assert [row.ext for row in reading.rows] == [{}] * 3 + [{"h": "est"}] * 4
 
 
 def test_expressions_see_the_feature_and_the_layer(make_layer, read):
@@ -130,6 +133,67 @@ def test_a_ramp_has_no_height_and_a_flight_of_stairs_the_height_of_a_riser(make_
         (ShapeType.STAIRS, 0.17),
     ]
     assert reading.warnings == []
+
+
+SLOPE = "PolygonZ((0 0 5, 10 0 5, 10 2 6, 0 2 6, 0 0 5))"
+
+
+@pytest.mark.parametrize(
+    ("rotation", "normal"), [(0.0, (0, -0.4472, 0.8944)), (math.pi / 2, (-0.4472, 0, 0.8944))]
+)
+def test_a_ramp_drawn_in_3d_says_in_the_site_frame_which_way_it_faces(make_layer, read, rotation, normal):
+    ramp = make_layer("ramp", "PolygonZ", features=[(SLOPE,)])
+    set_role(ramp, RAMP)
+    reading = read(ramp, rotation=rotation)
+    (row,) = reading.rows
+    assert reading.warnings == []
+    assert tuple(float(n) for n in row.ext["n"].split(",")) == pytest.approx(normal, abs=1e-4)
+
+
+def test_each_part_of_a_ramp_has_its_own_normal_and_a_hole_that_of_its_ring(make_layer, read):
+    parts = (
+        "((0 0 0, 10 0 0, 10 9 9, 0 9 9, 0 0 0), (2 2 2, 2 4 4, 4 4 4, 2 2 2))",
+        "((20 0 0, 29 0 9, 29 5 9, 20 5 0, 20 0 0))",
+    )
+    ramp = make_layer("ramp", "MultiPolygonZ", features=[(f"MultiPolygonZ({', '.join(parts)})",)])
+    set_role(ramp, RAMP)
+    rows = read(ramp).rows
+    assert [(row.courtyard, row.ext["n"]) for row in rows] == [
+        (False, "0,-0.7071,0.7071"),
+        (True, "0,-0.7071,0.7071"),
+        (False, "-0.7071,0,0.7071"),
+    ]
+
+
+@pytest.mark.parametrize(
+    "shape",
+    [
+        SQUARE,
+        "PolygonZ((0 0 7, 10 0 7, 10 2 7, 0 2 7, 0 0 7))",
+        "PolygonZ((0 0 5, 10 0 5, 10 2 6, 0 2 6, 0 0 4))",
+        "PolygonZ((0 0 0, 10 2 1, 10 0 0, 0 2 1, 0 0 0))",
+    ],
+)
+def test_a_ramp_without_a_height_for_each_corner_has_no_normal(make_layer, read, shape):
+    ramp = make_layer("ramp", shape.partition("(")[0], features=[(shape,)])
+    set_role(ramp, RAMP)
+    rows = read(ramp).rows
+    assert rows and all(row.ext == {} for row in rows)
+
+
+def test_a_ramp_that_stands_upright_is_named(make_layer, read):
+    wall = "PolygonZ((0 0 0, 10 0 0, 10 0.001 99, 0 0.001 99, 0 0 0))"
+    ramp = make_layer("ramp", "PolygonZ", features=[(wall,)])
+    set_role(ramp, RAMP)
+    reading = read(ramp)
+    assert [row.ext for row in reading.rows] == [{}]
+    assert reading.warnings == [
+        "Layer ramp, feature 1: its corners span no surface that one can drive on; its normal is left out"
+    ]
+
+
+def test_the_z_of_what_is_no_ramp_says_nothing(make_layer, read):
+    assert read(make_layer("house", "PolygonZ", fields=HEIGHT, features=[(SLOPE, 3.0)])).rows[0].ext == {}
 
 
 def test_layers_whose_role_does_not_fit_are_named(make_layer, read):
