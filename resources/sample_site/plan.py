@@ -38,6 +38,15 @@ class Ramp:
     run: float
     up_deg: float
 
+    @property
+    def slope(self) -> shapely.Polygon:
+        """The outline in 3D: metres above the foot of the ramp."""
+        up = np.array([math.cos(math.radians(self.up_deg)), math.sin(math.radians(self.up_deg))])
+        outline = shapely.get_coordinates(self.item.geometry)
+        along = outline @ up
+        z = self.rise * (along - along.min()) / self.run
+        return shapely.Polygon(np.column_stack([outline, np.round(z, 3)]))
+
 
 @dataclass(frozen=True)
 class Plan:

@@ -9,6 +9,7 @@ import numpy as np
 import shapely
 from plan import CRS, HEIGHT, ORIGIN, SITE_ID, SITE_NAME, WIDTH, Item, Plan
 
+from robot_bridge.robotmap.chords import ramp_normal
 from robot_bridge.robotmap.model import ShapeType
 from robot_bridge.robotmap.outlines import OutlineRow, Outlines
 from robot_bridge.sites.features import Area, Centreline
@@ -43,6 +44,10 @@ def publish(folder: Path, plan: Plan) -> None:
 
 def obstacle_rows(plan: Plan) -> Iterator[OutlineRow]:
     """Yield every outline that a robot can run into, named after its layer and its place in it."""
+    normals = {
+        ramp.item.name: {"n": ramp_normal(shapely.get_coordinates(ramp.slope, include_z=True))}
+        for ramp in plan.ramps
+    }
     kinds = {
         "buildings": ("building", ShapeType.CLOSED_POLYGON, plan.buildings),
         "walls": ("wall", ShapeType.OPEN_POLYGON, plan.walls),
@@ -62,6 +67,7 @@ def obstacle_rows(plan: Plan) -> Iterator[OutlineRow]:
                     semantics=f"{word},{item.name}",
                     source=f"{layer}:{number}",
                     courtyard=k > 0,
+                    ext=normals.get(item.name, {}),
                 )
 
 

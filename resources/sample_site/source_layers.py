@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import shapely
 from plan import CRS, Item, Plan
 
@@ -43,14 +44,14 @@ def _objects(name: str, kind: str, items: Sequence[Item], frame: SiteFrame) -> L
 
 def _ramps(plan: Plan, frame: SiteFrame) -> Layer:
     """Return the ramps; ``up_deg`` is the direction of ascent, counter-clockwise from the CRS's x axis."""
-    spec = LayerSpec("ramp", "Polygon", {"name": str, "rise_m": float, "slope_pct": float, "up_deg": float})
+    spec = LayerSpec("ramp", "Polygon Z", {"name": str, "rise_m": float, "slope_pct": float, "up_deg": float})
     values = {
         "name": [ramp.item.name for ramp in plan.ramps],
         "rise_m": [ramp.rise for ramp in plan.ramps],
         "slope_pct": [round(100 * ramp.rise / ramp.run, 1) for ramp in plan.ramps],
         "up_deg": [ramp.up_deg for ramp in plan.ramps],
     }
-    return layer_of(spec, _placed([ramp.item for ramp in plan.ramps], frame), values)
+    return layer_of(spec, [_placed_in_3d(ramp.slope, frame) for ramp in plan.ramps], values)
 
 
 def _centrelines(plan: Plan, frame: SiteFrame) -> Layer:
@@ -77,3 +78,8 @@ def _keepouts(plan: Plan, frame: SiteFrame) -> Layer:
 
 def _placed(items: Sequence[Item], frame: SiteFrame) -> list[Any]:
     return [shapely.transform(item.geometry, frame.to_crs) for item in items]
+
+
+def _placed_in_3d(slope: shapely.Polygon, frame: SiteFrame) -> shapely.Polygon:
+    corners = shapely.get_coordinates(slope, include_z=True)
+    return shapely.Polygon(np.column_stack([frame.to_crs(corners[:, :2]), corners[:, 2]]))

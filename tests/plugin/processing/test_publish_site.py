@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from fleet_supervisor.plugin.sites.roles import LayerExpressions, LayerSetup, keep_setup
 from fleet_supervisor.robot_bridge.robotmap.binary import decode_text
+from fleet_supervisor.robot_bridge.robotmap.model import ShapeType
 from fleet_supervisor.robot_bridge.robotmap.text import read_text, write_text
 from fleet_supervisor.robot_bridge.sites.errors import LayerError
 from fleet_supervisor.robot_bridge.sites.publication import read_site
@@ -296,6 +297,8 @@ def test_the_map_of_a_publication_is_the_map_exported_from_the_layers(
     exported = read_text((tmp_path / "map.txt").read_text())
     published = read_site(folder).whole_map()
     assert len(shapes(published)) > 40
+    (ramp,) = [o for o in published.obstacles if o.shape_type == ShapeType.RAMP]
+    assert ramp.ext["n"] == "0.083,0,0.9965"
     assert shapes(exported) == shapes(published)
     assert exported.border == published.border
 

@@ -41,6 +41,7 @@ def test_the_repository_holds_what_the_script_makes(workshop, sample_site):
     assert made.settings == kept.settings
     assert made.outlines.coordinates.tolist() == kept.outlines.coordinates.tolist()
     assert list(made.outlines.semantics) == list(kept.outlines.semantics)
+    assert made.outlines.ext == kept.outlines.ext
     assert [road.points.tolist() for road in made.centrelines] == [
         road.points.tolist() for road in kept.centrelines
     ]

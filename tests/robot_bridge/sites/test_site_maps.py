@@ -64,6 +64,12 @@ def test_stairs_are_risers_of_15_cm_that_end_flat(site):
     assert stairs.height[-1] == 0.0
 
 
+def test_get_map_says_which_way_the_ramp_faces(site):
+    text = write_text(site.map_around(178.0, 40.0, 400.0))
+    # It climbs 1.05 m in 12.6 m towards the west.
+    assert ";ramp,Terrace ramp;src=ramp:1,n=0.083,0,0.9965;" in text
+
+
 @pytest.mark.parametrize("area", [0.0, -4.0, float("nan"), float("inf")])
 def test_an_area_that_is_none_is_refused(site, area):
     with pytest.raises(WindowError):
