@@ -30,6 +30,7 @@ from .map_format import MapFormat, format_of
 from .map_profile import setups_of
 from .map_shaping import shaping_of
 from .map_window import LOCAL, SITE_CRS, map_window, site_frame
+from .obstacle_feet import BASE_EXPRESSION, check_feet
 from .whole_file import OutputError
 
 OBSTACLES, OUTPUT = "OBSTACLES", "OUTPUT"
@@ -47,6 +48,7 @@ class ObstaclePlan:
     site: SitePlacing
     default_height: float
     shaping: Shaping
+    base_expression: str
     format: MapFormat
 
     @property
@@ -106,11 +108,14 @@ def obstacle_plan_of(
     local = algorithm.parameterAsBool(parameters, LOCAL, context)
     site = SitePlacing(crs, frame, context.transformContext(), local)
     check_sources(sources, site)
+    shaping = shaping_of(algorithm, parameters, context)
+    base = _base_expression(algorithm, parameters, context, sources, shaping)
     return ObstaclePlan(
         sources,
         site,
         default_height(algorithm, parameters, context),
-        shaping_of(algorithm, parameters, context),
+        shaping,
+        base,
         format_of(algorithm, parameters, context),
     )
 
@@ -178,6 +183,17 @@ def default_height(
     if not 0 <= height < math.inf:
         raise ParameterError(f"DEFAULT_HEIGHT is {height}: give a number of metres of 0 or more.")
     return height
+
+
+def _base_expression(algorithm, parameters: Parameters, context, sources, shaping: Shaping) -> str:
+    expression = algorithm.parameterAsString(parameters, BASE_EXPRESSION, context)
+    if expression and shaping.plane is None:
+        raise ParameterError(
+            "BASE_EXPRESSION matters to the robot's plane alone: give PLANE_LOW and PLANE_HIGH too, or leave "
+            "it out."
+        )
+    check_feet(sources, expression)
+    return expression
 
 
 def _target(algorithm, parameters: Parameters, context) -> Path:

@@ -37,6 +37,7 @@ from .map_format import format_parameters
 from .map_profile import profile_parameter
 from .map_shaping import shaped_outlines, shaping_parameters
 from .map_window import window_parameters, window_problem
+from .obstacle_feet import raise_feet
 from .whole_file import write_whole
 
 NUMBERS = {
@@ -119,6 +120,8 @@ class ExportRobotMap(QgsProcessingAlgorithm):
             plan = self._plan
             border = plan.window.border
             reading = read_outlines(plan.sources, plan.site, border, plan.default_height, feedback)
+            if reading.complete and plan.base_expression:
+                raise_feet(reading, plan.sources, plan.base_expression, feedback)
             if not reading.complete:
                 return {}
             outlines = shaped_outlines(reading, plan.shaping, plan.window, feedback)

@@ -34,6 +34,7 @@ from .map_format import format_parameters
 from .map_profile import profile_parameter
 from .map_shaping import shaped_outlines, shaping_parameters
 from .map_window import EXTENT, PAPERS_SIDE_M, frame_parameters
+from .obstacle_feet import raise_feet
 from .sinks import fill, polygon
 from .tile_folder import TileFolder
 from .tile_plan import (
@@ -148,6 +149,8 @@ class ExportRobotMapTiles(FleetAlgorithm):
                 return {}
             area = area_of(plan.tiles)
             reading = read_outlines(plan.sources, plan.site, area, plan.default_height, steps)
+            if reading.complete and plan.base_expression:
+                raise_feet(reading, plan.sources, plan.base_expression, feedback)
             steps.setCurrentStep(1)
             if not reading.complete:
                 return {}

@@ -22,6 +22,7 @@ from ...robot_bridge.robotmap.outlines import Outlines
 from ...robot_bridge.robotmap.shaping import Shaping, shaped
 from ..sites.reading import Reading
 from .errors import ParameterError
+from .obstacle_feet import feet_parameter
 
 PLANE_LOW, PLANE_HIGH, HEIGHT_STEP = "PLANE_LOW", "PLANE_HIGH", "HEIGHT_STEP"
 DISSOLVE, CHAIN, TOLERANCE, SHORTEST = "DISSOLVE", "CHAIN", "TOLERANCE", "SHORTEST"
@@ -37,7 +38,8 @@ _HEIGHTS = {
     ),
     PLANE_HIGH: (
         "Robot's plane: up to this height above the ground [m]",
-        "What begins at this height or above it is left out: the robot drives under it.",
+        "What begins at this height or above it is left out: the robot drives under it. See the next "
+        "parameter for where things begin.",
     ),
 }
 _FLAGS = {
@@ -78,8 +80,11 @@ def shaping_parameters() -> list[QgsProcessingParameterDefinition]:
     ]
     for parameter, help in described:
         parameter.setHelp(help)
+    parameters = [parameter for parameter, _ in described]
+    parameters.insert(len(_HEIGHTS), feet_parameter())
+    for parameter in parameters:
         parameter.setFlags(parameter.flags() | QgsProcessingParameterDefinition.Flag.FlagAdvanced)
-    return [parameter for parameter, _ in described]
+    return parameters
 
 
 def shaping_of(

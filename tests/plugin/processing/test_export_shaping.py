@@ -16,7 +16,10 @@ from qgis.core import (
 HERE = {"CENTER": "20,20", "WIDTH": 80, "HEIGHT": 80}
 LEFT = "Polygon((10 10, 20 10, 20 20, 10 20, 10 10))"
 RIGHT = "Polygon((20 10, 30 10, 30 20, 20 20, 20 10))"
-SHAPING = ("PLANE_LOW", "PLANE_HIGH", "HEIGHT_STEP", "DISSOLVE", "CHAIN", "TOLERANCE", "SHORTEST")
+SHAPING = (
+    *("PLANE_LOW", "PLANE_HIGH", "BASE_EXPRESSION", "HEIGHT_STEP"),
+    *("DISSOLVE", "CHAIN", "TOLERANCE", "SHORTEST"),
+)
 
 
 @pytest.fixture
@@ -60,6 +63,34 @@ def test_what_ends_below_the_plane_is_left_out_and_said(export, lines):
     done = export(lines(kerb, wall), PLANE_LOW=0.3, PLANE_HIGH=1.0, **HERE)
     assert [obstacle.ext["src"] for obstacle in done.map.obstacles] == ["walls:2"]
     assert "Reduced from 2 obstacles with 2 segments to 1 with 1" in done.log
+
+
+@pytest.fixture
+def arches(make_layer):
+    """Four walls that begin at 0.99 m, 1 m, nowhere said, and where nobody understands it."""
+    bases = ("0,99 m", "1.0", None, "high")
+    features = [(f"LineString(0 {k}, 50 {k})", 0.5, base) for k, base in enumerate(bases)]
+    return make_layer("arches", fields="&field=height:double&field=base:string", features=features)
+
+
+def test_what_begins_above_the_plane_is_left_out(export, arches):
+    plane = {"PLANE_LOW": 0.3, "PLANE_HIGH": 1.0}
+    assert export(arches, **plane, **HERE).results["OBSTACLE_COUNT"] == 4
+    done = export(arches, **plane, BASE_EXPRESSION='"base"', **HERE)
+    assert [obstacle.ext["src"] for obstacle in done.map.obstacles] == ["arches:1", "arches:3", "arches:4"]
+    (warning,) = done.warnings
+    assert warning.startswith(
+        "Layer arches, feature 4: its base 'high' is not a number of metres; it is taken"
+    )
+    # From its foot at 1 m the wall is 0.5 m high, and so above a robot that is below.
+    assert export(arches, PLANE_LOW=1.2, PLANE_HIGH=2, BASE_EXPRESSION="1", **HERE).map.segment_count == 4
+
+
+def test_a_layer_without_the_field_of_the_base_stands_on_the_ground_and_is_named(export, lines):
+    plane = {"PLANE_LOW": 0.3, "PLANE_HIGH": 1.0}
+    done = export(lines("LineString(0 5, 50 5)"), **plane, BASE_EXPRESSION='"base"', **HERE)
+    assert done.results["OBSTACLE_COUNT"] == 1
+    assert done.warnings[0].startswith("Layer walls: it has no field base, which the base expression")
 
 
 def test_heights_are_rounded_up_in_steps(export, lines):
@@ -119,6 +150,11 @@ def test_where_there_is_nothing_to_reduce_the_map_is_as_without(export, make_lay
         ({"HEIGHT_STEP": -0.5}, "HEIGHT_STEP is -0.5: give a number of metres"),
         ({"PLANE_LOW": 0.3}, "PLANE_LOW is given and PLANE_HIGH is not: give both"),
         ({"PLANE_HIGH": 1}, "PLANE_HIGH is given and PLANE_LOW is not: give both"),
+        ({"BASE_EXPRESSION": "2"}, "BASE_EXPRESSION matters to the robot's plane alone: give PLANE_LOW"),
+        (
+            {"BASE_EXPRESSION": "2 +", "PLANE_LOW": 0, "PLANE_HIGH": 1},
+            "The base expression '2 +' for the lay",
+        ),
         ({"PLANE_LOW": 1, "PLANE_HIGH": 1}, "PLANE_LOW is 1 and PLANE_HIGH 1: give the lower"),
     ],
 )
@@ -146,6 +182,18 @@ def test_compact_holds_the_very_text(export, houses, strict):
 def test_a_format_that_is_none_is_refused(export, houses):
     with pytest.raises(QgsProcessingException, match="FORMAT"):
         export(houses, FORMAT="binary, compact", **HERE)
+
+
+def test_tiles_know_where_things_begin(provider, arches, listener, tmp_path):
+    import processing
+
+    context = QgsProcessingContext()
+    context.setProject(QgsProject())
+    everything = {"OBSTACLES": [arches], "EXTENT": "0,40,-10,30", "TILE_WIDTH": 40, "TILE_HEIGHT": 40}
+    everything |= {"PLANE_LOW": 0.3, "PLANE_HIGH": 1, "BASE_EXPRESSION": '"base"', "OVERLAP": 0}
+    everything |= {"OUTPUT": str(tmp_path / "out"), "INDEX": "memory:"}
+    results = processing.run("fleet:exportrobotmaptiles", everything, context=context, feedback=listener)
+    assert (results["OBSTACLE_COUNT"], results["WARNING_COUNT"]) == (3, 1)
 
 
 def test_tiles_are_reduced_before_they_are_cut(provider, houses, listener, tmp_path):
