@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import replace
 from typing import Any
 
 from qgis.core import (
@@ -26,8 +25,6 @@ from .obstacle_feet import feet_parameter
 
 PLANE_LOW, PLANE_HIGH, HEIGHT_STEP = "PLANE_LOW", "PLANE_HIGH", "HEIGHT_STEP"
 DISSOLVE, CHAIN, TOLERANCE, SHORTEST = "DISSOLVE", "CHAIN", "TOLERANCE", "SHORTEST"
-ESTIMATED = {"h": "est"}
-"""The extra of an obstacle whose height nobody knows."""
 
 _UNSHAPED = Shaping()
 _HEIGHTS = {
@@ -117,16 +114,9 @@ def shaped_outlines(
 ) -> Outlines:
     """Return the outlines of which maps are built, and say what ``shaping`` has changed in ``area``.
 
-    Heights that nobody knows are marked before, so that lines are joined only with their like.
-
     :raises MissingGeometryError: when a package is missing.
     """
-    outlines = Outlines.from_rows(
-        [
-            replace(row, ext={**row.ext, **ESTIMATED}) if row.source in reading.estimated else row
-            for row in reading.rows
-        ]
-    )
+    outlines = reading.outlines()
     if shaping == _UNSHAPED:
         return outlines
     made = shaped(outlines, shaping)
