@@ -54,12 +54,16 @@ def outlines_of(layer: Layer, frame: SiteFrame, place: str) -> Outlines:
     :raises LayerError: naming the feature whose geometry, shape type or extras are not those of an obstacle.
     """
     rows: list[OutlineRow] = []
+    # A large city has few different extras: each is read and kept once.
+    known: dict[str | None, dict[str, str]] = {}
     for k in range(len(layer)):
         shape_type = int(layer.values["shape_type"][k])
         where = f"{place}, layer {OBSTACLES.name}, feature {layer.ids[k]}"
         if shape_type not in {int(member) for member in ShapeType}:
             raise LayerError(f"{where}: shape_type is {shape_type}; write 1 to 6 (paper 1, section II).")
-        extras = extras_of(layer.values["ext"][k], where)
+        text = layer.values["ext"][k]
+        if text not in known:
+            known[text] = extras_of(text, where)
         for points, courtyard in _lines(layer.geometries[k], ShapeType(shape_type), where):
             rows.append(
                 OutlineRow(
@@ -71,7 +75,7 @@ def outlines_of(layer: Layer, frame: SiteFrame, place: str) -> Outlines:
                     courtyard=courtyard,
                     outdoor=bool(layer.values["outdoor"][k]),
                     base=float(layer.values["base_m"][k]),
-                    ext=extras,
+                    ext=known[text],
                 )
             )
     return Outlines.from_rows(rows)
