@@ -27,12 +27,11 @@ ESTIMATED = {"h": "est"}
 class Reading:
     """What was read: outlines in the site frame, warnings naming layer and feature.
 
-    ``estimated`` are the sources whose height is the default. ``complete`` is false after a cancel.
+    Rows whose height is the default say so in their ``ext``. ``complete`` is false after a cancel.
     """
 
     rows: list[OutlineRow] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
-    estimated: set[str] = field(default_factory=set)
     complete: bool = True
 
     def outlines(self) -> Outlines:
@@ -146,7 +145,6 @@ class _LayerReader:
         values = self._values.of(feature)
         if values.estimated:
             self._estimated.append(feature.id())
-            reading.estimated.add(source)
         if any(_odd(shape, self.source.role) for shape in shapes):
             self._odd_for_role.append(feature.id())
         notes, ext = list(values.notes), {}
