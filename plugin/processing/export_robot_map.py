@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 from qgis.core import (
     QgsProcessing,
-    QgsProcessingAlgorithm,
     QgsProcessingOutputNumber,
     QgsProcessingParameterDefinition,
     QgsProcessingParameterExpression,
@@ -14,7 +11,6 @@ from qgis.core import (
     QgsProcessingParameterMultipleLayers,
     QgsProcessingParameterNumber,
 )
-from qgis.PyQt.QtGui import QIcon
 
 from ...robot_bridge.robotmap.builder import Window, build_map
 from ...robot_bridge.robotmap.errors import RobotMapError
@@ -33,6 +29,7 @@ from .export_plan import (
     plan_of,
     unopened_layer,
 )
+from .fleet_algorithm import FleetAlgorithm
 from .map_format import format_parameters
 from .map_profile import profile_parameter
 from .map_shaping import shaped_outlines, shaping_parameters
@@ -48,41 +45,16 @@ NUMBERS = {
     "WARNING_COUNT": "Warnings",
 }
 
-ICON = Path(__file__).parents[2] / "resources" / "icons" / "export_robot_map.svg"
 
-
-class ExportRobotMap(QgsProcessingAlgorithm):
+class ExportRobotMap(FleetAlgorithm):
     """Exports the obstacles in a window as a map that robots read (paper 1, section III)."""
 
-    def name(self):
-        return "exportrobotmap"
-
-    def displayName(self):
-        return "Export robot map"
-
-    def group(self):
-        return "Robot maps"
-
-    def groupId(self):
-        return "robotmaps"
-
-    def tags(self):
-        return ["robot", "map", "obstacle", "navigation", "segments", "partial map", "qgis_process"]
-
-    def shortDescription(self):
-        return "Writes the obstacles of line and polygon layers inside a window as a map that robots read."
-
-    def shortHelpString(self):
-        return HELP
-
-    def icon(self):
-        return QIcon(str(ICON))
-
-    def svgIconPath(self):
-        return str(ICON)
-
-    def createInstance(self):
-        return ExportRobotMap()
+    NAME = "exportrobotmap"
+    TITLE = "Export robot map"
+    SUMMARY = "Writes the obstacles of line and polygon layers inside a window as a map that robots read."
+    HELP = HELP
+    ICON = "export_robot_map.svg"
+    TAGS = ("obstacle", "navigation", "segments", "partial map", "qgis_process")
 
     def initAlgorithm(self, configuration=None):
         for parameter in (
