@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .messages import Abort, SendPos, SetPath, SetPosEnd
+from .polyline import Polyline
 
 STANDING_SPEED = 0.05
 """m/s below which a robot counts as standing."""
@@ -53,9 +54,7 @@ class PathArrival:
     """
 
     def __init__(self, path: SetPath, tolerance: float, *, under_way: bool = False) -> None:
-        self._points = np.asarray(path.points, dtype=np.float64)
-        steps = np.hypot(*np.diff(self._points, axis=0).T)
-        self._stations = np.concatenate([[0.0], np.cumsum(steps)])
+        self._line = Polyline(path.points)
         self._tolerance = tolerance
         self._seek = under_way
         self._last: SendPos | None = None
@@ -64,18 +63,13 @@ class PathArrival:
     def deviation(self, pose: SendPos) -> float | None:
         """Return metres between robot and end of path once it has arrived, else None."""
         self._follow(pose)
-        distance = math.hypot(pose.x - self._points[-1, 0], pose.y - self._points[-1, 1])
-        at_end = self.driven >= self._stations[-1] - self._tolerance
+        end_x, end_y = self._line.end
+        distance = math.hypot(pose.x - end_x, pose.y - end_y)
+        at_end = self.driven >= self._line.length - self._tolerance
         return distance if at_end and distance <= self._tolerance and standing(pose) else None
 
     def _follow(self, pose: SendPos) -> None:
-        start, step = self._points[:-1], np.diff(self._points, axis=0)
-        length2 = np.maximum((step**2).sum(axis=1), 1e-12)
-        along = ((np.array([pose.x, pose.y]) - start) * step).sum(axis=1) / length2
-        along = np.clip(along, 0.0, 1.0)
-        foot = start + along[:, None] * step
-        off = np.hypot(foot[:, 0] - pose.x, foot[:, 1] - pose.y)
-        station = self._stations[:-1] + along * np.sqrt(length2)
+        station, off = self._line.feet(pose.x, pose.y)
         near = (off <= CORRIDOR) & (station > self.driven) & (station <= self.driven + self._reach(pose))
         if self._seek and (off <= CORRIDOR).any():
             self._seek = False

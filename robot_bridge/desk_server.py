@@ -11,7 +11,7 @@ from websockets.asyncio.server import ServerConnection
 from websockets.exceptions import ConnectionClosed
 
 from . import jsonrpc
-from .errors import BridgeError, StoreError
+from .errors import BridgeError
 from .fleet import Fleet
 from .messages import (
     PROTOCOL_VERSION,
@@ -28,7 +28,7 @@ from .messages import (
     Subscribe,
     to_json,
 )
-from .wire import UnknownOperationError, decode_desk_request
+from .wire import decode_desk_request, error_code
 
 log = logging.getLogger(__name__)
 
@@ -79,7 +79,7 @@ class DeskSession:
             return jsonrpc.error(error.id, error.code, str(error))
         except (MessageError, BridgeError) as error:
             log.warning("desk of %s: %s", self._operator, error)
-            return jsonrpc.error(id, _code(error), str(error))
+            return jsonrpc.error(id, error_code(error), str(error))
 
     async def _do(self, request: DeskRequest) -> dict[str, Any]:
         if isinstance(request, Hello):
@@ -146,11 +146,3 @@ def _positions(robots: list[RobotReport]) -> dict[str, Any]:
 
 def _commands(reports: list[CommandReport]) -> dict[str, Any]:
     return {"commands": [to_json(report) for report in reports]}
-
-
-def _code(error: Exception) -> int:
-    if isinstance(error, UnknownOperationError):
-        return jsonrpc.METHOD_NOT_FOUND
-    if isinstance(error, MessageError):
-        return jsonrpc.INVALID_PARAMS
-    return jsonrpc.INTERNAL_ERROR if isinstance(error, StoreError) else jsonrpc.REFUSED

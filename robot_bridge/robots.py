@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 from .arrival import standing
@@ -38,9 +37,6 @@ class Robots:
 
     def __contains__(self, name: str) -> bool:
         return name in self._robots
-
-    def __iter__(self) -> Iterable[Robot]:
-        return iter(list(self._robots.values()))
 
     def names(self) -> list[str]:
         """Return the names of all robots, sorted."""

@@ -8,6 +8,8 @@ from typing import Any, cast
 
 import msgspec
 
+from . import jsonrpc
+from .errors import NotReadyError, StoreError
 from .messages import ANSWERS, DESK_REQUESTS, REQUESTS, Answer, DeskRequest, MessageError, Request, SetMap
 
 
@@ -44,6 +46,17 @@ def _convert(table: dict[str, Any], kind: str, name: str, params: Any) -> Any:
         return msgspec.convert(params or {}, cls)
     except msgspec.ValidationError as error:
         raise MessageError(f"{name}: {error}") from None
+
+
+def error_code(error: Exception) -> int:
+    """Return the JSON-RPC code under which ``error`` is told to whoever asked."""
+    codes = {
+        UnknownOperationError: jsonrpc.METHOD_NOT_FOUND,
+        MessageError: jsonrpc.INVALID_PARAMS,
+        NotReadyError: jsonrpc.NOT_READY,
+        StoreError: jsonrpc.INTERNAL_ERROR,
+    }
+    return next((code for kind, code in codes.items() if isinstance(error, kind)), jsonrpc.REFUSED)
 
 
 def parse_params(op: str, text: str | bytes | None) -> Any:

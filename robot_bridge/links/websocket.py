@@ -19,7 +19,7 @@ from ..errors import NotReadyError, StoreError
 from ..fleet import Fleet, Outcome
 from ..messages import MessageError, OpAck, Ready, Start, to_json
 from ..store.answers import AnswerRow
-from ..wire import UnknownOperationError, decode_request, encode_map, parse_params
+from ..wire import decode_request, encode_map, error_code, parse_params
 
 log = logging.getLogger(__name__)
 
@@ -107,7 +107,7 @@ class RobotSession:
             outcome = await self._fleet.receive(self._robot, NAME, request, id)
         except (MessageError, NotReadyError, StoreError) as error:
             log.warning("link websocket: robot %r: %s", self._robot, error)
-            await self._connection.send(jsonrpc.error(call.id, _code(error), str(error)))
+            await self._connection.send(jsonrpc.error(call.id, error_code(error), str(error)))
             return
         await self._respond(call, outcome)
         if isinstance(request, Ready):
@@ -156,11 +156,3 @@ class RobotSession:
 def _params(row: AnswerRow) -> dict[str, Any]:
     params: dict[str, Any] = parse_params(row.op, row.params) or {}
     return params if row.payload is None else {**params, "map": encode_map(row.payload)}
-
-
-def _code(error: Exception) -> int:
-    if isinstance(error, UnknownOperationError):
-        return jsonrpc.METHOD_NOT_FOUND
-    if isinstance(error, NotReadyError):
-        return jsonrpc.NOT_READY
-    return jsonrpc.INVALID_PARAMS if isinstance(error, MessageError) else jsonrpc.INTERNAL_ERROR

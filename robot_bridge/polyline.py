@@ -1,0 +1,45 @@
+"""A line through points, measured along itself: what both who drives a path and who judges it need."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+class Polyline:
+    """A line through n ≥ 1 points, (x, y) in metres; a station is metres along it from its beginning."""
+
+    def __init__(self, points: Sequence[tuple[float, float]]) -> None:
+        self._points = np.asarray(points, dtype=np.float64)
+        self._start, self._step = self._points[:-1], np.diff(self._points, axis=0)
+        # Two equal points in a row make a step of no length, which cannot be divided by.
+        self._length = np.maximum(np.hypot(*self._step.T), 1e-9)
+        self._stations = np.concatenate([[0.0], np.cumsum(np.hypot(*self._step.T))])
+
+    @property
+    def length(self) -> float:
+        """Metres from the first point to the last, along the line."""
+        return float(self._stations[-1])
+
+    @property
+    def end(self) -> tuple[float, float]:
+        """The last point."""
+        return float(self._points[-1, 0]), float(self._points[-1, 1])
+
+    def feet(self, x: float, y: float) -> tuple[NDArray[Any], NDArray[Any]]:
+        """Return, of the nearest point to (x, y) on each of the n - 1 steps, the station and the distance."""
+        along = ((np.array([x, y]) - self._start) * self._step).sum(axis=1) / self._length**2
+        along = np.clip(along, 0.0, 1.0)
+        foot = self._start + along[:, None] * self._step
+        off = np.hypot(foot[:, 0] - x, foot[:, 1] - y)
+        return self._stations[:-1] + along * self._length, off
+
+    def at(self, station: float) -> tuple[float, float]:
+        """Return the point at ``station``; before the beginning the first, beyond the end the last."""
+        return (
+            float(np.interp(station, self._stations, self._points[:, 0])),
+            float(np.interp(station, self._stations, self._points[:, 1])),
+        )
