@@ -1,13 +1,13 @@
 """The binary format, which SetMap carries: an envelope that is checked before its content is believed.
 
-    offset  bytes  what
-    0       4      magic, ``RMAP``
-    4       1      version of the envelope, 1
-    5       1      codec of the body: 1 is the text in UTF-8, 2 the map in columns of CBOR; both under zstd
-    6       2      0, reserved
-    8       8      length of the text in bytes, little-endian
-    16      32     SHA-256 of the text
-    48             body
+offset  bytes  what
+0       4      magic, ``RMAP``
+4       1      version of the envelope, 1
+5       1      codec of the body: 1 is the text in UTF-8, 2 the map in columns of CBOR; both under zstd
+6       2      0, reserved
+8       8      length of the text in bytes, little-endian
+16      32     SHA-256 of the text
+48             body
 """
 
 from __future__ import annotations

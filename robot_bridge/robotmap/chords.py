@@ -1,4 +1,4 @@
-"""Round things as chords, and points as small closed shapes."""
+"""Round things as chords, and the normals of ramps."""
 
 from __future__ import annotations
 
@@ -37,32 +37,6 @@ def arc(
     angles = first + turn * np.arange(count + 1) / count
     points = centre + radius * np.column_stack([np.cos(angles), np.sin(angles)])
     points[0], points[-1] = start, end
-    return points
-
-
-def around(x: float, y: float, radius: float, sagitta: float = SAGITTA) -> NDArray[Any]:
-    """Return a closed ring, (n, 2), counter-clockwise around a disc of ``radius`` metres at (x, y).
-
-    The disc lies within it, so that a robot that keeps off the ring keeps off the thing; its corners are no
-    farther than ``sagitta`` outside. It is a closed curve in a map.
-    """
-    _check(np.array([x, y, radius]), sagitta)
-    if radius <= 0:
-        raise ShapingError(f"the radius of a round thing is {radius}; give more than 0 m")
-    half = math.acos(radius / (radius + sagitta))
-    count = max(4, math.ceil(math.pi / half))
-    angles = math.tau * np.arange(count + 1) / count
-    angles[-1] = 0.0
-    reach = radius / math.cos(math.pi / count)
-    points: NDArray[Any] = np.array([x, y]) + reach * np.column_stack([np.cos(angles), np.sin(angles)])
-    return points
-
-
-def template_at(x: float, y: float, template: NDArray[Any], turned: float = 0.0) -> NDArray[Any]:
-    """Return ``template``, a closed ring (n, 2) around (0, 0), at (x, y), turned by radians to the left."""
-    _check(np.array([x, y, turned]), SAGITTA)
-    cos, sin = math.cos(turned), math.sin(turned)
-    points: NDArray[Any] = np.array([x, y]) + np.asarray(template) @ np.array([[cos, sin], [-sin, cos]])
     return points
 
 

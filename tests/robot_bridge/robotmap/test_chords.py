@@ -1,4 +1,4 @@
-"""Chords of curves, small things by their radius, and the normals of ramps."""
+"""Chords of curves, and the normals of ramps."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robot_bridge.robotmap.builder import build_map
-from robot_bridge.robotmap.chords import SAGITTA, arc, around, ramp_normal, template_at
+from robot_bridge.robotmap.chords import SAGITTA, arc, ramp_normal
 from robot_bridge.robotmap.errors import ShapingError
 from robot_bridge.robotmap.model import ShapeType
 
-from .rows import outlines, row, signed_area
+from .rows import outlines, row
 
 
 @given(
@@ -52,30 +52,6 @@ def test_three_points_on_a_line_are_that_line_and_a_circle_closes():
     assert shapely.Polygon(circle).area == pytest.approx(math.pi, rel=0.05)
 
 
-@given(st.floats(0.01, 50), st.floats(-1e6, 1e6))
-def test_a_round_thing_lies_inside_its_ring_and_the_ring_is_near_it(radius, x):
-    ring = around(x, -x, radius)
-    assert (ring[0] == ring[-1]).all()
-    reach = np.hypot(*(ring - (x, -x)).T)
-    middles = np.hypot(*((ring[:-1] + ring[1:]) / 2 - (x, -x)).T)
-    assert reach.max() <= radius + SAGITTA + 1e-6
-    assert middles.min() >= radius - 1e-6
-
-
-def test_a_lamp_post_is_a_closed_curve_in_the_map():
-    post = row(
-        around(3, 4, 0.15), ShapeType.CLOSED_CURVE, semantics="lamp_post", source="furniture:5", height=4
-    )
-    (obstacle,) = build_map(outlines(post)).obstacles
-    assert obstacle.shape_type is ShapeType.CLOSED_CURVE and signed_area(obstacle) > math.pi * 0.15**2
-
-
-def test_a_bench_is_its_template_turned_to_where_it_stands():
-    template = np.array([(-1, -0.25), (1, -0.25), (1, 0.25), (-1, 0.25), (-1, -0.25)])
-    placed = template_at(10, 20, template, math.pi / 2)
-    assert placed[0] == pytest.approx([10.25, 19]) and placed[1] == pytest.approx([10.25, 21])
-
-
 def test_a_ramp_carries_the_upward_normal_of_its_surface():
     slope = [(0, 0, 0), (2, 0, 0), (2, 5, 0.5), (0, 5, 0.5)]
     assert ramp_normal(slope) == ramp_normal(slope[::-1]) == "0,-0.0995,0.995"
@@ -97,9 +73,3 @@ def test_an_estimated_height_is_marked():
 def test_what_is_no_ramp_has_no_normal(points):
     with pytest.raises(ShapingError, match="ramp"):
         ramp_normal(points)
-
-
-@pytest.mark.parametrize("radius", [0, -1, math.nan, math.inf])
-def test_a_radius_must_be_above_0(radius):
-    with pytest.raises(ShapingError):
-        around(0, 0, radius)

@@ -11,6 +11,7 @@ from robot_bridge.robotmap.binary import encode
 from robot_bridge.robotmap.builder import Window, build_map
 from robot_bridge.robotmap.model import ShapeType
 from robot_bridge.robotmap.outlines import OutlineRow, Outlines
+from robot_bridge.robotmap.templates import NAMED
 from robot_bridge.robotmap.text import read_text, write_text
 
 BORDER = "border;\n-100;100;\n100;-100;\n#\n"
@@ -81,8 +82,8 @@ def test_a_map_with_every_shape_goes_through_each_piece_of_python(document, tmp_
     (tmp_path / "map.txt").write_text(text, encoding="utf-8")
     (tmp_path / "map.rmap").write_bytes(encode(text))
     monkeypatch.chdir(tmp_path)
-    by_hand, unpacked, by_package = ({} for _ in range(3))
-    for code, names in zip(blocks(document, "python"), (by_hand, unpacked, by_package), strict=True):
+    by_hand, unpacked, by_package, placed = every = [{} for _ in range(4)]
+    for code, names in zip(blocks(document, "python"), every, strict=True):
         exec(compile(code, "docs/robot-map.md", "exec"), names)
     assert by_hand["border"] == [-100, 100, 100, -100]
     assert [segment[1:] for segment in by_hand["segments"]] == [
@@ -93,3 +94,9 @@ def test_a_map_with_every_shape_goes_through_each_piece_of_python(document, tmp_
     assert [segment[0][3] for segment in by_hand["segments"][:1]] == ["building,A5"]
     assert unpacked["text"].decode() == text
     assert capsys.readouterr().out.count("STAIRS stairs") == 1
+    assert placed["points"].mean(axis=0) == pytest.approx([12.5, 40], abs=0.5)
+
+
+def test_the_table_of_templates_is_the_one_in_the_code(document):
+    rows = re.findall(r"^\| `([a-z_]+)` \| `([a-z]+ [0-9. ]+)` \|$", document, re.MULTILINE)
+    assert dict(rows) == NAMED
