@@ -82,7 +82,7 @@ def test_a_map_with_every_shape_goes_through_each_piece_of_python(document, tmp_
     (tmp_path / "map.txt").write_text(text, encoding="utf-8")
     (tmp_path / "map.rmap").write_bytes(encode(text))
     monkeypatch.chdir(tmp_path)
-    by_hand, unpacked, by_package, placed = every = [{} for _ in range(4)]
+    by_hand, unpacked, _, placed = every = [{} for _ in range(4)]
     for code, names in zip(blocks(document, "python"), every, strict=True):
         exec(compile(code, "docs/robot-map.md", "exec"), names)
     assert by_hand["border"] == [-100, 100, 100, -100]
