@@ -95,9 +95,7 @@ class CommandBook:
 
     def undelivered(self) -> dict[int, str]:
         """Return the robot of every message that waits in SA, by the message's id."""
-        return {
-            c.sa_id: c.report.robot for c in self._open.values() if c.report.state is CommandState.QUEUED
-        }
+        return {c.sa_id: c.report.robot for c in self._open.values() if c.report.state is CommandState.QUEUED}
 
     async def issue(self, orders: list[Order]) -> list[CommandReport]:
         """Store new commands with their messages, all or none; return them as stored.

@@ -4,30 +4,17 @@ from __future__ import annotations
 
 import asyncio
 import logging
-import time
+from dataclasses import replace
 from typing import Any
 
 from websockets.asyncio.server import ServerConnection
 from websockets.exceptions import ConnectionClosed
 
 from . import jsonrpc
+from .desk_requests import Caller, answer, positions
 from .errors import BridgeError
 from .fleet import Fleet
-from .messages import (
-    PROTOCOL_VERSION,
-    AbortAll,
-    CommandReport,
-    DeskRequest,
-    GetCommands,
-    GetPositions,
-    Hello,
-    MessageError,
-    RobotReport,
-    Send,
-    SetPositions,
-    Subscribe,
-    to_json,
-)
+from .messages import PROTOCOL_VERSION, DeskRequest, Hello, MessageError, Role, Subscribe, to_json
 from .wire import decode_desk_request, error_code
 
 log = logging.getLogger(__name__)
@@ -43,15 +30,16 @@ class DeskSession:
     def __init__(self, fleet: Fleet, connection: ServerConnection) -> None:
         self._fleet = fleet
         self._connection = connection
-        self._operator = f"desk {connection.remote_address[0]}"
-        self._changed_commands: dict[str, CommandReport] = {}
-        self._command_event = asyncio.Event()
+        address = str(connection.remote_address[0])
+        self._caller = Caller(f"desk {address}", Role.SUPERVISOR, address)
+        self._news: dict[tuple[str, str], dict[str, Any]] = {}
+        self._news_event = asyncio.Event()
         self._tasks: dict[str, asyncio.Task[None]] = {}
 
     async def run(self) -> None:
         """Serve the connection to its end."""
         self._fleet.listen(self)
-        self._start("commands", self._push_commands())
+        self._start("news", self._push_news())
         try:
             async for frame in self._connection:
                 await self._connection.send(await self._answer(frame))
@@ -62,10 +50,10 @@ class DeskSession:
             for task in self._tasks.values():
                 task.cancel()
 
-    def command_changed(self, command: CommandReport) -> None:
-        """Keep the command's newest report until it can be sent."""
-        self._changed_commands[command.command] = command
-        self._command_event.set()
+    def notify(self, method: str, key: str, params: dict[str, Any]) -> None:
+        """Keep the newest news of ``key`` until they can be sent."""
+        self._news[method, key] = params
+        self._news_event.set()
 
     async def _answer(self, frame: str | bytes) -> str:
         id: int | str | None = None
@@ -78,7 +66,7 @@ class DeskSession:
         except jsonrpc.FrameError as error:
             return jsonrpc.error(error.id, error.code, str(error))
         except (MessageError, BridgeError) as error:
-            log.warning("desk of %s: %s", self._operator, error)
+            log.warning("desk of %s: %s", self._caller.operator, error)
             return jsonrpc.error(id, error_code(error), str(error))
 
     async def _do(self, request: DeskRequest) -> dict[str, Any]:
@@ -87,18 +75,7 @@ class DeskSession:
         if isinstance(request, Subscribe):
             self._start("positions", self._push_positions(1 / request.rate))
             return {}
-        if isinstance(request, GetPositions):
-            return _positions(self._fleet.reports())
-        if isinstance(request, Send):
-            return to_json(await self._fleet.send(request, self._operator))
-        return _commands(await self._do_with_many(request))
-
-    async def _do_with_many(self, request: SetPositions | AbortAll | GetCommands) -> list[CommandReport]:
-        if isinstance(request, SetPositions):
-            return await self._fleet.set_positions(request.positions, self._operator)
-        if isinstance(request, AbortAll):
-            return await self._fleet.abort_all(self._operator, request.command)
-        return await self._fleet.commands(request.robot, request.limit)
+        return await answer(self._fleet, request, self._caller)
 
     def _hello(self, request: Hello) -> dict[str, Any]:
         if request.protocol != PROTOCOL_VERSION:
@@ -108,7 +85,7 @@ class DeskSession:
             )
         if not request.operator.strip():
             raise MessageError("hello: operator is empty; give the operator's name, it goes into the log")
-        self._operator = request.operator.strip()[:128]
+        self._caller = replace(self._caller, operator=request.operator.strip()[:128])
         return {"protocol": PROTOCOL_VERSION, "site": to_json(self._fleet.site.report)}
 
     def _start(self, name: str, work: Any) -> None:
@@ -123,26 +100,18 @@ class DeskSession:
                 changed = self._fleet.reports(since=seen)
                 seen = self._fleet.robots.revision
                 if changed:
-                    await self._connection.send(jsonrpc.call("positions", _positions(changed)))
+                    await self._connection.send(jsonrpc.call("positions", positions(changed)))
                 await asyncio.sleep(interval)
         except ConnectionClosed:
             return
 
-    async def _push_commands(self) -> None:
+    async def _push_news(self) -> None:
         try:
             while True:
-                await self._command_event.wait()
-                self._command_event.clear()
-                changed, self._changed_commands = self._changed_commands, {}
-                for command in changed.values():
-                    await self._connection.send(jsonrpc.call("command", to_json(command)))
+                await self._news_event.wait()
+                self._news_event.clear()
+                news, self._news = self._news, {}
+                for (method, _), params in news.items():
+                    await self._connection.send(jsonrpc.call(method, params))
         except ConnectionClosed:
             return
-
-
-def _positions(robots: list[RobotReport]) -> dict[str, Any]:
-    return {"t": round(time.time(), 3), "robots": [to_json(robot) for robot in robots]}
-
-
-def _commands(reports: list[CommandReport]) -> dict[str, Any]:
-    return {"commands": [to_json(report) for report in reports]}

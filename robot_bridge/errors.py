@@ -15,5 +15,9 @@ class RefusedError(BridgeError):
     """A request that was understood and is not done: unknown robot, target outside the site, ..."""
 
 
+class ForbiddenError(RefusedError):
+    """A request that the operator's role does not allow."""
+
+
 class NotReadyError(BridgeError):
     """A robot speaks that has not said Ready to this database."""

@@ -12,7 +12,7 @@ import time
 import uuid
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, Protocol
 
 from sqlalchemy import Connection
 
@@ -85,10 +85,10 @@ class MapSource(Protocol):
 
 
 class Listener(Protocol):
-    """An operator's session, told of every step of every command."""
+    """An operator's session, told what happens."""
 
-    def command_changed(self, command: CommandReport) -> None:
-        """Take note of a command's newest report; must not block."""
+    def notify(self, method: str, key: str, params: dict[str, Any]) -> None:
+        """Take note of news; of those with the same method and key only the last counts. Must not block."""
 
 
 class Fleet:
@@ -229,8 +229,13 @@ class Fleet:
         """Return the newest commands first, of one robot or of all."""
         return await self._database.run(commands.newest, robot, limit)
 
+    def announce(self, method: str, key: str, params: dict[str, Any]) -> None:
+        """Tell every operator's session what happened."""
+        for listener in self._listeners:
+            listener.notify(method, key, params)
+
     def listen(self, listener: Listener) -> None:
-        """Tell ``listener`` of every step of every command from now on."""
+        """Tell ``listener`` from now on what happens: every step of every command."""
         self._listeners.add(listener)
 
     def unlisten(self, listener: Listener) -> None:
@@ -307,8 +312,7 @@ class Fleet:
 
     def _command_changed(self, command: CommandReport) -> None:
         self.robots.assign(command.robot, self._book.busy_with(command.robot))
-        for listener in self._listeners:
-            listener.command_changed(command)
+        self.announce("command", command.command, to_json(command))
 
     def _outbox_changed(self, robot: str) -> None:
         self.outbox_event(robot).set()

@@ -170,4 +170,3 @@ def _address(server: Server) -> str:
     sock = next(iter(server.sockets))
     host, port = sock.getsockname()[:2]
     return f"ws://[{host}]:{port}" if sock.family == socket.AF_INET6 else f"ws://{host}:{port}"
-

@@ -9,7 +9,7 @@ from typing import Any, cast
 import msgspec
 
 from . import jsonrpc
-from .errors import NotReadyError, StoreError
+from .errors import ForbiddenError, NotReadyError, StoreError
 from .messages import ANSWERS, DESK_REQUESTS, REQUESTS, Answer, DeskRequest, MessageError, Request, SetMap
 
 
@@ -54,6 +54,7 @@ def error_code(error: Exception) -> int:
         UnknownOperationError: jsonrpc.METHOD_NOT_FOUND,
         MessageError: jsonrpc.INVALID_PARAMS,
         NotReadyError: jsonrpc.NOT_READY,
+        ForbiddenError: jsonrpc.FORBIDDEN,
         StoreError: jsonrpc.INTERNAL_ERROR,
     }
     return next((code for kind, code in codes.items() if isinstance(error, kind)), jsonrpc.REFUSED)

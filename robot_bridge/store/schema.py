@@ -3,91 +3,218 @@
 ``rr`` and ``sa`` are the paper's (section IV): robots write requests to the one and read and delete their
 answers in the other. The rest belongs to the gateway. ``params`` is JSON text, read by the gateway itself,
 so that one robot's bad JSON spoils no other row. Ids are never used twice: a robot tells a repeated answer
-from a new one by them.
+from a new one by them. Times are seconds since 1970-01-01 UTC, but for ``created_at`` of rr and sa.
 """
 
 from __future__ import annotations
 
 from sqlalchemy import (
+    BigInteger,
     Column,
     DateTime,
-    Float,
+    Double,
+    Index,
     Integer,
     LargeBinary,
     MetaData,
+    SmallInteger,
     String,
     Table,
     Text,
+    UniqueConstraint,
     func,
 )
+from sqlalchemy.dialects import mysql
 
 metadata = MetaData()
 
-
-def _messages(name: str) -> Table:
-    return Table(
-        name,
-        metadata,
-        Column("id", Integer, primary_key=True, autoincrement=True),
-        Column("robot", String(63), nullable=False, index=True),
-        Column("op", String(32), nullable=False),
-        Column("params", Text, nullable=True),
-        Column("payload", LargeBinary, nullable=True),
-        Column("created_at", DateTime, nullable=False, server_default=func.now()),
-        sqlite_autoincrement=True,
-    )
+# SQLite numbers rows by itself only where the column's type is INTEGER.
+_Id = BigInteger().with_variant(Integer, "sqlite")
+# MariaDB's TEXT and BLOB end at 64 KiB, which a path or an image exceeds.
+_LongText = Text().with_variant(mysql.MEDIUMTEXT, "mysql", "mariadb")
+_LongBytes = LargeBinary().with_variant(mysql.LONGBLOB, "mysql", "mariadb")
 
 
-rr = _messages("rr")
-sa = _messages("sa")
+def _id() -> Column[int]:
+    return Column("id", _Id, primary_key=True, autoincrement=True)
+
+
+def _robot(*, index: bool = True) -> Column[str]:
+    return Column("robot", String(63), nullable=False, index=index)
+
+
+rr = Table(
+    "rr",
+    metadata,
+    _id(),
+    _robot(),
+    Column("op", String(32), nullable=False),
+    Column("params", _LongText, nullable=True),
+    Column("payload", _LongBytes, nullable=True),
+    Column("created_at", DateTime, nullable=False, server_default=func.now()),
+    sqlite_autoincrement=True,
+)
+
+# Robots read their rows "order by urgent desc, id": an emergency stop overtakes what waits.
+sa = Table(
+    "sa",
+    metadata,
+    _id(),
+    _robot(),
+    Column("op", String(32), nullable=False),
+    Column("params", _LongText, nullable=True),
+    Column("payload", _LongBytes, nullable=True),
+    Column("created_at", DateTime, nullable=False, server_default=func.now()),
+    Column("urgent", SmallInteger, nullable=False, server_default="0"),
+    sqlite_autoincrement=True,
+)
+
+# Facts about the database itself: "id" tells it from every other database.
+bridge = Table(
+    "bridge",
+    metadata,
+    Column("name", String(32), primary_key=True),
+    Column("value", Text, nullable=False),
+)
 
 robots = Table(
     "robots",
     metadata,
     Column("name", String(63), primary_key=True),
-    Column("magic", Integer, nullable=False),
+    Column("magic", BigInteger, nullable=False),
     Column("link", String(16), nullable=False),
-    Column("received_at", Float, nullable=False),
+    Column("received_at", Double, nullable=False),
     Column("ended_in_order", Integer, nullable=False, default=0),
     Column("pose", Text, nullable=True),
-    Column("pose_at", Float, nullable=True),
+    Column("pose_at", Double, nullable=True),
 )
 
 commands = Table(
     "commands",
     metadata,
     Column("id", String(64), primary_key=True),
-    Column("robot", String(63), nullable=False, index=True),
+    _robot(),
     Column("op", String(32), nullable=False),
-    Column("params", Text, nullable=False),
+    Column("params", _LongText, nullable=False),
     Column("operator", String(128), nullable=False),
     Column("state", String(16), nullable=False, index=True),
-    Column("deviation", Float, nullable=True),
-    Column("sa_id", Integer, nullable=False),
-    Column("created_at", Float, nullable=False, index=True),
+    Column("deviation", Double, nullable=True),
+    Column("driven", Double, nullable=True),
+    Column("sa_id", BigInteger, nullable=False),
+    Column("created_at", Double, nullable=False, index=True),
+    Column("expires_at", Double, nullable=True),
 )
 
 command_steps = Table(
     "command_steps",
     metadata,
-    Column("id", Integer, primary_key=True, autoincrement=True),
+    _id(),
     Column("command", String(64), nullable=False, index=True),
     Column("state", String(16), nullable=False),
-    Column("at", Float, nullable=False),
+    Column("at", Double, nullable=False),
     Column("by", String(128), nullable=False),
     Column("reason", Text, nullable=True),
     sqlite_autoincrement=True,
 )
 
+emergency_stops = Table(
+    "emergency_stops",
+    metadata,
+    Column("id", String(64), primary_key=True),
+    Column("at", Double, nullable=False, index=True),
+    Column("by", String(128), nullable=False),
+    Column("reason", Text, nullable=True),
+    Column("cleared_at", Double, nullable=True),
+    Column("cleared_by", String(128), nullable=True),
+    Column("clear_reason", Text, nullable=True),
+)
+
 trajectories = Table(
     "trajectories",
     metadata,
-    Column("id", Integer, primary_key=True, autoincrement=True),
-    Column("robot", String(63), nullable=False, index=True),
-    Column("received_at", Float, nullable=False, index=True),
-    Column("x", Float, nullable=False),
-    Column("y", Float, nullable=False),
-    Column("theta", Float, nullable=False),
-    Column("v", Float, nullable=False),
-    Column("device_time", Float, nullable=True),
+    _id(),
+    _robot(index=False),
+    Column("received_at", Double, nullable=False, index=True),
+    Column("x", Double, nullable=False),
+    Column("y", Double, nullable=False),
+    Column("theta", Double, nullable=False),
+    Column("v", Double, nullable=False),
+    Column("device_time", Double, nullable=True),
+    Column("fix_time", Double, nullable=True),
+    Index("ix_trajectories_robot_received_at", "robot", "received_at"),
+    sqlite_autoincrement=True,
+)
+
+# ``source`` is the robot's own number of what it saw: told twice, stored once.
+observations = Table(
+    "observations",
+    metadata,
+    _id(),
+    _robot(),
+    Column("source", String(64), nullable=True),
+    Column("kind", String(16), nullable=False),
+    Column("object", String(128), nullable=False),
+    Column("x", Double, nullable=False),
+    Column("y", Double, nullable=False),
+    Column("details", Text, nullable=True),
+    Column("image", _LongBytes, nullable=True),
+    Column("media_type", String(64), nullable=True),
+    Column("seen_at", Double, nullable=True),
+    Column("received_at", Double, nullable=False, index=True),
+    Column("state", String(16), nullable=False, index=True),
+    Column("reviewed_at", Double, nullable=True),
+    Column("reviewed_by", String(128), nullable=True),
+    Column("review", Text, nullable=True),
+    UniqueConstraint("robot", "source", name="uq_observations_robot_source"),
+    sqlite_autoincrement=True,
+)
+
+operators = Table(
+    "operators",
+    metadata,
+    Column("name", String(128), primary_key=True),
+    Column("role", String(16), nullable=False),
+    Column("created_at", Double, nullable=False),
+)
+
+# ``kind`` is operator or robot, ``owner`` the account's name, ``hash`` the SHA-256 of the token.
+tokens = Table(
+    "tokens",
+    metadata,
+    Column("id", String(32), primary_key=True),
+    Column("kind", String(16), nullable=False),
+    Column("owner", String(128), nullable=False, index=True),
+    Column("hash", String(64), nullable=False),
+    Column("created_at", Double, nullable=False),
+    Column("expires_at", Double, nullable=True),
+    Column("revoked_at", Double, nullable=True),
+    Column("used_at", Double, nullable=True),
+)
+
+sessions = Table(
+    "sessions",
+    metadata,
+    Column("id", String(32), primary_key=True),
+    Column("operator", String(128), nullable=False, index=True),
+    Column("token", String(32), nullable=True),
+    Column("role", String(16), nullable=False),
+    Column("address", String(64), nullable=False),
+    Column("began_at", Double, nullable=False, index=True),
+    Column("ended_at", Double, nullable=True),
+    Column("reason", Text, nullable=True),
+)
+
+audit = Table(
+    "audit",
+    metadata,
+    _id(),
+    Column("at", Double, nullable=False, index=True),
+    Column("who", String(128), nullable=False, index=True),
+    Column("role", String(16), nullable=True),
+    Column("address", String(64), nullable=True),
+    Column("action", String(32), nullable=False),
+    Column("subject", String(128), nullable=True),
+    Column("done", SmallInteger, nullable=False),
+    Column("detail", Text, nullable=True),
+    sqlite_autoincrement=True,
 )

@@ -38,8 +38,9 @@ class Yard:
         self.told.clear()
         await self.start()
 
-    def command_changed(self, command):
-        self.told.append((command.command, command.state.value))
+    def notify(self, method, key, params):
+        if method == "command":
+            self.told.append((key, params["state"]))
 
     # --- a robot over the WebSocket link, which tells the fleet what it delivered ---------------------------
 

@@ -35,7 +35,7 @@ async def test_a_target_is_queued_delivered_acknowledged_and_reached(ready):
 
 async def test_a_command_is_stored_with_its_message_before_it_is_told(ready):
     seen = []
-    ready.command_changed = lambda command: seen.append(ready.sql("select state from commands"))
+    ready.notify = lambda *news: seen.append(ready.sql("select state from commands"))
     ready.fleet.listen(ready)
     await ready.send("a")
     assert seen == [[("queued",)]]

@@ -1,0 +1,111 @@
+"""The messages of the bridge: one definition for every wire.
+
+:mod:`.robots` holds the paper's: what robots ask and what the server answers. :mod:`.desk` holds what
+operators ask and are told. Positions are metres in the site frame, angles radians counter-clockwise from
+its x axis, times seconds since 1970-01-01 UTC. Nothing here is imported but the standard library, so that
+QGIS can load it.
+"""
+
+from __future__ import annotations
+
+from .checks import (
+    LARGEST_NUMBER,
+    ROBOT_NAME,
+    MessageError,
+    check_command_id,
+    check_finite,
+    check_robot_name,
+    check_stored_number,
+)
+from .desk import (
+    DESK_REQUESTS,
+    PROTOCOL_VERSION,
+    AbortAll,
+    CommandReport,
+    CommandState,
+    CommandStep,
+    DeskRequest,
+    GetCommands,
+    GetPositions,
+    Hello,
+    RobotReport,
+    RobotState,
+    Role,
+    Send,
+    SetPositions,
+    SiteReport,
+    Subscribe,
+    TargetPosition,
+)
+from .plain import (
+    command_report,
+    robot_report,
+    site_report,
+    to_json,
+)
+from .robots import (
+    ANSWERS,
+    COMMANDS,
+    REQUESTS,
+    Abort,
+    Alive,
+    Answer,
+    GetMap,
+    OpAck,
+    Ready,
+    Request,
+    SendPos,
+    SetMap,
+    SetPath,
+    SetPosEnd,
+    Start,
+    Stopped,
+)
+
+__all__ = [
+    "ANSWERS",
+    "COMMANDS",
+    "DESK_REQUESTS",
+    "LARGEST_NUMBER",
+    "PROTOCOL_VERSION",
+    "REQUESTS",
+    "ROBOT_NAME",
+    "Abort",
+    "AbortAll",
+    "Alive",
+    "Answer",
+    "CommandReport",
+    "CommandState",
+    "CommandStep",
+    "DeskRequest",
+    "GetCommands",
+    "GetMap",
+    "GetPositions",
+    "Hello",
+    "MessageError",
+    "OpAck",
+    "Ready",
+    "Request",
+    "RobotReport",
+    "RobotState",
+    "Role",
+    "Send",
+    "SendPos",
+    "SetMap",
+    "SetPath",
+    "SetPosEnd",
+    "SetPositions",
+    "SiteReport",
+    "Start",
+    "Stopped",
+    "Subscribe",
+    "TargetPosition",
+    "check_command_id",
+    "check_finite",
+    "check_robot_name",
+    "check_stored_number",
+    "command_report",
+    "robot_report",
+    "site_report",
+    "to_json",
+]

@@ -1,0 +1,44 @@
+"""What a value in a message may be, whatever the message."""
+
+from __future__ import annotations
+
+import math
+import re
+
+ROBOT_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,62}")
+LARGEST_NUMBER = 2**63 - 1
+"""What an integer column of a database holds."""
+
+
+class MessageError(ValueError):
+    """A message that cannot be understood; the text names the operation, the parameter and what is right."""
+
+
+def check_finite(**numbers: float | None) -> None:
+    """Refuse NaN and infinity; raises MessageError naming the parameter."""
+    for name, value in numbers.items():
+        if value is not None and not math.isfinite(value):
+            raise MessageError(f"{name} is {value}; give a finite number")
+
+
+def check_stored_number(**numbers: int | None) -> None:
+    """Refuse an integer that a database column cannot hold; raises MessageError naming the parameter."""
+    for name, value in numbers.items():
+        if value is not None and not 0 <= value <= LARGEST_NUMBER:
+            raise MessageError(f"{name} is {value}; give a whole number from 0 to {LARGEST_NUMBER}")
+
+
+def check_robot_name(name: str) -> str:
+    """Return ``name`` if it can name a robot, else raise MessageError."""
+    if not ROBOT_NAME.fullmatch(name):
+        raise MessageError(
+            f"robot name {name!r} cannot be used; take 1 to 63 letters, digits, '_', '.' or '-', "
+            "beginning with a letter or digit"
+        )
+    return name
+
+
+def check_command_id(command: str) -> None:
+    """Refuse an id that cannot tell one command from every other; raises MessageError."""
+    if not 8 <= len(command) <= 64:
+        raise MessageError(f"command is {command!r}; give an id of 8 to 64 characters, say a UUID")

@@ -1,0 +1,211 @@
+"""What operators ask and are told."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import Enum
+from typing import Any, ClassVar
+
+from .checks import MessageError, check_command_id, check_finite
+
+PROTOCOL_VERSION = 1
+
+
+class Role(str, Enum):
+    """What an operator's account may do; each role may do what the one before it may."""
+
+    VIEWER = "viewer"
+    OPERATOR = "operator"
+    SUPERVISOR = "supervisor"
+
+    def includes(self, other: Role) -> bool:
+        """Tell whether this role may do what ``other`` may."""
+        order = list(Role)
+        return order.index(self) >= order.index(other)
+
+
+class RobotState(str, Enum):
+    """How far the knowledge of a robot can be trusted (see :mod:`.liveness`)."""
+
+    FRESH = "fresh"
+    STALE = "stale"
+    LOST = "lost"
+    OFFLINE = "offline"
+
+
+class CommandState(str, Enum):
+    """Where a command is in its life (see :mod:`.command_life`)."""
+
+    QUEUED = "queued"
+    DELIVERED = "delivered"
+    ACKNOWLEDGED = "acknowledged"
+    REACHED = "reached"
+    ABORTED = "aborted"
+    FAILED = "failed"
+    EXPIRED = "expired"
+    SUPERSEDED = "superseded"
+
+
+@dataclass(frozen=True)
+class RobotReport:
+    """One robot as the gateway knows it. ``age`` is seconds since its last message, when this was sent.
+
+    A robot that has said Ready and not yet where it is has no pose: x, y, theta, v are None.
+    """
+
+    robot: str
+    state: RobotState
+    age: float
+    link: str
+    stopped: bool = False
+    x: float | None = None
+    y: float | None = None
+    theta: float | None = None
+    v: float | None = None
+    device_time: float | None = None
+    battery: float | None = None
+    status: str | None = None
+    command: str | None = None
+
+
+@dataclass(frozen=True)
+class CommandStep:
+    """One step in the life of a command: what it became, when, by whom, and why."""
+
+    state: CommandState
+    at: float
+    by: str
+    reason: str | None = None
+
+
+@dataclass(frozen=True)
+class CommandReport:
+    """A command with every step so far; ``deviation`` is metres between target and robot when reached."""
+
+    command: str
+    robot: str
+    op: str
+    params: dict[str, Any]
+    operator: str
+    state: CommandState
+    steps: list[CommandStep] = field(default_factory=list)
+    deviation: float | None = None
+
+
+@dataclass(frozen=True)
+class SiteReport:
+    """The site that a gateway serves: its frame (CRS, origin, rotation in radians) and its bounds.
+
+    ``bounds`` is x_min, y_min, x_max, y_max in the site frame.
+    """
+
+    id: str
+    name: str
+    version: int
+    crs: str
+    origin: tuple[float, float]
+    rotation: float
+    bounds: tuple[float, float, float, float]
+    reached_tolerance: float
+    stale_after: float
+    lost_after: float
+
+
+@dataclass(frozen=True)
+class Hello:
+    """An operator's first message; answered with a SiteReport under ``site`` and the protocol's version."""
+
+    method: ClassVar[str] = "hello"
+    operator: str
+    protocol: int = PROTOCOL_VERSION
+
+
+@dataclass(frozen=True)
+class Subscribe:
+    """Ask for ``positions`` up to ``rate`` times a second, what changed only; everything at first."""
+
+    method: ClassVar[str] = "subscribe"
+    rate: float = 5.0
+
+    def __post_init__(self) -> None:
+        check_finite(rate=self.rate)
+        if not 0 < self.rate <= 50:
+            raise MessageError(f"rate is {self.rate}; give snapshots a second, above 0 and up to 50")
+
+
+@dataclass(frozen=True)
+class GetPositions:
+    """Ask for the position of every robot (the second paper's ``get_positions``)."""
+
+    method: ClassVar[str] = "get_positions"
+
+
+@dataclass(frozen=True)
+class TargetPosition:
+    """One robot's target in SetPositions."""
+
+    robot: str
+    x: float
+    y: float
+    theta: float | None = None
+    cone: bool = True
+
+    def __post_init__(self) -> None:
+        check_finite(x=self.x, y=self.y, theta=self.theta)
+
+
+@dataclass(frozen=True)
+class SetPositions:
+    """Send target positions (the second paper's ``set_positions``): all of them are accepted, or none."""
+
+    method: ClassVar[str] = "set_positions"
+    positions: list[TargetPosition]
+
+
+@dataclass(frozen=True)
+class Send:
+    """Ask for one command. ``command`` is an id that the operator's side invents: sent twice, done once."""
+
+    method: ClassVar[str] = "send"
+    command: str
+    robot: str
+    op: str
+    params: dict[str, Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        check_command_id(self.command)
+
+
+@dataclass(frozen=True)
+class AbortAll:
+    """Ask every robot to abort its task; answered with the commands that do it.
+
+    ``command`` is an id that the operator's side invents: sent twice, done once.
+    """
+
+    method: ClassVar[str] = "abort_all"
+    command: str | None = None
+
+    def __post_init__(self) -> None:
+        if self.command is not None:
+            check_command_id(self.command)
+
+
+@dataclass(frozen=True)
+class GetCommands:
+    """Ask for the newest ``limit`` commands with their steps, newest first, of one robot or of all."""
+
+    method: ClassVar[str] = "get_commands"
+    robot: str | None = None
+    limit: int = 200
+
+    def __post_init__(self) -> None:
+        if not 1 <= self.limit <= 10_000:
+            raise MessageError(f"limit is {self.limit}; give a number from 1 to 10000")
+
+
+DeskRequest = Hello | Subscribe | GetPositions | SetPositions | Send | AbortAll | GetCommands
+
+DESK_REQUESTS: dict[str, type[DeskRequest]] = {
+    cls.method: cls for cls in (Hello, Subscribe, GetPositions, SetPositions, Send, AbortAll, GetCommands)
+}

@@ -1,0 +1,55 @@
+"""Messages to and from plain JSON values."""
+
+from __future__ import annotations
+
+import dataclasses
+from enum import Enum
+from typing import Any
+
+from .desk import CommandReport, CommandState, CommandStep, RobotReport, RobotState, SiteReport
+
+
+def to_json(message: Any) -> dict[str, Any]:
+    """Return a message as JSON values; what is None is left out, a bytes field is left to the payload."""
+    return {
+        name: _plain(value)
+        for name, value in ((f.name, getattr(message, f.name)) for f in dataclasses.fields(message))
+        if value is not None and not isinstance(value, bytes)
+    }
+
+
+def _plain(value: Any) -> Any:
+    if dataclasses.is_dataclass(value):
+        return to_json(value)
+    if isinstance(value, Enum):
+        return value.value
+    if isinstance(value, (list, tuple)):
+        return [_plain(item) for item in value]
+    return value
+
+
+def robot_report(values: dict[str, Any]) -> RobotReport:
+    """Return the report that a gateway sent as JSON; unknown fields of newer gateways are passed over."""
+    return RobotReport(**{**_known(RobotReport, values), "state": RobotState(values["state"])})
+
+
+def command_report(values: dict[str, Any]) -> CommandReport:
+    """Return the command that a gateway sent as JSON."""
+    steps = [
+        CommandStep(**{**_known(CommandStep, step), "state": CommandState(step["state"])})
+        for step in values.get("steps", [])
+    ]
+    return CommandReport(
+        **{**_known(CommandReport, values), "state": CommandState(values["state"]), "steps": steps}
+    )
+
+
+def site_report(values: dict[str, Any]) -> SiteReport:
+    """Return the site that a gateway sent as JSON."""
+    known = _known(SiteReport, values)
+    return SiteReport(**{**known, "origin": tuple(values["origin"]), "bounds": tuple(values["bounds"])})
+
+
+def _known(cls: type, values: dict[str, Any]) -> dict[str, Any]:
+    names = {f.name for f in dataclasses.fields(cls)}
+    return {name: value for name, value in values.items() if name in names}
