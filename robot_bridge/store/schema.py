@@ -200,7 +200,7 @@ sessions = Table(
     Column("role", String(16), nullable=False),
     Column("address", String(64), nullable=False),
     Column("began_at", Double, nullable=False, index=True),
-    Column("ended_at", Double, nullable=True),
+    Column("ended_at", Double, nullable=True, index=True),
     Column("reason", Text, nullable=True),
 )
 

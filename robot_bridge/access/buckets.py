@@ -1,0 +1,31 @@
+"""A token bucket: how often something may happen, with some room for bursts."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+
+
+class Bucket:
+    """Allows ``rate`` takings a second on average and up to ``burst`` at once."""
+
+    __slots__ = ("_at", "_burst", "_clock", "_left", "_rate")
+
+    def __init__(self, rate: float, burst: float, clock: Callable[[], float] = time.monotonic) -> None:
+        self._rate, self._burst, self._clock = rate, burst, clock
+        self._left, self._at = burst, clock()
+
+    def take(self) -> bool:
+        """Take one, if there is one to take."""
+        now = self._clock()
+        self._left = min(self._burst, self._left + (now - self._at) * self._rate)
+        self._at = now
+        if self._left < 1.0:
+            return False
+        self._left -= 1.0
+        return True
+
+    def wait(self) -> float:
+        """Return the seconds until the next one can be taken."""
+        missing = 1.0 - min(self._burst, self._left + (self._clock() - self._at) * self._rate)
+        return max(0.0, missing / self._rate)

@@ -1,0 +1,146 @@
+"""TLS for the gateway's port, and for those who connect to it."""
+
+from __future__ import annotations
+
+import asyncio
+import datetime
+import logging
+import ssl
+import stat
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+from .certificates import valid_until
+from .errors import AccessError
+
+log = logging.getLogger(__name__)
+
+CIPHERS = "ECDHE+AESGCM:ECDHE+CHACHA20"
+"""TLS 1.2 only with forward secrecy and authenticated encryption; TLS 1.3 has nothing else."""
+WATCH_INTERVAL = 2.0
+WARN_DAYS = 30
+
+
+@dataclass(frozen=True)
+class ServerFiles:
+    """The gateway's certificate (with what leads to its authority) and its key, in PEM."""
+
+    certificate: Path
+    key: Path
+
+
+class ServerTls:
+    """The gateway's TLS: its context, and a new certificate in it whenever the files change."""
+
+    def __init__(self, files: ServerFiles) -> None:
+        """Read the files; raises AccessError when they cannot be used."""
+        self._files = files
+        self._seen = _stamps(files)
+        self.context = _server_context(files)
+        self._warn_of_expiry()
+
+    def reload(self) -> bool:
+        """Take the certificate that lies there now for new connections; tell whether it can be used.
+
+        One that cannot be used changes nothing.
+        """
+        try:
+            _server_context(self._files)
+            self.context.load_cert_chain(self._files.certificate, self._files.key)
+        except (AccessError, OSError) as error:
+            log.error("%s; the certificate in use stays", error)
+            return False
+        self._warn_of_expiry()
+        log.info("took the new certificate %s", self._files.certificate)
+        return True
+
+    async def watch(self) -> None:
+        """Reload whenever the files change, until cancelled."""
+        while True:
+            await asyncio.sleep(WATCH_INTERVAL)
+            stamps = _stamps(self._files)
+            if stamps != self._seen:
+                # Both files are written one after the other: wait until they stand still.
+                await asyncio.sleep(WATCH_INTERVAL / 4)
+                if stamps == _stamps(self._files):
+                    self._seen = stamps
+                    self.reload()
+
+    def _warn_of_expiry(self) -> None:
+        left = valid_until(self._files.certificate) - datetime.datetime.now(datetime.timezone.utc)
+        if left < datetime.timedelta(days=WARN_DAYS):
+            log.warning(
+                "certificate %s %s; 'robot-bridge tls renew' makes a new one",
+                self._files.certificate,
+                f"holds for {left.days} days more" if left.days >= 0 else "has expired",
+            )
+
+
+def client_context(ca: Path | None) -> ssl.SSLContext:
+    """Return the context of who connects: trusts the authority in ``ca`` alone, without it the system's.
+
+    :raises AccessError: when ``ca`` cannot be read.
+    """
+    try:
+        context = ssl.create_default_context(cafile=ca)
+    except (OSError, ssl.SSLError) as error:
+        raise AccessError(
+            f"CA file {ca} cannot be used: {error.strerror or error}; give the site's ca.pem"
+        ) from error
+    context.minimum_version = ssl.TLSVersion.TLSv1_2
+    return context
+
+
+def read_token(file: Path) -> str:
+    """Return the token in ``file``; raises AccessError when there is none."""
+    try:
+        token = file.read_text(encoding="utf-8").strip()
+        mode = file.stat().st_mode
+    except (OSError, UnicodeDecodeError) as error:
+        raise AccessError(
+            f"token file {file} cannot be read: {getattr(error, 'strerror', None) or error}"
+        ) from None
+    if not token or len(token.split()) != 1:
+        raise AccessError(f"token file {file} holds no token; write the one that was printed into it, alone")
+    if sys.platform != "win32" and mode & (stat.S_IRGRP | stat.S_IROTH):
+        log.warning("token file %s can be read by others; chmod 600 keeps it to yourself", file)
+    return token
+
+
+def _server_context(files: ServerFiles) -> ssl.SSLContext:
+    context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
+    context.minimum_version = ssl.TLSVersion.TLSv1_2
+    context.options |= ssl.OP_NO_COMPRESSION | ssl.OP_NO_RENEGOTIATION | ssl.OP_CIPHER_SERVER_PREFERENCE
+    context.set_ciphers(CIPHERS)
+    context.set_alpn_protocols(["http/1.1"])
+    try:
+        # An encrypted key would ask for its password on the terminal, which a service does not have.
+        context.load_cert_chain(files.certificate, files.key, password=_no_password)
+    except ssl.SSLError as error:
+        raise AccessError(
+            f"certificate {files.certificate} and key {files.key} cannot be used: {error.reason or error}; "
+            "both must be PEM, and belong to each other"
+        ) from error
+    except OSError as error:
+        missing = next((f for f in (files.certificate, files.key) if not f.is_file()), files.key)
+        raise AccessError(f"{missing} cannot be read: {error.strerror or error}") from error
+    if sys.platform != "win32" and files.key.stat().st_mode & (stat.S_IRWXO | stat.S_IRGRP):
+        log.warning("key %s can be read by others; chmod 600 keeps it to the gateway", files.key)
+    return context
+
+
+def _no_password() -> str:
+    raise AccessError("the key is encrypted; give one that is not, readable to the gateway's account alone")
+
+
+def _stamps(files: ServerFiles) -> tuple[object, ...]:
+    stamps: list[object] = []
+    for file in (files.certificate, files.key):
+        try:
+            status = file.stat()
+        except OSError:
+            stamps.append(None)
+        else:
+            stamps.append((status.st_mtime_ns, status.st_ino, status.st_size))
+    return tuple(stamps)
