@@ -52,8 +52,8 @@ install: $(READY) ## put the plugin into your QGIS profile (PROFILE=name, LINK=1
 package: $(READY) ## build the zip for plugins.qgis.org
 	@$(RUN) scripts/package.py
 
-bench: $(READY) ## measure the robot maps on the real data beside the project; see docs/benchmarks.md
-	@$(RUN) scripts/bench.py
+bench: $(READY) ## measure on the real data beside the project (PARTS=maps ...); see docs/benchmarks.md
+	@$(RUN) scripts/bench.py $(PARTS)
 
 clean: ## remove build/ (what was built, not the environment)
 	rm -rf build

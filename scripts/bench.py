@@ -1,116 +1,40 @@
-"""Measure the robot maps on the real data and write docs/benchmarks.md. Takes about a minute."""
+"""Measure on the real data and write docs/benchmarks.md: ``bench.py [part ...]``, all parts by default."""
 
 from __future__ import annotations
 
-import os
-import platform
+import importlib
 import sys
-import tempfile
-from datetime import date
-from pathlib import Path
 
-import numpy as np
-import shapely
-from osgeo import gdal
 from plugin_files import ROOT
 
 sys.path.insert(0, str(ROOT))
 
-from benchmarks.correctness import City, faults
-from benchmarks.growth import growth_table
-from benchmarks.sizes import campus_table, quarter_table
-from benchmarks.speed import publish, speed_tables
+from benchmarks.page import Part, with_part
 
 DATA = ROOT.parent / "shared" / "data"
 PAGE = ROOT / "docs" / "benchmarks.md"
-WINDOWS = 200
-CITIES = (
-    ("Helsinki", "helsinki_centre_utm35n.gpkg", (385944.0, 6672300.0)),
-    ("Malta", "malta_2018_utm33n.gpkg", (450000.0, 3970000.0)),
-)
-
-TEXT = """\
-# Benchmarks
-
-Made by `make bench`, on {machine}, on {day}; Python {python}, numpy {numpy}, shapely {shapely}, GDAL {gdal}.
-Times are medians on this machine as it was; the ratios are what to compare.
-
-## A window from a published site
-
-Malta's buildings and barriers (OpenStreetMap), published as the gateway serves them. Everything is warm: the
-site is loaded, the file is in the system's cache. In brackets, times the extraction.
-
-{speed}
-
-## Growth
-
-Cities that are made up, 25 buildings in a window of 100 m × 100 m.
-
-{growth}
-
-## Sizes
-
-Bytes/m². The paper gives 3 as text for this site, with buildings, columns and walls. Strict is Fig. 2 and
-nothing else: what each obstacle comes from (`src`) is left out.
-
-{campus}
-
-The robot's plane leaves out what begins higher than 1 m above the ground beside it, or ends within 0.3 m of
-the ground. It, dissolving and chaining move no corner by more than a centimetre.
-
-{quarter}
-
-## Correctness
-
-{correctness}
-
-Held against shapely, which shares no code with the builder: the segments are the drawn obstacles inside the
-window within 1 cm, both ways; buildings are on the left of their segments; no segment lies on the window's
-border where no wall is. Wrong windows: {wrong}.
-"""
-
-
-def correctness() -> tuple[str, int]:
-    """Return what was checked, and how many windows were wrong."""
-    said, wrong = [], 0
-    for name, file, origin in CITIES:
-        city = City.read(DATA / "osm" / file, name, origin)
-        segments = 0
-        for window in city.windows(WINDOWS, seed=1):
-            found = faults(city, window)
-            segments += city.index.map_of(window).segment_count
-            wrong += bool(found)
-            for fault in found:
-                print(f"{name}, {window}: {fault}", file=sys.stderr)
-        said.append(f"- {name}: {WINDOWS} windows of 30 m to 200 m, {segments} segments")
-    return "\n".join(said), wrong
+PARTS = ["maps"]
+"""Modules of benchmarks; each has ``measure(data)``."""
 
 
 def main() -> int:
-    """Measure, write the page, and return 1 if a window was wrong."""
+    """Measure the parts that are asked for; return 1 if one of them found something wrong."""
     if not DATA.is_dir():
         sys.exit(f"bench: the real data is not on this machine: {DATA} does not exist")
-    with tempfile.TemporaryDirectory() as folder:
-        publish(DATA / "osm" / "malta_2018_utm33n.gpkg", Path(folder))
-        speed = speed_tables(Path(folder))
-    checked, wrong = correctness()
-    page = TEXT.format(
-        machine=f"{os.cpu_count()} cores, {platform.machine()}, {platform.system()}",
-        day=date.today().isoformat(),
-        python=platform.python_version(),
-        numpy=np.__version__,
-        shapely=shapely.__version__,
-        gdal=gdal.__version__,
-        speed=speed,
-        growth=growth_table(),
-        campus=campus_table(DATA / "upc_campus_nord" / "upc_campus_nord_local.gpkg"),
-        quarter=quarter_table(DATA / "osm" / "momepy_bubenec.gpkg"),
-        correctness=checked,
-        wrong=wrong,
-    )
-    PAGE.write_text(page, encoding="utf-8")
-    print(page)
-    return 1 if wrong else 0
+    wanted = sys.argv[1:] or PARTS
+    unknown = sorted(set(wanted) - set(PARTS))
+    if unknown:
+        sys.exit(f"bench: there is no part {', '.join(unknown)}; choose from {', '.join(PARTS)}")
+    measured = [_measure(name) for name in wanted]
+    return int(any(part.failed for part in measured))
+
+
+def _measure(name: str) -> Part:
+    part: Part = importlib.import_module(f"benchmarks.{name}").measure(DATA)
+    page = PAGE.read_text(encoding="utf-8") if PAGE.is_file() else ""
+    PAGE.write_text(with_part(page, name, part, PARTS), encoding="utf-8")
+    print(f"## {part.heading}\n\n{part.text}")
+    return part
 
 
 if __name__ == "__main__":
