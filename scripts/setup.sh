@@ -1,5 +1,6 @@
 #!/bin/sh
-# Makes this machine ready: QGIS with its Python bindings, Xvfb, and the virtual environment .venv.
+# Makes this machine ready: QGIS with its Python bindings, Xvfb, the virtual environment .venv, and the database
+# servers that the tests start.
 # Uses what is there; installs what is missing with apt; says what to do where there is no apt.
 #
 #   PYTHON=/path/to/python3   the Python that can import qgis.core (default: the first such one on PATH)
@@ -45,6 +46,12 @@ missing_packages() {
     has Xvfb || echo xvfb
 }
 
+# What the tests start servers of their own from; nothing else needs them.
+missing_servers() {
+    has postgres || ls /usr/lib/postgresql/*/bin/postgres >/dev/null 2>&1 || echo postgresql
+    has mariadbd || [ -x /usr/sbin/mariadbd ] || echo mariadb-server
+}
+
 as_root() {
     if [ "$(id -u)" -eq 0 ]; then
         "$@"
@@ -87,6 +94,20 @@ install_packages() {
     rm -f "$log"
 }
 
+# Installs the database servers where that is possible; the services that come with them stay off.
+install_servers() {
+    if has apt-get && may_become_root; then
+        say "installing $* for the tests"
+        if apt_install "$@" >/dev/null 2>&1; then
+            for service in postgresql mariadb; do
+                case "$*" in *$service*) as_root systemctl disable --now $service >/dev/null 2>&1 || : ;; esac
+            done
+            return
+        fi
+    fi
+    say "not installed: $*; the tests on these databases will be skipped"
+}
+
 check_versions() {
     "$1" - "$OLDEST_QGIS" <<'PYTHON' || stop "$1 cannot be used: see the line above." \
         "Choose another one: make setup PYTHON=/path/to/python3"
@@ -125,6 +146,9 @@ python=${PYTHON:-$(find_pyqgis)}
 packages=$(missing_packages | sort -u | tr '\n' ' ')
 # shellcheck disable=SC2086 - one word for each package
 [ -z "$packages" ] || install_packages $packages
+servers=$(missing_servers | tr '\n' ' ')
+# shellcheck disable=SC2086 - one word for each package
+[ -z "$servers" ] || install_servers $servers
 
 python=${python:-$(find_pyqgis)}
 [ -n "$python" ] || stop "QGIS is installed, but no python3 on PATH can import qgis.core." \

@@ -12,6 +12,8 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "scripts"))
 sys.path.insert(0, str(Path(__file__).with_name("rig")))
 
+from stage.errors import StageError  # noqa: E402 - found by the paths above
+
 
 @pytest.fixture(scope="session")
 def sample_site(root) -> Path:
@@ -51,3 +53,40 @@ def start_bridge(tmp_path_factory):
         for bridge in bridges:
             bridge.hang_up()
             assert "Traceback" not in bridge.output(), bridge.output()
+
+
+@pytest.fixture(scope="session")
+def postgresql_server():
+    """A real PostgreSQL of these tests' own, which can make databases, be killed and come back."""
+    from stage.postgresql import PostgreSql
+
+    yield from _serving(PostgreSql())
+
+
+@pytest.fixture(scope="session")
+def mariadb_server():
+    """A real MariaDB of these tests' own; as ``postgresql_server``."""
+    from stage.mariadb import MariaDb
+
+    yield from _serving(MariaDb())
+
+
+def _serving(server):
+    try:
+        server.require_programs()
+    except StageError as error:
+        pytest.skip(str(error))
+    with server:
+        yield server
+
+
+@pytest.fixture
+def postgresql_url(postgresql_server) -> str:
+    """A new, empty PostgreSQL database: the URL of the account that owns it, which is no superuser."""
+    return postgresql_server.new_database()
+
+
+@pytest.fixture
+def mariadb_url(mariadb_server) -> str:
+    """A new, empty MariaDB database: the URL of the account that has all rights on it and none elsewhere."""
+    return mariadb_server.new_database()
