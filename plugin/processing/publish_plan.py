@@ -17,7 +17,14 @@ from qgis.core import (
     QgsVectorLayer,
 )
 
-from ...robot_bridge.sites.settings import Bounds, LivenessLimits, SiteSettings
+from ...robot_bridge.sites.settings import (
+    SETTINGS_FILE,
+    Bounds,
+    LivenessLimits,
+    SiteSettings,
+    earlier_settings,
+)
+from ...robot_bridge.sites.settings_toml import value_text
 from ..sites.content_reading import SiteSources, check_content_sources
 from ..sites.errors import LayerTypeError
 from ..sites.obstacle_source import Setups, obstacle_sources
@@ -40,6 +47,13 @@ FOLDER, REPLACE = "FOLDER", "REPLACE"
 SITE_ID, SITE_NAME, BOUNDS = "SITE_ID", "SITE_NAME", "BOUNDS"
 DEFAULT_WIDTH = "DEFAULT_WIDTH"
 TOLERANCE, STALE_AFTER, LOST_AFTER = "REACHED_TOLERANCE", "STALE_AFTER", "LOST_AFTER"
+
+LIMITS = {
+    TOLERANCE: ("site", "reached_tolerance_m", SiteSettings.reached_tolerance_m),
+    STALE_AFTER: ("liveness", "stale_after_s", LivenessLimits().stale_after_s),
+    LOST_AFTER: ("liveness", "lost_after_s", LivenessLimits().lost_after_s),
+}
+"""Table, key and default of the parameters that, not given, stay as they are in ``site.toml``."""
 
 LAYERS = {
     "OBSTACLES": OBSTACLE_ROLES,
@@ -156,9 +170,7 @@ def _check_published_crs(crs: QgsCoordinateReferenceSystem) -> None:
 def _settings(algorithm, parameters: Parameters, context, site: SitePlacing) -> tuple[SiteSettings, bool]:
     name, title = _names(algorithm, parameters, context)
     bounds = _bounds(algorithm, parameters, context, site)
-    numbers = {
-        key: algorithm.parameterAsDouble(parameters, key, context) for key in (STALE_AFTER, LOST_AFTER)
-    }
+    limits = _limits(algorithm, parameters, context, name)
     settings = SiteSettings(
         id=name,
         name=title,
@@ -167,10 +179,31 @@ def _settings(algorithm, parameters: Parameters, context, site: SitePlacing) -> 
         origin=site.frame.origin,
         bounds=bounds or WHERE_NOT_KNOWN,
         rotation_deg=round(math.degrees(site.frame.rotation), 9),
-        reached_tolerance_m=algorithm.parameterAsDouble(parameters, TOLERANCE, context),
-        liveness=LivenessLimits(numbers[STALE_AFTER], numbers[LOST_AFTER]),
+        reached_tolerance_m=limits[TOLERANCE],
+        liveness=LivenessLimits(limits[STALE_AFTER], limits[LOST_AFTER]),
     )
     return settings, bounds is not None
+
+
+def _limits(algorithm, parameters: Parameters, context, site: str) -> dict[str, float]:
+    """Return the limits that are given; of the others what the site is published with, else the default."""
+    folder = Path(algorithm.parameterAsFileOutput(parameters, FOLDER, context))
+    earlier = earlier_settings(folder, site)
+    limits = {}
+    for name, (table, key, default) in LIMITS.items():
+        found = value_text(earlier, table, key)
+        if parameters.get(name) is not None:
+            limits[name] = algorithm.parameterAsDouble(parameters, name, context)
+        else:
+            limits[name] = _number(found, f"{folder / SETTINGS_FILE}: {table}.{key}") if found else default
+    return limits
+
+
+def _number(text: str, place: str) -> float:
+    try:
+        return float(text.replace("_", ""))
+    except ValueError:
+        raise ParameterError(f"{place} = {text} is no number: correct it there.") from None
 
 
 def _names(algorithm, parameters: Parameters, context) -> tuple[str, str]:

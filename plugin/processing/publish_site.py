@@ -18,7 +18,7 @@ from qgis.core import (
     QgsProcessingParameterString,
 )
 
-from ...robot_bridge.sites.settings import Bounds, LivenessLimits
+from ...robot_bridge.sites.settings import Bounds, LivenessLimits, SiteSettings
 from ..errors import FleetError
 from ..sites.content_reading import read_content
 from ..sites.ground_reading import DEFAULT_WIDTH_M
@@ -166,12 +166,20 @@ def _value_parameters() -> list[QgsProcessingParameterDefinition]:
     numbers = (
         (DEFAULT_HEIGHT, "Height where none is known [m]", 3.0),
         (DEFAULT_WIDTH, "Width of a road where none is known [m]", DEFAULT_WIDTH_M),
-        (TOLERANCE, "A target is reached within [m]", 0.2),
+    )
+    limits = (
+        (TOLERANCE, "A target is reached within [m]", SiteSettings.reached_tolerance_m),
         (STALE_AFTER, "A robot is stale without a message for [s]", _LIMITS.stale_after_s),
         (LOST_AFTER, "A robot is lost without a message for [s]", _LIMITS.lost_after_s),
     )
     parameters: list[QgsProcessingParameterDefinition] = [
         QgsProcessingParameterNumber(name, title, _REAL, default) for name, title, default in numbers
+    ]
+    parameters += [
+        QgsProcessingParameterNumber(
+            name, f"{title} (default: as published, at first {default:g})", _REAL, optional=True
+        )
+        for name, title, default in limits
     ]
     parameters.append(
         QgsProcessingParameterBoolean(REPLACE, "Replace the publication of another site", defaultValue=False)

@@ -12,7 +12,13 @@ from qgis.core import QgsFeedback
 
 from ...robot_bridge.sites.errors import SettingsError
 from ...robot_bridge.sites.geopackage import GEOPACKAGE_FILE
-from ...robot_bridge.sites.settings import SETTINGS_FILE, SiteSettings, check_values, settings_text
+from ...robot_bridge.sites.settings import (
+    SETTINGS_FILE,
+    SiteSettings,
+    check_values,
+    earlier_settings,
+    settings_text,
+)
 from .errors import PublicationError
 from .site_content import SiteContent
 from .site_file import stamp_in, write_site_file
@@ -79,8 +85,9 @@ def next_version(settings: SiteSettings, folder: Path, *, replace_other: bool = 
 def publish(folder: Path, content: SiteContent, settings: SiteSettings, feedback: QgsFeedback) -> bool:
     """Publish ``content`` in ``folder``; return whether it was, false after a cancel.
 
-    Other files in ``folder`` stay. An earlier publication is replaced only after the new one is complete. A
-    gateway that reads between the replacement of the two files refuses what it finds and reads no half site.
+    Other files in ``folder`` stay, and in ``site.toml`` the tables that the operator set. An earlier
+    publication is replaced only after the new one is complete. A gateway that reads between the replacement
+    of the two files refuses what it finds and reads no half site.
 
     :raises PublicationError: when a setting is wrong or the folder cannot be written.
     """
@@ -92,7 +99,8 @@ def publish(folder: Path, content: SiteContent, settings: SiteSettings, feedback
         try:
             if not write_site_file(partial / GEOPACKAGE_FILE, content, settings, feedback):
                 return False
-            (partial / SETTINGS_FILE).write_text(settings_text(settings), encoding="utf-8")
+            text = settings_text(settings, earlier_settings(folder, settings.id))
+            (partial / SETTINGS_FILE).write_text(text, encoding="utf-8")
             if feedback.isCanceled():
                 return False
             _replace(partial, folder)

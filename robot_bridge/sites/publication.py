@@ -14,7 +14,14 @@ from .features import Area, Centreline
 from .geopackage import GEOPACKAGE_FILE, Layer, check_features, read_layers, write_layers
 from .layers import CENTRELINES, KEEPOUTS, OBSTACLES, SURFACES
 from .obstacle_layer import obstacle_layer, outlines_of
-from .settings import SETTINGS_FILE, SiteSettings, check_settings, read_settings, settings_text
+from .settings import (
+    SETTINGS_FILE,
+    SiteSettings,
+    check_settings,
+    earlier_settings,
+    read_settings,
+    settings_text,
+)
 from .site import Site
 
 
@@ -51,7 +58,8 @@ def write_site(
 ) -> None:
     """Publish a site in ``folder``: all geometry in the site frame, in metres.
 
-    Other files in ``folder`` stay. A publication that is there already is replaced only after the new one
+    Other files in ``folder`` stay, and so does in ``site.toml`` what the operator set there, see
+    :func:`settings_text`. A publication that is there already is replaced only after the new one
     is complete; one cut off between its two files is refused by :func:`read_site`, never read half.
 
     :raises SiteError: for what :func:`read_site` would refuse, and when the folder cannot be written.
@@ -81,7 +89,8 @@ def _write(folder: Path, settings: SiteSettings, layers: Sequence[Layer]) -> Non
     partial = Path(tempfile.mkdtemp(prefix=".publishing-", dir=folder))
     try:
         write_layers(partial / GEOPACKAGE_FILE, layers, settings.crs, settings.stamp)
-        (partial / SETTINGS_FILE).write_text(settings_text(settings), encoding="utf-8")
+        text = settings_text(settings, earlier_settings(folder, settings.id))
+        (partial / SETTINGS_FILE).write_text(text, encoding="utf-8")
         (partial / GEOPACKAGE_FILE).replace(folder / GEOPACKAGE_FILE)
         (partial / SETTINGS_FILE).replace(folder / SETTINGS_FILE)
     finally:

@@ -2,16 +2,42 @@
 
 from __future__ import annotations
 
-import json
+import difflib
 import math
 import re
-from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from collections.abc import Iterable, Mapping
+from dataclasses import asdict, dataclass, field, fields
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from .errors import CrsError, SettingsError
 from .frame import SiteFrame, check_site_crs
+from .settings_tables import (
+    CommandSettings,
+    GatewayOptions,
+    LivenessLimits,
+    ObservationSettings,
+    TrajectorySettings,
+    out_of_range,
+)
+from .settings_toml import changed_text, value_text
+
+__all__ = [
+    "SETTINGS_FILE",
+    "Bounds",
+    "CommandSettings",
+    "GatewayOptions",
+    "LivenessLimits",
+    "ObservationSettings",
+    "SiteSettings",
+    "TrajectorySettings",
+    "check_settings",
+    "check_values",
+    "earlier_settings",
+    "read_settings",
+    "settings_of",
+    "settings_text",
+]
 
 SETTINGS_FILE = "site.toml"
 
@@ -30,16 +56,8 @@ class Bounds(NamedTuple):
 
 
 @dataclass(frozen=True)
-class LivenessLimits:
-    """Seconds without a message after which a robot counts as stale and as lost (design, section 4)."""
-
-    stale_after_s: float = 3.0
-    lost_after_s: float = 10.0
-
-
-@dataclass(frozen=True)
 class SiteSettings:
-    """The content of ``site.toml``: table ``[site]``, and table ``[liveness]`` as ``liveness``.
+    """The content of ``site.toml``: the keys of table ``[site]``, and every other table under its name.
 
     ``origin`` is in CRS metres, ``rotation_deg`` counter-clockwise in degrees, ``bounds`` in the site frame.
     """
@@ -53,6 +71,10 @@ class SiteSettings:
     rotation_deg: float = 0.0
     reached_tolerance_m: float = 0.20
     liveness: LivenessLimits = field(default_factory=LivenessLimits)
+    commands: CommandSettings = field(default_factory=CommandSettings)
+    trajectories: TrajectorySettings = field(default_factory=TrajectorySettings)
+    observations: ObservationSettings = field(default_factory=ObservationSettings)
+    gateway: GatewayOptions = field(default_factory=GatewayOptions)
 
     @property
     def stamp(self) -> str:
@@ -78,11 +100,13 @@ def settings_of(tables: Mapping[str, Any], file: Path) -> SiteSettings:
 
     :raises SettingsError: as :func:`read_settings`.
     """
-    site, liveness = _table(tables, "site", file), _table(tables, "liveness", file, optional=True)
-    _refuse_unknown(tables, {"site", "liveness"}, "", file)
-    _refuse_unknown(site, {f.name for f in fields(SiteSettings)} - {"liveness"}, "site.", file)
-    _refuse_unknown(liveness, {f.name for f in fields(LivenessLimits)}, "liveness.", file)
-    settings = _convert({**site, "liveness": liveness}, file)
+    site = _table(tables, "site", file)
+    others = {name: _table(tables, name, file, optional=True) for name in TABLES}
+    _refuse_unknown(tables, {"site", *TABLES}, "", file)
+    _refuse_unknown(site, SITE_KEYS, "site.", file)
+    for name, table in others.items():
+        _refuse_unknown(table, {f.name for f in fields(TABLES[name])}, f"{name}.", file)
+    settings = _convert({**site, **others}, file)
     check_settings(settings, file)
     return settings
 
@@ -103,13 +127,42 @@ def check_values(settings: SiteSettings, file: Path) -> None:
         raise SettingsError(f"{file}: {wrong}")
 
 
-def settings_text(settings: SiteSettings) -> str:
-    """Return ``settings`` as the text of a ``site.toml``."""
-    site = {f.name: getattr(settings, f.name) for f in fields(settings) if f.name != "liveness"}
-    lines = ["[site]", *(f"{key} = {_toml(value)}" for key, value in site.items())]
-    limits = settings.liveness
-    lines += ["", "[liveness]", *(f"{f.name} = {_toml(getattr(limits, f.name))}" for f in fields(limits))]
-    return "\n".join(lines) + "\n"
+def settings_text(settings: SiteSettings, earlier: str = "") -> str:
+    """Return ``settings`` as the text of a ``site.toml``.
+
+    In the text of an ``earlier`` one only what a publication settles is changed: table ``[site]``, table
+    ``[liveness]`` and values of ``settings`` that are not the default. Everything else, comments and all, is
+    the operator's and stays.
+    """
+    everything = asdict(settings)
+    tables = {"site": {key: value for key, value in everything.items() if key not in TABLES}}
+    for name, kind in TABLES.items():
+        default = asdict(kind())
+        chosen = {k: v for k, v in everything[name].items() if name == "liveness" or v != default[k]}
+        if chosen:
+            tables[name] = chosen
+    return changed_text(earlier, tables)
+
+
+TABLES: dict[str, type[Any]] = {
+    "liveness": LivenessLimits,
+    "commands": CommandSettings,
+    "trajectories": TrajectorySettings,
+    "observations": ObservationSettings,
+    "gateway": GatewayOptions,
+}
+"""The tables beside ``[site]``, by name."""
+SITE_KEYS = {f.name for f in fields(SiteSettings)} - set(TABLES)
+
+
+def earlier_settings(folder: Path, id: str) -> str:
+    """Return the text of the ``site.toml`` in ``folder``; empty where none is, or one of another site."""
+    file = folder / SETTINGS_FILE
+    if not file.is_file():
+        return ""
+    text = file.read_text(encoding="utf-8", errors="replace")
+    found = value_text(text, "site", "id") or ""
+    return text if found[1:-1] == id else ""
 
 
 def _first_wrong(settings: SiteSettings) -> str | None:
@@ -119,7 +172,6 @@ def _first_wrong(settings: SiteSettings) -> str | None:
         "site.bounds": tuple(bounds),
         "site.rotation_deg": (settings.rotation_deg,),
         "site.reached_tolerance_m": (settings.reached_tolerance_m,),
-        "liveness": (limits.stale_after_s, limits.lost_after_s),
     }
     for key, values in numbers.items():
         if not all(math.isfinite(value) for value in values):
@@ -143,12 +195,14 @@ def _first_wrong(settings: SiteSettings) -> str | None:
             f"site.reached_tolerance_m = {settings.reached_tolerance_m} is not above 0 metres.",
         ),
         (
-            0 < limits.stale_after_s < limits.lost_after_s,
+            not limits.stale_after_s >= limits.lost_after_s,
             f"liveness.stale_after_s = {limits.stale_after_s} and lost_after_s = {limits.lost_after_s} "
-            "do not follow each other: a robot turns stale before it is lost, both after more than 0 s.",
+            "do not follow each other: a robot turns stale before it is lost.",
         ),
     )
-    return next((text for right, text in rules if not right), None)
+    wrong = [text for right, text in rules if not right]
+    wrong += [text for name in TABLES for text in out_of_range(name, getattr(settings, name))]
+    return next(iter(wrong), None)
 
 
 def _tables(file: Path) -> Mapping[str, Any]:
@@ -177,11 +231,13 @@ def _table(tables: Mapping[str, Any], name: str, file: Path, optional: bool = Fa
     return table
 
 
-def _refuse_unknown(table: Mapping[str, Any], known: set[str], prefix: str, file: Path) -> None:
+def _refuse_unknown(table: Mapping[str, Any], known: Iterable[str], prefix: str, file: Path) -> None:
     for key in table:
         if key not in known:
+            near = difflib.get_close_matches(key, known, n=1)
+            hint = f"did you mean {near[0]}? Known are" if near else "known are"
             raise SettingsError(
-                f"{file}: {prefix}{key} is not a setting: known are {', '.join(sorted(known))}. "
+                f"{file}: {prefix}{key} is not a setting: {hint} {', '.join(sorted(known))}. "
                 "Remove it or correct its name."
             )
 
@@ -204,7 +260,8 @@ def _convert(content: Mapping[str, Any], file: Path) -> SiteSettings:
 
 def _key(place: str) -> str:
     inner = place.lstrip(".")
-    return inner if inner.startswith("liveness") else f"site.{inner}".rstrip(".")
+    table = re.split(r"[.\[]", inner)[0]
+    return inner if table in TABLES else f"site.{inner}".rstrip(".")
 
 
 def _value_at(content: Any, place: str) -> str:
@@ -215,11 +272,3 @@ def _value_at(content: Any, place: str) -> str:
         except (KeyError, IndexError, TypeError):
             return ""
     return f" = {content!r}" if place else ""
-
-
-def _toml(value: Any) -> str:
-    if isinstance(value, str):
-        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
-    if isinstance(value, tuple):
-        return f"[{', '.join(_toml(item) for item in value)}]"
-    return repr(value)

@@ -136,6 +136,24 @@ def test_the_version_goes_up_by_itself(publish, yard):
     assert [publish(**yard).results["VERSION"] for _ in range(3)] == [1, 2, 3]
 
 
+def test_publishing_again_keeps_what_the_operator_wrote_into_the_settings(publish, yard):
+    file = publish(**yard, STALE_AFTER=2).folder / "site.toml"
+    text = file.read_text().replace("lost_after_s = 10.0", "lost_after_s = 30.0 # ours")
+    file.write_text(
+        text.replace("tolerance_m = 0.2", "tolerance_m = 0.5") + "[trajectories]\nkeep_days = 7\n"
+    )
+    settings = read_site(publish(**yard, STALE_AFTER=4).folder).settings
+    assert settings.version == 2 and settings.reached_tolerance_m == 0.5
+    assert (settings.liveness.stale_after_s, settings.liveness.lost_after_s) == (4.0, 30.0)
+    assert settings.trajectories.keep_days == 7.0
+
+
+def test_a_limit_in_the_settings_that_is_no_number_is_named(publish, refused, yard):
+    file = publish(**yard).folder / "site.toml"
+    file.write_text(file.read_text().replace("lost_after_s = 10.0", "lost_after_s = 'long'"))
+    assert f"{file}: liveness.lost_after_s = 'long' is no number: correct it there" in refused(**yard)
+
+
 def test_a_publication_cut_off_between_its_files_does_not_use_a_version_twice(publish, yard, tmp_path):
     folder = publish(**yard).folder
     old = (folder / "site.toml").read_bytes()
