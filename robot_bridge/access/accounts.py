@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from sqlalchemy import Connection, delete, func, insert, select, update
+from sqlalchemy import Connection, func, insert, select, update
 
 from ..messages import Role, check_robot_name
 from ..store.schema import operators, tokens
@@ -122,11 +122,6 @@ def revoke_robot_token(connection: Connection, robot: str, now: float) -> int:
     if not revoked:
         raise AccessError(f"robot {robot!r} has no token to revoke; 'robot-bridge robots tokens' lists them")
     return revoked
-
-
-def remove_robot_tokens(connection: Connection, robot: str) -> None:
-    """Forget every token of a robot, as when its account is removed."""
-    connection.execute(delete(tokens).where(tokens.c.kind == TokenKind.ROBOT.value, tokens.c.owner == robot))
 
 
 def robot_tokens(connection: Connection) -> list[Grant]:

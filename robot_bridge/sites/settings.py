@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 
 from .errors import CrsError, SettingsError
 from .frame import SiteFrame, check_site_crs
+from .limit_settings import LimitSettings
 from .settings_tables import (
     CommandSettings,
     GatewayOptions,
@@ -27,6 +28,7 @@ __all__ = [
     "Bounds",
     "CommandSettings",
     "GatewayOptions",
+    "LimitSettings",
     "LivenessLimits",
     "ObservationSettings",
     "SiteSettings",
@@ -75,6 +77,7 @@ class SiteSettings:
     trajectories: TrajectorySettings = field(default_factory=TrajectorySettings)
     observations: ObservationSettings = field(default_factory=ObservationSettings)
     gateway: GatewayOptions = field(default_factory=GatewayOptions)
+    limits: LimitSettings = field(default_factory=LimitSettings)
 
     @property
     def stamp(self) -> str:
@@ -150,6 +153,7 @@ TABLES: dict[str, type[Any]] = {
     "trajectories": TrajectorySettings,
     "observations": ObservationSettings,
     "gateway": GatewayOptions,
+    "limits": LimitSettings,
 }
 """The tables beside ``[site]``, by name."""
 SITE_KEYS = {f.name for f in fields(SiteSettings)} - set(TABLES)
@@ -198,6 +202,11 @@ def _first_wrong(settings: SiteSettings) -> str | None:
             not limits.stale_after_s >= limits.lost_after_s,
             f"liveness.stale_after_s = {limits.stale_after_s} and lost_after_s = {limits.lost_after_s} "
             "do not follow each other: a robot turns stale before it is lost.",
+        ),
+        (
+            all(re.fullmatch(r"https?://[^/\s]+", origin) for origin in settings.limits.origins),
+            f"limits.origins = {list(settings.limits.origins)}: write each like https://host or "
+            "https://host:port, without a path.",
         ),
     )
     wrong = [text for right, text in rules if not right]

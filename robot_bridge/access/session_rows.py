@@ -1,0 +1,87 @@
+"""The operators' sessions as the database keeps them."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import asdict, dataclass
+
+from sqlalchemy import Connection, delete, func, insert, select, update
+
+from ..store.schema import sessions
+from .errors import AccessError
+
+
+@dataclass(frozen=True)
+class SessionRow:
+    """One connection of an operator: who, with which token, from where, from when to when, and why it ended."""
+
+    id: str
+    operator: str
+    token: str | None
+    role: str
+    address: str
+    began_at: float
+    ended_at: float | None = None
+    reason: str | None = None
+
+
+def begin(connection: Connection, session: SessionRow) -> None:
+    """Write a new session."""
+    connection.execute(insert(sessions).values(**asdict(session)))
+
+
+def rename(connection: Connection, id: str, operator: str) -> None:
+    """Note who a session says it is."""
+    connection.execute(update(sessions).where(sessions.c.id == id).values(operator=operator))
+
+
+def end(connection: Connection, id: str, at: float, reason: str) -> SessionRow:
+    """Note the end of a session; a gateway that has it open closes it. Raises AccessError when none is open.
+
+    The session may also be named by the first digits of its id.
+    """
+    query = select(sessions).where(
+        sessions.c.ended_at.is_(None), sessions.c.id.startswith(id, autoescape=True)
+    )
+    found = connection.execute(query.limit(2)).mappings().all()
+    if len(found) != 1 or not id:
+        what = "is the beginning of several" if found and id else "is not open"
+        raise AccessError(f"session {id!r} {what}; 'robot-bridge sessions list' shows those that are")
+    note_end(connection, found[0]["id"], at, reason)
+    return SessionRow(**found[0])
+
+
+def note_end(connection: Connection, id: str, at: float, reason: str) -> None:
+    """Note the end of a session that has not been ended before."""
+    open_one = (sessions.c.id == id) & sessions.c.ended_at.is_(None)
+    connection.execute(update(sessions).where(open_one).values(ended_at=at, reason=reason))
+
+
+def end_all(connection: Connection, at: float, reason: str) -> None:
+    """Note the end of what an earlier gateway left open."""
+    query = update(sessions).where(sessions.c.ended_at.is_(None))
+    connection.execute(query.values(ended_at=at, reason=reason))
+
+
+def forget_ended(connection: Connection, before: float) -> None:
+    """Forget the sessions that ended before a time."""
+    connection.execute(delete(sessions).where(sessions.c.ended_at < before))
+
+
+def ended_among(connection: Connection, open_here: Collection[str]) -> dict[str, str]:
+    """Return which of the sessions that a gateway holds open somebody has ended, each with the reason."""
+    open_rows = select(func.count()).where(sessions.c.ended_at.is_(None))
+    if not open_here or connection.execute(open_rows).scalar_one() >= len(open_here):
+        return {}
+    query = select(sessions.c.id, sessions.c.reason).where(
+        sessions.c.id.in_(sorted(open_here)), sessions.c.ended_at.is_not(None)
+    )
+    return {id: reason or "" for id, reason in connection.execute(query)}
+
+
+def listed(connection: Connection, *, everything: bool, limit: int) -> list[SessionRow]:
+    """Return the sessions that are open, or ``everything``, newest first."""
+    query = select(sessions).order_by(sessions.c.began_at.desc(), sessions.c.id).limit(limit)
+    if not everything:
+        query = query.where(sessions.c.ended_at.is_(None))
+    return [SessionRow(**row) for row in connection.execute(query).mappings()]
