@@ -13,6 +13,7 @@ from sqlalchemy import (
     Column,
     DateTime,
     Double,
+    Identity,
     Index,
     Integer,
     LargeBinary,
@@ -36,7 +37,8 @@ _LongBytes = LargeBinary().with_variant(mysql.LONGBLOB, "mysql", "mariadb")
 
 
 def _id() -> Column[int]:
-    return Column("id", _Id, primary_key=True, autoincrement=True)
+    # On PostgreSQL an identity: robots need no right on its sequence, and can neither read nor wind it on.
+    return Column("id", _Id, Identity(), primary_key=True, autoincrement=True)
 
 
 def _robot(*, index: bool = True) -> Column[str]:
