@@ -43,10 +43,13 @@ from .messages import (
     to_json,
 )
 from .robots import Robot, Robots
-from .store import answers, commands, requests
+from .sites.settings import SiteSettings
+from .store import answers, commands, requests, trajectories
 from .store import robots as stored_robots
 from .store.answers import AnswerRow
 from .store.database import Database
+from .store.trajectories import Fix
+from .trajectories.recorder import Recorder
 from .wire import decode_answer
 
 log = logging.getLogger(__name__)
@@ -74,6 +77,10 @@ class MapSource(Protocol):
     def report(self) -> SiteReport:
         """The facts of the site."""
 
+    @property
+    def settings(self) -> SiteSettings:
+        """The settings of the site."""
+
     def contains(self, x: float, y: float) -> bool:
         """Tell whether (x, y), metres in the site frame, lies on the site."""
 
@@ -99,17 +106,15 @@ class Fleet:
         site: MapSource,
         database: Database,
         clock: Callable[[], float] = time.time,
-        expire_after: float = 300.0,
     ) -> None:
         self.site = site
         self._database = database
         self._clock = clock
-        self._expire_after = expire_after
         self.robots = Robots(site.report.stale_after, site.report.lost_after)
         self._book = CommandBook(
             database, site.report.reached_tolerance, clock, self._command_changed, self._outbox_changed
         )
-        self._fixes: list[stored_robots.Fix] = []
+        self.recorder = Recorder(lambda: self.site.settings.trajectories)
         self._unsaved: set[str] = set()
         self._outboxes: dict[str, asyncio.Event] = {}
         self._listeners: set[Listener] = set()
@@ -250,15 +255,29 @@ class Fleet:
 
     async def save(self) -> None:
         """Store where robots are and have been since the last call, and let old commands expire."""
-        fixes, self._fixes = self._fixes, []
+        await self._save()
+        while self.recorder.waiting:
+            await self._save()
+        await self._book.expire(self._clock() - self.site.settings.commands.expire_after_s)
+
+    async def finish_trajectories(self) -> None:
+        """Store where robots are and have been, up to the last position of each: the gateway ends."""
+        self.recorder.finish()
+        await self.save()
+
+    async def prune(self) -> None:
+        """Delete what the site's settings do not keep any longer, in small pieces."""
+        await self.recorder.prune(self._database, self._clock())
+
+    async def _save(self) -> None:
+        fixes = self.recorder.take(self._clock())
         unsaved, self._unsaved = self._unsaved, set()
         try:
             await self._database.run(_save, [self.robots.get(n) for n in unsaved if n in self.robots], fixes)
         except Exception:
-            self._fixes = fixes + self._fixes
+            self.recorder.give_back(fixes)
             self._unsaved |= unsaved
             raise
-        await self._book.expire(self._clock() - self._expire_after)
 
     # ---------------------------------------------------------------------------------------------------
 
@@ -276,7 +295,7 @@ class Fleet:
         if not self.robots.observe(robot, pose, link, now):
             return
         self._unsaved.add(robot)
-        self._fixes.append(stored_robots.Fix(robot, now, pose))
+        self.recorder.observe(Fix(robot, now, pose))
         await self._book.observe(robot, pose)
 
     def _stops(self, robot: str, request: Request) -> bool:
@@ -332,6 +351,6 @@ def _finish(
     requests.remove(connection, request_ids)
 
 
-def _save(connection: Connection, robots: Sequence[Robot], fixes: Sequence[stored_robots.Fix]) -> None:
+def _save(connection: Connection, robots: Sequence[Robot], fixes: Sequence[Fix]) -> None:
     stored_robots.save(connection, robots)
-    stored_robots.add_fixes(connection, fixes)
+    trajectories.add(connection, fixes)

@@ -123,7 +123,7 @@ async def run(settings: GatewaySettings, stop: asyncio.Event, started: Callable[
         await database.open()
         fleet = Fleet(SiteMaps(site), database)
         await fleet.start()
-        stack.push_async_callback(fleet.save)
+        stack.push_async_callback(fleet.finish_trajectories)
         gateway = Gateway(fleet, database)
         server = await gateway.serve(settings.host, settings.port)
         stack.push_async_callback(_close, server)

@@ -6,6 +6,7 @@ from functools import cached_property
 
 from .messages import SiteReport
 from .robotmap.binary import encode
+from .sites.settings import SiteSettings
 from .sites.site import Site
 
 
@@ -14,6 +15,11 @@ class SiteMaps:
 
     def __init__(self, site: Site) -> None:
         self._site = site
+
+    @property
+    def settings(self) -> SiteSettings:
+        """The settings of the site."""
+        return self._site.settings
 
     @property
     def report(self) -> SiteReport:

@@ -1,24 +1,15 @@
-"""The robots as they were last known, and where they have been."""
+"""The robots as they were last known."""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from typing import NamedTuple
 
 from sqlalchemy import Connection, delete, insert, select
 
 from ..messages import SendPos, to_json
 from ..robots import Robot
-from .schema import robots, trajectories
-
-
-class Fix(NamedTuple):
-    """A pose of a robot at the gateway's time ``received_at``."""
-
-    robot: str
-    received_at: float
-    pose: SendPos
+from .schema import robots
 
 
 def save(connection: Connection, known: Sequence[Robot]) -> None:
@@ -43,32 +34,6 @@ def load(connection: Connection) -> list[Robot]:
         )
         for row in connection.execute(select(robots)).mappings()
     ]
-
-
-def add_fixes(connection: Connection, fixes: Sequence[Fix]) -> None:
-    """Write places where robots have been."""
-    if not fixes:
-        return
-    rows = [
-        {
-            "robot": fix.robot,
-            "received_at": fix.received_at,
-            "x": fix.pose.x,
-            "y": fix.pose.y,
-            "theta": fix.pose.theta,
-            "v": fix.pose.v,
-            "device_time": fix.pose.t,
-        }
-        for fix in fixes
-    ]
-    connection.execute(insert(trajectories), rows)
-
-
-def trajectory(connection: Connection, robot: str) -> list[tuple[float, float, float]]:
-    """Return where the robot has been: gateway's time, x, y, oldest first."""
-    query = select(trajectories.c.received_at, trajectories.c.x, trajectories.c.y)
-    query = query.where(trajectories.c.robot == robot).order_by(trajectories.c.id)
-    return [(at, x, y) for at, x, y in connection.execute(query)]
 
 
 def _row(robot: Robot) -> dict[str, object]:

@@ -28,7 +28,7 @@ class Yard:
     async def start(self):
         self.database = Database(f"sqlite:///{self.file}")
         await self.database.open()
-        self.fleet = Fleet(self.site, self.database, clock=lambda: self.now, expire_after=300.0)
+        self.fleet = Fleet(self.site, self.database, clock=lambda: self.now)
         self.fleet.listen(self)
         await self.fleet.start()
         self.link = SqlLink(self.fleet, self.database)

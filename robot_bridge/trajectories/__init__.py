@@ -1,0 +1,1 @@
+"""Trajectories: which positions are stored, for how long, and how they leave the database."""

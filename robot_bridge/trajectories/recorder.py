@@ -1,0 +1,80 @@
+"""Positions on their way into the database: thinned, kept while it is away, deleted in time."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections import deque
+from collections.abc import Callable, Sequence
+
+from ..sites.settings import TrajectorySettings
+from ..store import trajectories
+from ..store.database import Database
+from ..store.trajectories import Fix
+from .thinning import Thinning
+
+log = logging.getLogger(__name__)
+
+BATCH = 5000
+"""positions in one transaction: a few hundredths of a second of the database's thread."""
+PRUNED_AT_ONCE = 1000
+PAUSE = 0.05
+"""seconds between two deletions, in which robots and operators have the database."""
+DAY = 86400.0
+
+
+class Recorder:
+    """Collects positions and hands them out in batches; ``settings`` is asked each time, so it may change."""
+
+    def __init__(self, settings: Callable[[], TrajectorySettings]) -> None:
+        self._settings = settings
+        self._thinning = Thinning()
+        self._waiting: deque[Fix] = deque()
+        self._told = False
+        self.given_up = 0
+
+    @property
+    def waiting(self) -> int:
+        """Return how many positions wait to be stored."""
+        return len(self._waiting)
+
+    def observe(self, fix: Fix) -> None:
+        """Take in where a robot is."""
+        if self._thinning.keeps(fix, self._settings()):
+            self._waiting.append(fix)
+
+    def take(self, now: float) -> list[Fix]:
+        """Return the oldest positions to be stored; what cannot be stored is handed to :meth:`give_back`."""
+        self._waiting.extend(self._thinning.silent(now - self._settings().max_interval_s))
+        self._told = self._told and len(self._waiting) > BATCH
+        return [self._waiting.popleft() for _ in range(min(BATCH, len(self._waiting)))]
+
+    def finish(self) -> None:
+        """Let the last position of every robot be stored, however near the one before: no more will come."""
+        self._waiting.extend(self._thinning.silent())
+
+    def give_back(self, fixes: Sequence[Fix]) -> None:
+        """Keep positions that could not be stored; beyond ``largest_backlog`` the oldest are given up."""
+        self._waiting.extendleft(reversed(fixes))
+        too_many = len(self._waiting) - self._settings().largest_backlog
+        if too_many <= 0:
+            return
+        for _ in range(too_many):
+            self._waiting.popleft()
+        if not self._told:
+            log.error(
+                "the database has been away for so long that positions are given up, the oldest first: more "
+                "than %d wait (trajectories.largest_backlog of site.toml)",
+                len(self._waiting),
+            )
+        self._told = True
+        self.given_up += too_many
+
+    async def prune(self, database: Database, now: float) -> int:
+        """Delete the positions that are older than ``keep_days``; return how many there were."""
+        end, removed = now - self._settings().keep_days * DAY, 0
+        while ids := await database.run(trajectories.older_than, end, PRUNED_AT_ONCE):
+            await database.run(trajectories.remove, ids)
+            removed += len(ids)
+            await asyncio.sleep(PAUSE)
+        return removed
