@@ -11,6 +11,7 @@ import numpy as np
 
 from .model import ShapeType
 from .outlines import OutlineRow
+from .watch import UNWATCHED, Watch
 
 LINES = (ShapeType.OPEN_POLYGON, ShapeType.OPEN_CURVE)
 
@@ -29,19 +30,20 @@ class _Part(NamedTuple):
     backwards: bool
 
 
-def chained(rows: Sequence[OutlineRow]) -> list[OutlineRow]:
+def chained(rows: Sequence[OutlineRow], watch: Watch = UNWATCHED) -> list[OutlineRow]:
     """Return ``rows`` with lines joined where exactly two of a kind meet, to the centimetre.
 
     Of a kind are lines that are alike in everything but points and source. A chain runs in the direction of
     its first line and stands in its place; its source is that of the first line and how many others are in
-    it, ``walls:3+7``. Lines have no free side, so some are turned round.
+    it, ``walls:3+7``. Lines have no free side, so some are turned round. Raises CancelledError when ``watch``
+    says so.
     """
     kinds: dict[Any, list[int]] = defaultdict(list)
     for k, row in enumerate(rows):
         if row.shape_type in LINES and len(row.points) > 1 and np.isfinite(row.points).all():
             kinds[_kind(row)].append(k)
     result = dict(enumerate(rows))
-    for members in kinds.values():
+    for members in watch.over(list(kinds.values())):
         partners = _partners(rows, members)
         for k in members:
             if k in result:

@@ -14,6 +14,7 @@ from .chaining import LINES
 from .errors import MissingGeometryError
 from .model import ShapeType
 from .outlines import OutlineRow
+from .watch import UNWATCHED, Watch
 
 _GRID = 0.01
 """metres; corners nearer than a map tells apart are the same when buildings are put together."""
@@ -21,14 +22,16 @@ _ALONG = 0.05
 """metres; a line this near to a building's wall is that wall once more."""
 
 
-def without_shared_walls(rows: Sequence[OutlineRow]) -> list[OutlineRow]:
+def without_shared_walls(rows: Sequence[OutlineRow], watch: Watch = UNWATCHED) -> list[OutlineRow]:
     """Return ``rows`` without what polygons that touch have between or inside each other.
 
     Each polygon keeps what of its outline lies on the outside of them all, with its height and source: a ring
     where that is whole, else open chains with free space to their right. Polygons that touch none are as they
-    were, and so are all that are no sound polygon. Raises MissingGeometryError without shapely.
+    were, and so are all that are no sound polygon. Raises MissingGeometryError without shapely,
+    CancelledError when ``watch`` says so.
     """
     shapely = shapely_module()
+    watch.at(0.0)
     groups = list(_polygons(rows))
     shapes = np.array([shape for _, shape in groups], dtype=object)
     one, other = shapely.STRtree(shapes).query(shapes, predicate="dwithin", distance=_GRID)
@@ -37,9 +40,10 @@ def without_shared_walls(rows: Sequence[OutlineRow]) -> list[OutlineRow]:
         return list(rows)
     replaced = {k for place in touching for k in groups[place][0]}
     result = [(k, row) for k, row in enumerate(rows) if k not in replaced]
+    watch.at(0.2)
     outside = shapely.union_all(shapely.set_precision(shapes[touching], _GRID), grid_size=_GRID)
     tree = shapely.STRtree(shapely.boundary(shapes[touching]))
-    for points, inner in _oriented_rings(outside):
+    for points, inner in watch.part(0.7, 1.0).over(list(_oriented_rings(outside))):
         middles = (points[:-1] + points[1:]) / 2
         segment, place = tree.query_nearest(shapely.points(middles), all_matches=True)
         owner = np.full(len(middles), len(touching))
@@ -50,16 +54,17 @@ def without_shared_walls(rows: Sequence[OutlineRow]) -> list[OutlineRow]:
     return [row for _, row in sorted(result, key=lambda item: item[0])]
 
 
-def without_hidden_lines(rows: Sequence[OutlineRow]) -> list[OutlineRow]:
+def without_hidden_lines(rows: Sequence[OutlineRow], watch: Watch = UNWATCHED) -> list[OutlineRow]:
     """Return ``rows`` with only those parts of lines that lie outside of all polygons and not along them.
 
-    A line runs along a polygon within 5 cm of it. Raises MissingGeometryError without shapely.
+    A line runs along a polygon within 5 cm of it. Raises MissingGeometryError without shapely,
+    CancelledError when ``watch`` says so.
     """
     shapely = shapely_module()
     solid = shapely.buffer([shape for _, shape in _polygons(rows)], _ALONG, join_style="mitre")
     tree = shapely.STRtree(solid)
     result: list[OutlineRow] = []
-    for row in rows:
+    for row in watch.over(rows):
         line = _line(row)
         near = tree.query(line, predicate="intersects") if line is not None else ()
         if not len(near):

@@ -27,5 +27,9 @@ class ShapingError(RobotMapError):
     """Something that cannot be asked of outlines; names it and what to give instead."""
 
 
+class CancelledError(RobotMapError):
+    """Work was ended midway by whoever asked for it."""
+
+
 class MissingGeometryError(RobotMapError):
     """Reducing outlines needs a package that this Python does not have."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -13,6 +13,7 @@ from .errors import ShapingError
 from .model import ShapeType
 from .outlines import OutlineRow, Outlines
 from .simplifying import simplified, without_short_segments
+from .watch import Watch
 
 _STEP_SLACK = 1e-6
 """of a height step; 0.3 m is three steps of 0.1 m, not four."""
@@ -45,29 +46,54 @@ class Shaping:
             raise ShapingError(f"plane is {self.plane}; give the lower and the upper height in metres")
 
 
-def shaped(outlines: Outlines, shaping: Shaping) -> Outlines:
+def shaped(
+    outlines: Outlines,
+    shaping: Shaping,
+    progress: Callable[[float], None] | None = None,
+    cancelled: Callable[[], bool] | None = None,
+) -> Outlines:
     """Return ``outlines`` as ``shaping`` asks for.
 
+    ``progress`` is told how much is done, 0 to 1; ``cancelled`` is asked again and again whether to end.
     Outlines that are broken stay as they are; the builder names them. Raises MissingGeometryError where
-    shapely is needed and missing.
+    shapely is needed and missing, CancelledError when ``cancelled`` said so.
     """
-    rows: Iterable[OutlineRow] = outlines.rows()
-    if shaping.plane is not None:
-        rows = [row for row in rows if _in_plane(row, *shaping.plane)]
-    if shaping.height_step:
-        rows = [replace(row, height=_rounded_up(row.height, shaping.height_step)) for row in rows]
+    stages, watch = _stages(shaping), Watch(progress, cancelled)
+    rows: Sequence[OutlineRow] = outlines.rows()
+    for k, stage in enumerate(stages):
+        rows = stage(rows, watch.part(k / len(stages), (k + 1) / len(stages)))
+    watch.at(1.0)
+    return Outlines.from_rows(rows)
+
+
+Stage = Callable[[Sequence[OutlineRow], Watch], Sequence[OutlineRow]]
+
+
+def _stages(shaping: Shaping) -> list[Stage]:
+    """Return what is to be done, in its order."""
+    plane, step = shaping.plane, shaping.height_step
+    shortest, tolerance = shaping.shortest, shaping.tolerance
+    stages: list[Stage] = []
+    if plane is not None:
+        stages.append(lambda rows, watch: [row for row in watch.over(rows) if _in_plane(row, *plane)])
+    if step:
+        stages.append(
+            lambda rows, watch: [
+                replace(row, height=_rounded_up(row.height, step)) for row in watch.over(rows)
+            ]
+        )
     if shaping.dissolve:
-        rows = without_hidden_lines(list(rows))
+        stages.append(without_hidden_lines)
     if shaping.chain:
-        rows = chained(list(rows))
+        stages.append(chained)
     # After chaining: what is left of a polygon's outline has a free side and may not be turned round.
     if shaping.dissolve:
-        rows = without_shared_walls(list(rows))
-    if shaping.shortest:
-        rows = [without_short_segments(row, shaping.shortest) for row in rows]
-    if shaping.tolerance:
-        rows = [simplified(row, shaping.tolerance) for row in rows]
-    return Outlines.from_rows(list(rows))
+        stages.append(without_shared_walls)
+    if shortest:
+        stages.append(lambda rows, watch: [without_short_segments(row, shortest) for row in watch.over(rows)])
+    if tolerance:
+        stages.append(lambda rows, watch: [simplified(row, tolerance) for row in watch.over(rows)])
+    return stages
 
 
 def _in_plane(row: OutlineRow, low: float, high: float) -> bool:
