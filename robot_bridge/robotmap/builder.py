@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from .clipping import clip
 from .errors import WindowError
 from .model import Border, Obstacle, RobotMap, ShapeType
 from .outlines import Outlines
-from .segments import Segments, clip, is_closed, oriented_segments, without_vanished
+from .segments import Segments, is_closed, oriented_segments, without_vanished
 from .usable import Inspection, inspected
 from .window import Window
 

@@ -1,4 +1,4 @@
-"""Which of many boxes touch a rectangle: a grid that only knows the cells where something is."""
+"""Which of many boxes may touch a rectangle: a grid that only knows the cells where something is."""
 
 from __future__ import annotations
 
@@ -11,75 +11,56 @@ from numpy.typing import NDArray
 from .model import Border
 
 _SMALLEST_CELL = 20.0
-"""metres; a robot's window is some cells wide, and a cell holds some buildings."""
-_MOST_CELLS = 16
-"""of one box; larger boxes are looked at in every query."""
-_FARTHEST = 1 << 30
-"""cells from the first; what lies beyond is looked at in every query."""
+"""metres; a robot's window is some cells wide, and a cell holds some walls."""
+_GROWTH = 8
+"""How much larger the cells of the next level are."""
+_LEVELS = 12
+_FARTHEST = 1 << 28
+"""cells from the first; what lies beyond is taken to be there."""
+_ROW = 4 * _FARTHEST
+_LEVEL = 2 * _FARTHEST * _ROW
+_FITS = 0.999
+"""of a cell; spares the largest boxes from rounding."""
 
 
 class BoxGrid:
-    """K boxes from ``low`` to ``high``, (K, 2) each, metres."""
+    """n boxes from ``low`` to ``high``, (n, 2) each, finite metres, each in the cell of its lower corner.
+
+    A box is in the first level whose cells are larger than itself, so a rectangle has to look at no more
+    than one further row and column of cells. ``order``, (n,) int64, are the boxes cell by cell.
+    """
 
     def __init__(self, low: NDArray[Any], high: NDArray[Any]) -> None:
-        self._sides = np.concatenate([low, -high], axis=1)
-        sides = (high - low).max(axis=1) if len(low) else np.zeros(0)
-        self._cell = max(_SMALLEST_CELL, 2 * float(np.median(sides))) if len(low) else _SMALLEST_CELL
-        self._origin = np.median(low, axis=0) if len(low) else np.zeros(2)
-        first, last = self._cells(low), self._cells(high)
-        spans = last - first + 1
-        near = (np.abs(first) < _FARTHEST).all(axis=1) & (np.abs(last) < _FARTHEST).all(axis=1)
-        small = near & (spans <= _MOST_CELLS).all(axis=1) & (spans.prod(axis=1) <= _MOST_CELLS)
-        self._large = np.flatnonzero(~small)
-        counts = spans[small].prod(axis=1)
-        owner = np.repeat(np.flatnonzero(small), counts)
-        number = np.arange(len(owner)) - np.repeat(counts.cumsum() - counts, counts)
-        across = spans[owner, 0]
-        keys = _key(first[owner, 0] + number % across, first[owner, 1] + number // across)
-        order = np.argsort(keys, kind="stable")
-        self._keys, self._boxes = keys[order], owner[order]
+        self._origin = np.median(low, axis=0).tolist() if len(low) else [0.0, 0.0]
+        sizes = _SMALLEST_CELL * float(_GROWTH) ** np.arange(_LEVELS)
+        level = np.searchsorted(_FITS * sizes, (high - low).max(axis=1, initial=0.0))
+        placed = level < _LEVELS
+        cell = np.floor((low - self._origin) / sizes[np.minimum(level, _LEVELS - 1)][:, None])
+        column, row = cell.clip(-_FARTHEST, _FARTHEST).astype(np.int64).T
+        keys = np.where(placed, level * _LEVEL + row * _ROW + column, _LEVELS * _LEVEL)
+        self.order: NDArray[Any] = np.argsort(keys, kind="stable")
+        self._keys, starts = np.unique(keys[self.order], return_index=True)
+        self._starts = np.append(starts, len(keys))
+        # Boxes larger than any cell are looked at in every query.
+        self._always = [] if placed.all() else [slice(int(placed.sum()), len(keys))]
+        self._levels = [(int(k) * _LEVEL, float(sizes[k])) for k in np.unique(level[placed])]
 
-    def touching(self, border: Border) -> NDArray[Any]:
-        """Return which boxes touch ``border``, in rising order."""
-        (left, lower), (right, upper) = self._corners(border)
-        if upper - lower >= len(self._keys):
-            everywhere: NDArray[Any] = np.flatnonzero(self._touch(slice(None), border))
-            return everywhere
-        rows = np.arange(lower, upper + 1)
-        first = self._keys.searchsorted(_key(left, rows)).tolist()
-        last = self._keys.searchsorted(_key(right, rows), side="right").tolist()
-        found = [self._boxes[start:end] for start, end in zip(first, last, strict=True)]
-        candidates = np.concatenate([*found, self._large])
-        near = candidates[self._touch(candidates, border)]
-        near.sort()
-        again = np.zeros(len(near), dtype=bool)
-        again[1:] = near[1:] == near[:-1]
-        once: NDArray[Any] = near[~again]
-        return once
-
-    def _touch(self, which: Any, border: Border) -> NDArray[Any]:
-        limits = (border.x_max, border.y_max, -border.x_min, -border.y_min)
-        touch: NDArray[Any] = (self._sides[which] <= limits).all(axis=1)
-        return touch
-
-    def _corners(self, border: Border) -> tuple[tuple[int, int], tuple[int, int]]:
-        """Return the columns and rows of the border's corners, as :meth:`_cells` does for many."""
-        x, y = self._origin.tolist()
-        return (
-            (_cell(border.x_min, x, self._cell), _cell(border.y_min, y, self._cell)),
-            (_cell(border.x_max, x, self._cell), _cell(border.y_max, y, self._cell)),
-        )
-
-    def _cells(self, points: NDArray[Any]) -> NDArray[Any]:
-        cells = np.floor((points - self._origin) / self._cell)
-        numbers: NDArray[Any] = cells.clip(-2.0 * _FARTHEST, 2.0 * _FARTHEST).astype(np.int64)
-        return numbers
+    def spans(self, border: Border) -> list[slice]:
+        """Return where in ``order`` the boxes are that may touch ``border``."""
+        x, y = self._origin
+        begins: list[int] = []
+        ends: list[int] = []
+        for base, size in self._levels:
+            left, right = _cell((border.x_min - size - x) / size), _cell((border.x_max - x) / size)
+            lower, upper = _cell((border.y_min - size - y) / size), _cell((border.y_max - y) / size)
+            if upper - lower >= len(self._keys):
+                return [slice(0, len(self.order))]
+            first, last = base + lower * _ROW + left, base + upper * _ROW + left
+            begins += range(first, last + 1, _ROW)
+            ends += range(first + right - left + 1, last + right - left + 2, _ROW)
+        places = self._starts.take(self._keys.searchsorted(begins + ends)).tolist() if begins else []
+        return [*map(slice, places[: len(begins)], places[len(begins) :]), *self._always]
 
 
-def _cell(value: float, origin: float, size: float) -> int:
-    return int(max(-_FARTHEST, min(_FARTHEST, math.floor((value - origin) / size))))
-
-
-def _key(column: Any, row: NDArray[Any]) -> NDArray[Any]:
-    key: NDArray[Any] = row * (4 * _FARTHEST) + column
-    return key
+def _cell(number: float) -> int:
+    return math.floor(max(-_FARTHEST, min(_FARTHEST, number)))

@@ -1,18 +1,15 @@
-"""Outlines turned into oriented segments, and segments clipped by a rectangle; arrays throughout."""
+"""Outlines turned into oriented segments; arrays throughout."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .model import Border, ShapeType
+from .model import ShapeType
 from .outlines import Outlines
-
-_ON_BORDER = 1e-7
-"""metres; how far floating point may put a cut off its border where coordinates are large."""
 
 CLOSED_TYPES = (ShapeType.CLOSED_POLYGON, ShapeType.CLOSED_CURVE, ShapeType.RAMP)
 _IS_CLOSED = np.array([t in [int(closed) for closed in CLOSED_TYPES] for t in range(len(ShapeType) + 1)])
@@ -22,15 +19,31 @@ _IS_CLOSED = np.array([t in [int(closed) for closed in CLOSED_TYPES] for t in ra
 class Segments:
     """n oriented segments in the order of their outlines.
 
-    ``outline`` is the row each belongs to. ``joined`` tells whether a segment begins where the one before
-    it in the arrays ends, both of the same outline and neither cut there.
+    ``outline`` is the row each belongs to. ``number`` rises; a segment that begins where the one before it
+    in its outline ends has the next number, any other one a number beyond that. ``cut``, (2, n) bool, tells
+    which are cut where they begin, and which where they end.
     """
 
     a: NDArray[Any]
     b: NDArray[Any]
     height: NDArray[Any]
     outline: NDArray[Any]
-    joined: NDArray[Any]
+    number: NDArray[Any]
+    cut: NDArray[Any]
+
+    @property
+    def joined(self) -> NDArray[Any]:
+        """Whether each begins where the one before it in the arrays ends, neither cut there, (n,) bool."""
+        joined = np.zeros(len(self.number), dtype=bool)
+        joined[1:] = (np.diff(self.number) == 1) & ~self.cut[1, :-1] & ~self.cut[0, 1:]
+        return joined
+
+
+def uncut(
+    a: NDArray[Any], b: NDArray[Any], height: NDArray[Any], outline: NDArray[Any], joined: NDArray[Any]
+) -> Segments:
+    """Return segments that nothing has cut; ``joined`` tells which go on where the one before them ends."""
+    return Segments(a, b, height, outline, np.cumsum(2 - joined), np.zeros((2, len(a)), dtype=bool))
 
 
 def is_closed(shape_type: NDArray[Any]) -> NDArray[Any]:
@@ -77,7 +90,7 @@ def oriented_segments(outlines: Outlines, usable: NDArray[Any]) -> Segments:
     joined = np.zeros(len(start), dtype=bool)
     joined[1:] = (outline[1:] == outline[:-1]) & ~stairs[outline[1:]]
     turn = _seen_from_above(outlines, a, b, outline)[:, None]
-    segments = Segments(np.where(turn, b, a), np.where(turn, a, b), height, outline, joined)
+    segments = uncut(np.where(turn, b, a), np.where(turn, a, b), height, outline, joined)
     backwards = is_closed(outlines.shape_type) & ((signed_areas(outlines) > 0) == outlines.courtyard)
     return _turned_round(segments, backwards) if backwards.any() else segments
 
@@ -104,64 +117,7 @@ def _turned_round(segments: Segments, backwards: NDArray[Any]) -> Segments:
     order = np.where(turn, first + last - position, position)
     a = np.where(turn[:, None], segments.b[order], segments.a[order])
     b = np.where(turn[:, None], segments.a[order], segments.b[order])
-    return Segments(a, b, segments.height[order], segments.outline, segments.joined)
-
-
-def clip(segments: Segments, border: Border) -> Segments:
-    """Return what of the segments lies inside ``border`` (Liang and Barsky's clipping, 1984).
-
-    Segments are cut one by one, so no wall is invented along the border. Where one is cut is rounded to
-    centimetres.
-    """
-    direction = segments.b - segments.a
-    low, high = np.array([border.x_min, border.y_min]), np.array([border.x_max, border.y_max])
-    # Towards each of the four sides: where p < 0 the segment comes in there, where p > 0 it goes out there.
-    p = np.concatenate([0.0 - direction.T, direction.T])
-    q = np.concatenate([(segments.a - low).T, (high - segments.a).T])
-    with np.errstate(divide="ignore", invalid="ignore"):
-        t = q / p
-    enter = np.where(p < 0, t, 0.0).max(axis=0, initial=0.0)
-    # Along a side, t is minus infinity outside it, infinity inside, and no number on it.
-    leave = np.fmin.reduce(np.where(p < 0, 1.0, t), axis=0, initial=1.0)
-    return _between(segments, direction, enter, leave, enter < leave, border)
-
-
-def _between(
-    segments: Segments,
-    direction: NDArray[Any],
-    enter: NDArray[Any],
-    leave: NDArray[Any],
-    inside: NDArray[Any],
-    border: Border,
-) -> Segments:
-    """Return the segments marked in ``inside``, each from ``enter`` to ``leave`` of its length (0 to 1)."""
-    kept = np.flatnonzero(inside)
-    enter, leave = enter[kept], leave[kept]
-    a, b = segments.a[kept], segments.b[kept]
-    joined = segments.joined[kept] & (enter == 0)
-    joined[1:] &= (kept[1:] == kept[:-1] + 1) & (leave[:-1] == 1)
-    joined[:1] = False
-    begun, ended = np.flatnonzero(enter > 0), np.flatnonzero(leave < 1)
-    cut, share = np.concatenate([begun, ended]), np.concatenate([enter[begun], leave[ended]])
-    if len(cut):
-        points = _cut_point(a[cut] + share[:, None] * direction[kept[cut]], border)
-        a[begun], b[ended] = points[: len(begun)], points[len(begun) :]
-    return Segments(a, b, segments.height[kept], segments.outline[kept], joined)
-
-
-def _cut_point(points: NDArray[Any], border: Border) -> NDArray[Any]:
-    """Return ``points``, (n, 2) on the border, in centimetres.
-
-    A coordinate that is near another side of the border and not on it stays off it: rounded onto it, the
-    stub that a segment leaves in a corner would become a wall along the border.
-    """
-    low, high = np.array([border.x_min, border.y_min]), np.array([border.x_max, border.y_max])
-    rounded: NDArray[Any] = np.round(points, 2).clip(low, high)
-    beside = ((rounded == low) | (rounded == high)) & (np.abs(points - rounded) > _ON_BORDER)
-    if beside.any():
-        step_in = np.where(rounded == low, 0.01, -0.01)
-        rounded = np.where(beside, np.round(rounded + step_in, 2), rounded)
-    return rounded
+    return replace(segments, a=a, b=b, height=segments.height[order])
 
 
 def without_vanished(segments: Segments) -> Segments:
@@ -172,4 +128,4 @@ def without_vanished(segments: Segments) -> Segments:
     run = np.cumsum(~segments.joined)[kept]
     joined = np.zeros(len(run), dtype=bool)
     joined[1:] = run[1:] == run[:-1]
-    return Segments(a[kept], b[kept], segments.height[kept], segments.outline[kept], joined)
+    return uncut(a[kept], b[kept], segments.height[kept], segments.outline[kept], joined)

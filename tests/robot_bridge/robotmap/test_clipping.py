@@ -70,6 +70,14 @@ def test_every_segment_lies_on_the_line_it_comes_from(line):
     assert all(drawn.covers(shapely.LineString(pair)) for pair in zip(a, b, strict=True))
 
 
+@given(lines)
+def test_every_end_that_is_no_corner_of_the_line_lies_on_the_border(line):
+    ends = np.concatenate(segments(build_map(outlines(row(line)), WINDOW)))
+    corner = (ends[:, None] == np.array(line)).all(axis=2).any(axis=1)
+    on_border = (np.abs(ends) == (10, 6)).any(axis=1)
+    assert (corner | on_border).all()
+
+
 @given(st.one_of(lines, rings.map(lambda hull: list(hull.exterior.coords))))
 def test_no_segment_lies_on_the_border_unless_one_of_the_input_does(line):
     a, b = segments(build_map(outlines(row(line)), WINDOW))
