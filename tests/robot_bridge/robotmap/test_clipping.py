@@ -5,6 +5,7 @@ from __future__ import annotations
 from itertools import pairwise
 
 import numpy as np
+import pytest
 import shapely
 from hypothesis import assume, given
 from hypothesis import strategies as st
@@ -76,6 +77,13 @@ def test_every_end_that_is_no_corner_of_the_line_lies_on_the_border(line):
     corner = (ends[:, None] == np.array(line)).all(axis=2).any(axis=1)
     on_border = (np.abs(ends) == (10, 6)).any(axis=1)
     assert (corner | on_border).all()
+
+
+@pytest.mark.parametrize("sign", [(1, 1), (1, -1), (-1, 1), (-1, -1)])
+def test_the_stub_of_a_segment_in_a_corner_is_no_wall_along_the_border(sign):
+    across = np.array([(-10.03, -5.94), (-9.98, -6.03)]) * sign
+    a, b = segments(build_map(outlines(row(across)), WINDOW))
+    assert (a * sign).tolist() == [[-10, -5.99]] and (b * sign).tolist() == [[-9.99, -6]]
 
 
 @given(st.one_of(lines, rings.map(lambda hull: list(hull.exterior.coords))))
