@@ -11,12 +11,24 @@ class StoreError(BridgeError):
     """The database cannot be opened, read or written."""
 
 
+class DataRefusedError(StoreError):
+    """The database is in order and refuses a value: too long, or of a kind that it cannot hold."""
+
+
+class UncertainError(StoreError):
+    """The connection was lost during a commit: what it was to store may be stored or not."""
+
+
 class RefusedError(BridgeError):
     """A request that was understood and is not done: unknown robot, target outside the site, ..."""
 
 
 class ForbiddenError(RefusedError):
     """A request that the operator's role does not allow."""
+
+
+class HopelessError(BridgeError):
+    """The gateway cannot go on: its process ends with this text, to be started anew."""
 
 
 class NotReadyError(BridgeError):

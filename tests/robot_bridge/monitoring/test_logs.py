@@ -1,0 +1,68 @@
+"""The log: lines for people or JSON for programs, neither with a secret in it."""
+
+import io
+import json
+import logging
+
+import pytest
+
+from robot_bridge.access.tokens import TokenKind, new_token
+from robot_bridge.monitoring.logs import set_up_log, without_secrets
+
+
+@pytest.fixture
+def root_log():
+    root = logging.getLogger()
+    before = root.handlers[:], root.level
+    yield logging.getLogger("robot_bridge.test")
+    root.handlers[:], root.level = before[0], before[1]
+
+
+def test_json_lines_hold_time_level_logger_and_text(root_log):
+    stream = io.StringIO()
+    set_up_log("json", "info", stream)
+    root_log.info("robot %r said\nwhat č", "r1")
+    root_log.debug("not this")
+    (line,) = stream.getvalue().splitlines()
+    entry = json.loads(line)
+    assert entry.pop("time").endswith("+00:00")
+    assert entry == {"level": "info", "logger": "robot_bridge.test", "message": "robot 'r1' said\nwhat č"}
+
+
+def test_an_exception_is_part_of_its_line(root_log):
+    stream = io.StringIO()
+    set_up_log("json", stream=stream)
+    try:
+        raise ValueError("postgresql://fleet:hunter2@db/fleet")
+    except ValueError:
+        root_log.exception("sql link: unexpected")
+    entry = json.loads(stream.getvalue())
+    assert "Traceback" in entry["exception"] and "hunter2" not in stream.getvalue()
+
+
+@pytest.mark.parametrize("form", ["text", "json"])
+@pytest.mark.parametrize("kind", list(TokenKind))
+def test_a_token_is_not_in_the_log(root_log, form, kind):
+    stream, token = io.StringIO(), new_token(kind)
+    set_up_log(form, stream=stream)
+    root_log.warning("refused: %s", token)
+    root_log.warning("Authorization: Bearer %s", token)
+    assert token not in stream.getvalue() and token[-20:] not in stream.getvalue()
+    assert stream.getvalue().count("***") == 2
+
+
+@pytest.mark.parametrize(
+    ("text", "shown"),
+    [
+        ("postgresql+psycopg://fleet:hun:ter2@db/f", "postgresql+psycopg://fleet:***@db/f"),
+        ("mariadb://fleet:p%40ss@127.0.0.1:3306/f", "mariadb://fleet:***@127.0.0.1:3306/f"),
+        ("password=hunter2 host=db", "password=*** host=db"),
+        ("password = 'two words' host=db", "password = *** host=db"),
+        ("authorization: bearer abc.def", "authorization: bearer ***"),
+        ("sqlite:////srv/fleet/fleet.db", "sqlite:////srv/fleet/fleet.db"),
+        ("ws://127.0.0.1:8765/robot?robot=r1", "ws://127.0.0.1:8765/robot?robot=r1"),
+        ("wrong token: have it rotated", "wrong token: have it rotated"),
+    ],
+)
+def test_what_looks_like_a_password_is_masked_and_nothing_else(text, shown):
+    assert without_secrets(text) == shown

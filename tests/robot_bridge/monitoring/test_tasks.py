@@ -1,0 +1,122 @@
+"""The gateway's own tasks: what fails is logged, counted and tried again; what cannot go on says so."""
+
+import asyncio
+import os
+import socket
+
+import pytest
+
+from robot_bridge.errors import HopelessError, StoreError
+from robot_bridge.monitoring import tasks
+from robot_bridge.monitoring.notify import notify, watchdog_interval
+from robot_bridge.monitoring.tally import Tally
+
+
+@pytest.fixture(autouse=True)
+def short_pauses(monkeypatch):
+    monkeypatch.setattr(tasks, "FIRST_PAUSE", 0.001)
+    monkeypatch.setattr(tasks, "LONGEST_PAUSE", 0.002)
+
+
+def failing(times, error):
+    """Return work that fails so many times and then is done, and the list of its attempts."""
+    attempts = []
+
+    async def work():
+        attempts.append(len(attempts))
+        if len(attempts) <= times:
+            raise error
+
+    return work, attempts
+
+
+async def test_what_fails_is_logged_counted_and_tried_again(caplog):
+    tally = Tally()
+    work, attempts = failing(3, ZeroDivisionError("3 / 0"))
+    await tasks.keep_going("sql link", work, tally)
+    assert len(attempts) == 4 and tally.failures == {"sql link": 3}
+    assert [record.exc_info is not None for record in caplog.records] == [True] * 3
+    assert "sql link: unexpected ZeroDivisionError; trying again in 0.001 s" in caplog.text
+
+
+async def test_what_the_bridge_foresaw_is_one_line_and_may_last_as_long_as_it_likes(caplog):
+    tally = Tally()
+    work, attempts = failing(3 * tasks.LAST_ATTEMPT, StoreError("database away"))
+    await tasks.keep_going("save", work, tally)
+    assert len(attempts) == 3 * tasks.LAST_ATTEMPT + 1
+    assert caplog.records[0].getMessage() == "save: database away; trying again in 0.001 s"
+    assert not any(record.exc_info for record in caplog.records)
+
+
+async def test_what_fails_again_and_again_for_a_reason_nobody_foresaw_ends_the_gateway():
+    work, attempts = failing(1000, KeyError("x"))
+    with pytest.raises(HopelessError, match=r"age failed 20 times in a row, last with KeyError: 'x'"):
+        await tasks.keep_going("age", work, Tally())
+    assert len(attempts) == tasks.LAST_ATTEMPT
+
+
+async def test_what_cannot_go_on_is_not_tried_again():
+    work, attempts = failing(1, HopelessError("another gateway took over"))
+    with pytest.raises(HopelessError, match="another gateway took over"):
+        await tasks.keep_going("lock", work, Tally())
+    assert len(attempts) == 1
+
+
+async def test_failures_long_before_do_not_count(monkeypatch):
+    monkeypatch.setattr(tasks, "SOUND", -1.0)
+    work, attempts = failing(2 * tasks.LAST_ATTEMPT, KeyError("x"))
+    await tasks.keep_going("age", work, Tally())
+    assert len(attempts) == 2 * tasks.LAST_ATTEMPT + 1
+
+
+async def test_a_task_that_works_has_a_beat():
+    tally = Tally()
+
+    async def work():
+        if tally.age("save") is not None:
+            raise HopelessError("enough")
+
+    with pytest.raises(HopelessError):
+        await tasks.every(0.001, work, "save", tally)
+    assert 0 <= tally.age("save") < 5 and tally.age("other") is None
+
+
+async def test_a_task_that_is_cancelled_ends():
+    async def work():
+        await asyncio.sleep(60)
+
+    task = asyncio.create_task(tasks.keep_going("age", work, Tally()))
+    await asyncio.sleep(0.01)
+    task.cancel()
+    with pytest.raises(asyncio.CancelledError):
+        await task
+
+
+@pytest.mark.parametrize("abstract", [False, True])
+def test_systemd_is_told(tmp_path, monkeypatch, abstract):
+    name = f"@robot-bridge-test-{os.getpid()}" if abstract else str(tmp_path / "notify")
+    with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as manager:
+        manager.bind("\0" + name[1:] if abstract else name)
+        manager.settimeout(2)
+        monkeypatch.setenv("NOTIFY_SOCKET", name)
+        notify("READY=1", "STATUS=listening")
+        assert manager.recv(1000) == b"READY=1\nSTATUS=listening"
+
+
+def test_nobody_is_told_where_nobody_asks(monkeypatch):
+    monkeypatch.delenv("NOTIFY_SOCKET", raising=False)
+    notify("READY=1")
+    monkeypatch.setenv("NOTIFY_SOCKET", "/nowhere/notify")
+    notify("READY=1")
+
+
+@pytest.mark.parametrize(
+    ("limit", "process", "interval"),
+    [("10000000", None, 5.0), ("10000000", "self", 5.0), ("10000000", "1", None), ("", None, None)],
+)
+def test_the_watchdog_is_fed_twice_as_often_as_it_asks(monkeypatch, limit, process, interval):
+    monkeypatch.setenv("WATCHDOG_USEC", limit)
+    monkeypatch.setenv(
+        "WATCHDOG_PID", "" if process is None else str(os.getpid()) if process == "self" else process
+    )
+    assert watchdog_interval() == interval
