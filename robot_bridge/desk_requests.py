@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-import time
+import base64
 from collections.abc import Awaitable, Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -17,13 +17,16 @@ from .messages import (
     CommandReport,
     DeskRequest,
     GetCommands,
+    GetImage,
+    GetObservations,
     GetPositions,
-    RobotReport,
+    ReviewObservation,
     Role,
     Send,
     SetPositions,
     to_json,
 )
+from .snapshots import positions
 
 Json = dict[str, Any]
 
@@ -59,11 +62,6 @@ async def answer(fleet: Fleet, request: DeskRequest, caller: Caller) -> Json:
     return await service.answer(fleet, request, caller)
 
 
-def positions(robots: Sequence[RobotReport]) -> Json:
-    """Return reports as the parameters of ``positions`` and the result of ``get_positions``."""
-    return {"t": round(time.time(), 3), "robots": [to_json(robot) for robot in robots]}
-
-
 def _commands(reports: Sequence[CommandReport]) -> Json:
     return {"commands": [to_json(report) for report in reports]}
 
@@ -88,9 +86,26 @@ async def _get_commands(fleet: Fleet, request: GetCommands, _caller: Caller) -> 
     return _commands(await fleet.commands(request.robot, request.limit))
 
 
+async def _get_observations(fleet: Fleet, request: GetObservations, _caller: Caller) -> Json:
+    found = await fleet.observations.newest(request)
+    return {"observations": [to_json(report) for report in found]}
+
+
+async def _get_image(fleet: Fleet, request: GetImage, _caller: Caller) -> Json:
+    image, media_type = await fleet.observations.image(request.observation)
+    return {"media_type": media_type, "image": base64.b64encode(image).decode("ascii")}
+
+
+async def _review_observation(fleet: Fleet, request: ReviewObservation, caller: Caller) -> Json:
+    return to_json(await fleet.observations.review(request, caller.operator))
+
+
 SERVICES: dict[type[DeskRequest], Service] = {
     GetPositions: Service(Role.VIEWER, _get_positions),
     GetCommands: Service(Role.VIEWER, _get_commands),
+    GetObservations: Service(Role.VIEWER, _get_observations),
+    GetImage: Service(Role.VIEWER, _get_image),
+    ReviewObservation: Service(Role.OPERATOR, _review_observation),
     Send: Service(Role.OPERATOR, _send),
     SetPositions: Service(Role.OPERATOR, _set_positions),
     AbortAll: Service(Role.OPERATOR, _abort_all),

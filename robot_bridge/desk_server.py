@@ -4,20 +4,35 @@ from __future__ import annotations
 
 import asyncio
 import logging
-from dataclasses import replace
+import secrets
+import time
 from typing import Any
 
-from websockets.asyncio.server import ServerConnection
+import msgspec
 from websockets.exceptions import ConnectionClosed
 
 from . import jsonrpc
-from .desk_requests import Caller, answer, positions
+from .access.gate import Gate
+from .access.visitor import Visitor
+from .desk_requests import Caller, answer
 from .errors import BridgeError
 from .fleet import Fleet
-from .messages import PROTOCOL_VERSION, DeskRequest, Hello, MessageError, Role, Subscribe, to_json
+from .messages import (
+    DESK_REQUESTS,
+    PROTOCOL_VERSION,
+    DeskRequest,
+    Hello,
+    MessageError,
+    Subscribe,
+    to_json,
+)
+from .snapshots import EVERYTHING, next_tick
 from .wire import decode_desk_request, error_code
 
 log = logging.getLogger(__name__)
+
+UNNOTED = ("hello", "subscribe")
+"""Requests that change nothing but the connection they come from."""
 
 
 class DeskSession:
@@ -27,11 +42,13 @@ class DeskSession:
     what waits for it never grows beyond one entry for each robot and command.
     """
 
-    def __init__(self, fleet: Fleet, connection: ServerConnection) -> None:
+    def __init__(self, fleet: Fleet, snapshots: Snapshots, connection: Visitor, gate: Gate) -> None:
         self._fleet = fleet
+        self._snapshots = snapshots
         self._connection = connection
-        address = str(connection.remote_address[0])
-        self._caller = Caller(f"desk {address}", Role.SUPERVISOR, address)
+        self._gate = gate
+        assert connection.identity is not None
+        self._operator = connection.identity.name or f"desk {connection.address}"
         self._news: dict[tuple[str, str], dict[str, Any]] = {}
         self._news_event = asyncio.Event()
         self._tasks: dict[str, asyncio.Task[None]] = {}
@@ -56,18 +73,46 @@ class DeskSession:
         self._news_event.set()
 
     async def _answer(self, frame: str | bytes) -> str:
-        id: int | str | None = None
+        call = None
         try:
             call = jsonrpc.decode(frame)
             if not isinstance(call, jsonrpc.Call):
                 raise jsonrpc.FrameError(jsonrpc.INVALID_REQUEST, "a desk sends requests only", call.id)
-            id = call.id
-            return jsonrpc.result(id, await self._do(decode_desk_request(call.method, call.params)))
+            result = jsonrpc.result(call.id, await self._do(decode_desk_request(call.method, call.params)))
         except jsonrpc.FrameError as error:
             return jsonrpc.error(error.id, error.code, str(error))
         except (MessageError, BridgeError) as error:
-            log.warning("desk of %s: %s", self._caller.operator, error)
-            return jsonrpc.error(id, error_code(error), str(error))
+            log.warning("desk of %s: %s", self._operator, error)
+            return self._refused(call, error_code(error), str(error))
+        except Exception:
+            number = secrets.token_hex(4)
+            log.exception("desk of %s: internal error %s", self._operator, number)
+            text = f"internal error {number}; the gateway's log says more under this number"
+            return self._refused(call, jsonrpc.INTERNAL_ERROR, text)
+        self._note(call)
+        return result
+
+    def _refused(self, call: jsonrpc.Call | jsonrpc.Reply | None, code: int, text: str) -> str:
+        if isinstance(call, jsonrpc.Call):
+            self._note(call, text)
+        return jsonrpc.error(call.id if call else None, code, text)
+
+    def _note(self, call: jsonrpc.Call, refusal: str | None = None) -> None:
+        """Write down who asked for what to be changed, whether it was done or refused."""
+        if call.method not in DESK_REQUESTS or call.method in UNNOTED or call.method.startswith("get_"):
+            return
+        asked = call.params if isinstance(call.params, dict) else {}
+        names = (asked.get(name) for name in ("robot", "session", "observation", "command"))
+        params = msgspec.json.encode(asked).decode()
+        self._gate.journal.note(
+            self._operator,
+            call.method,
+            done=refusal is None,
+            role=self._gate.role(self._connection).value,
+            address=self._connection.address,
+            subject=next((str(name) for name in names if name is not None), None),
+            detail=params if refusal is None else f"{refusal}; {params}",
+        )
 
     async def _do(self, request: DeskRequest) -> dict[str, Any]:
         if isinstance(request, Hello):
@@ -75,7 +120,8 @@ class DeskSession:
         if isinstance(request, Subscribe):
             self._start("positions", self._push_positions(1 / request.rate))
             return {}
-        return await answer(self._fleet, request, self._caller)
+        role = self._gate.role(self._connection)
+        return await answer(self._fleet, request, Caller(self._operator, role, self._connection.address))
 
     def _hello(self, request: Hello) -> dict[str, Any]:
         if request.protocol != PROTOCOL_VERSION:
@@ -85,8 +131,13 @@ class DeskSession:
             )
         if not request.operator.strip():
             raise MessageError("hello: operator is empty; give the operator's name, it goes into the log")
-        self._caller = replace(self._caller, operator=request.operator.strip()[:128])
-        return {"protocol": PROTOCOL_VERSION, "site": to_json(self._fleet.site.report)}
+        self._operator = self._gate.name_desk(self._connection, request.operator.strip()[:128])
+        return {
+            "protocol": PROTOCOL_VERSION,
+            "site": to_json(self._fleet.site.report),
+            "operator": self._operator,
+            "role": self._gate.role(self._connection).value,
+        }
 
     def _start(self, name: str, work: Any) -> None:
         if name in self._tasks:
@@ -94,14 +145,16 @@ class DeskSession:
         self._tasks[name] = asyncio.create_task(work)
 
     async def _push_positions(self, interval: float) -> None:
-        seen = -1
+        seen = EVERYTHING
         try:
             while True:
-                changed = self._fleet.reports(since=seen)
-                seen = self._fleet.robots.revision
-                if changed:
-                    await self._connection.send(jsonrpc.call("positions", positions(changed)))
-                await asyncio.sleep(interval)
+                frame, revision = self._fleet.snapshots.after(seen)
+                tick = time.monotonic() // interval
+                if frame is not None:
+                    await self._connection.send(frame, text=True)
+                await asyncio.sleep(next_tick(interval))
+                missed = time.monotonic() // interval > tick + 1.5
+                seen = EVERYTHING if missed else revision
         except ConnectionClosed:
             return
 

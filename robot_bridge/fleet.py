@@ -44,6 +44,7 @@ from .messages import (
 )
 from .robots import Robot, Robots
 from .sites.settings import SiteSettings
+from .snapshots import Snapshots
 from .store import answers, commands, requests, trajectories
 from .store import robots as stored_robots
 from .store.answers import AnswerRow
@@ -111,6 +112,7 @@ class Fleet:
         self._database = database
         self._clock = clock
         self.robots = Robots(site.report.stale_after, site.report.lost_after)
+        self.snapshots = Snapshots(self.robots, self.reports)
         self._book = CommandBook(
             database, site.report.reached_tolerance, clock, self._command_changed, self._outbox_changed
         )
