@@ -42,9 +42,8 @@ class DeskSession:
     what waits for it never grows beyond one entry for each robot and command.
     """
 
-    def __init__(self, fleet: Fleet, snapshots: Snapshots, connection: Visitor, gate: Gate) -> None:
+    def __init__(self, fleet: Fleet, connection: Visitor, gate: Gate) -> None:
         self._fleet = fleet
-        self._snapshots = snapshots
         self._connection = connection
         self._gate = gate
         assert connection.identity is not None

@@ -5,19 +5,25 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import http
-import ipaddress
 import logging
 import socket
+import time
 from collections.abc import Callable, Coroutine
 from dataclasses import dataclass
 from pathlib import Path
 from urllib.parse import parse_qs, urlsplit
 
-from websockets.asyncio.server import Server, ServerConnection, serve
+from websockets.asyncio.server import Server
 from websockets.http11 import Request, Response
 
+from .access.gate import Gate
+from .access.port import listen
+from .access.reach import check_reach, is_loopback
+from .access.tls import ServerFiles, ServerTls
+from .access.tokens import TokenKind
+from .access.visitor import Visitor
 from .desk_server import DeskSession
-from .errors import BridgeError, StoreError
+from .errors import StoreError
 from .fleet import Fleet
 from .links.sql import SqlLink
 from .links.websocket import WebSocketLink
@@ -28,7 +34,6 @@ from .store.database import Database
 
 log = logging.getLogger(__name__)
 
-LARGEST_FRAME = 1 << 20
 AGE_INTERVAL = 0.25
 SAVE_INTERVAL = 1.0
 
@@ -41,35 +46,23 @@ class GatewaySettings:
     database: str
     host: str = "127.0.0.1"
     port: int = 8765
+    tls: ServerFiles | None = None
 
 
 class Gateway:
     """One site, one database, one port with ``/robot`` and ``/desk``."""
 
-    def __init__(self, fleet: Fleet, database: Database) -> None:
+    def __init__(self, fleet: Fleet, database: Database, gate: Gate, tls: ServerTls | None = None) -> None:
         self._fleet = fleet
         self._database = database
+        self._gate = gate
+        self._tls = tls
         self._robots = WebSocketLink(fleet)
 
     async def serve(self, host: str, port: int) -> Server:
-        """Listen; browsers are refused, since any page they show could reach a local port."""
-        try:
-            return await serve(
-                self._connected,
-                host,
-                port,
-                process_request=self._check_path,
-                origins=[None],
-                max_size=LARGEST_FRAME,
-                compression=None,
-                ping_interval=5,
-                ping_timeout=5,
-            )
-        except OSError as error:
-            raise BridgeError(
-                f"cannot listen on {host}:{port}: {error.strerror or error}; "
-                "choose another --port, or 0 for any"
-            ) from error
+        """Listen for robots and operators; raises BridgeError when that cannot be done there."""
+        context = self._tls.context if self._tls else None
+        return await listen(self._gate, host, port, context, self._admit, self._connected)
 
     async def watch(self) -> None:
         """Keep liveness, trajectories, expiry and the SQL link going until cancelled."""
@@ -77,6 +70,10 @@ class Gateway:
             tasks.create_task(SqlLink(self._fleet, self._database).run())
             tasks.create_task(self._age())
             tasks.create_task(self._save())
+            tasks.create_task(self._gate.watch())
+            tasks.create_task(self._gate.journal.run())
+            if self._tls is not None:
+                tasks.create_task(self._tls.watch())
 
     async def _age(self) -> None:
         while True:
@@ -91,23 +88,34 @@ class Gateway:
             except StoreError as error:
                 log.error("%s; positions are kept and stored later", error)
 
-    def _check_path(self, connection: ServerConnection, request: Request) -> Response | None:
+    async def _admit(self, visitor: Visitor, request: Request) -> Response | None:
+        if (refusal := self._gate.refuse_page(visitor, request)) is not None:
+            return refusal
         path = urlsplit(request.path).path
         if path not in ("/robot", "/desk"):
             text = f"{path} is not served here; robots connect to /robot, operators to /desk\n"
-            return connection.respond(http.HTTPStatus.NOT_FOUND, text)
+            return visitor.respond(http.HTTPStatus.NOT_FOUND, text)
         try:
-            _robot_name(request.path)
+            name = _robot_name(request.path)
         except MessageError as error:
-            return connection.respond(http.HTTPStatus.BAD_REQUEST, f"{error}\n")
-        return None
+            return visitor.respond(http.HTTPStatus.BAD_REQUEST, f"{error}\n")
+        kind = TokenKind.OPERATOR if path == "/desk" else TokenKind.ROBOT
+        return await self._gate.admit(visitor, request, kind, name, self._largest_message(kind))
 
-    async def _connected(self, connection: ServerConnection) -> None:
-        assert connection.request is not None
-        if urlsplit(connection.request.path).path == "/desk":
-            await DeskSession(self._fleet, connection).run()
+    def _largest_message(self, kind: TokenKind) -> int:
+        largest = self._gate.limits.largest_message_bytes
+        if kind is TokenKind.OPERATOR:
+            return largest
+        # An image travels as base64, four bytes for three, with its parameters beside it.
+        image = self._fleet.site.settings.observations.largest_image_bytes
+        return max(largest, image * 4 // 3 + 65_536)
+
+    async def _connected(self, visitor: Visitor) -> None:
+        assert visitor.identity is not None
+        if visitor.identity.kind is TokenKind.OPERATOR:
+            await DeskSession(self._fleet, visitor, self._gate).run()
         else:
-            await self._robots.serve(connection, _robot_name(connection.request.path))
+            await self._robots.serve(visitor, visitor.identity.name)
 
 
 async def run(settings: GatewaySettings, stop: asyncio.Event, started: Callable[[str], None]) -> None:
@@ -115,19 +123,24 @@ async def run(settings: GatewaySettings, stop: asyncio.Event, started: Callable[
 
     :raises BridgeError: when it may not listen there; SiteError and StoreError for its site and database.
     """
-    check_loopback(settings.host)
+    tls = ServerTls(settings.tls) if settings.tls else None
     site = await asyncio.to_thread(read_site, settings.site)
     async with contextlib.AsyncExitStack() as stack:
         database = Database(settings.database)
         stack.push_async_callback(database.close)
         await database.open()
+        gate = Gate(database, site.settings.limits, may_be_open=is_loopback(settings.host))
+        await gate.open()
+        accounts = gate.book.has_operator(time.time())
+        check_reach(settings.host, tls=tls is not None, accounts=accounts)
         fleet = Fleet(SiteMaps(site), database)
         await fleet.start()
         stack.push_async_callback(fleet.finish_trajectories)
-        gateway = Gateway(fleet, database)
+        stack.push_async_callback(gate.close)
+        gateway = Gateway(fleet, database, gate, tls)
         server = await gateway.serve(settings.host, settings.port)
         stack.push_async_callback(_close, server)
-        started(_address(server))
+        started(_address(server, tls is not None))
         await _until_stopped(gateway.watch(), stop)
 
 
@@ -148,25 +161,13 @@ async def _close(server: Server) -> None:
         await asyncio.wait_for(server.wait_closed(), 3)
 
 
-def check_loopback(host: str) -> None:
-    """Refuse to listen beyond this computer: there is no TLS yet. Raises BridgeError."""
-    try:
-        address = ipaddress.ip_address("127.0.0.1" if host == "localhost" else host)
-    except ValueError:
-        raise BridgeError(f"host {host!r} is not an IP address; use 127.0.0.1 or ::1") from None
-    if not address.is_loopback:
-        raise BridgeError(
-            f"host {host} can be reached from other computers, and the gateway speaks without TLS; "
-            "use 127.0.0.1, and let robots in through a tunnel such as SSH"
-        )
-
-
 def _robot_name(path: str) -> str | None:
     names = parse_qs(urlsplit(path).query).get("robot")
     return check_robot_name(names[0]) if names else None
 
 
-def _address(server: Server) -> str:
+def _address(server: Server, tls: bool) -> str:
     sock = next(iter(server.sockets))
     host, port = sock.getsockname()[:2]
-    return f"ws://[{host}]:{port}" if sock.family == socket.AF_INET6 else f"ws://{host}:{port}"
+    scheme = "wss" if tls else "ws"
+    return f"{scheme}://[{host}]:{port}" if sock.family == socket.AF_INET6 else f"{scheme}://{host}:{port}"

@@ -31,8 +31,8 @@ class Journal:
     """The audit log and the sessions of a running gateway.
 
     What is noted is written within milliseconds, in the order in which it happened. While the database is
-    away it waits here, up to :data:`LARGEST_BACKLOG` pieces; beyond that the oldest are lost, and the log says how
-    many.
+    away it waits here, up to :data:`LARGEST_BACKLOG` pieces; beyond that the oldest are lost, and how many is
+    said.
     """
 
     def __init__(self, database: Database, clock: Callable[[], float] = time.time) -> None:

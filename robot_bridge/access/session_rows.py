@@ -13,7 +13,7 @@ from .errors import AccessError
 
 @dataclass(frozen=True)
 class SessionRow:
-    """One connection of an operator: who, with which token, from where, from when to when, and why it ended."""
+    """One connection of an operator: who, with which token, from where, from when to when, why it ended."""
 
     id: str
     operator: str

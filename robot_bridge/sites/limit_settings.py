@@ -17,10 +17,10 @@ class LimitSettings:
     ``robot_messages_per_s`` and ``desk_messages_per_s`` are for each connection, with a burst of so many at
     once. ``robots`` and ``desks`` are connections in all, ``per_address`` those from one IP address,
     ``desks_per_account`` those of one operator. ``pending_per_address`` counts those from one address that
-    have not been let in yet; they have ``handshake_s`` for that. Whoever was let in has ``first_message_s`` to
-    say something; a robot may be silent for ``silent_s`` at most. A client that takes nothing of what is sent
-    to it for ``stuck_s`` is cut off; ``send_buffer_bytes`` is what may wait for it in the system. ``origins``
-    are the web pages, as ``https://host:port``, whose scripts may connect.
+    have not been let in yet; they have ``handshake_s`` for that. Whoever was let in has ``first_message_s``
+    to say something; a robot may be silent for ``silent_s`` at most. A client that takes nothing of what is
+    sent to it for ``stuck_s`` is cut off; ``send_buffer_bytes`` is what may wait for it in the system.
+    ``origins`` are the web pages, as ``https://host:port``, whose scripts may connect.
     """
 
     largest_message_bytes: int = _number(1_048_576, 1024, 256_000_000)

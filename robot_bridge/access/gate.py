@@ -1,0 +1,242 @@
+"""Who is let in, and who is shown the door again."""
+
+from __future__ import annotations
+
+import asyncio
+import http
+import logging
+import time
+from collections.abc import Callable
+
+from websockets.http11 import Request, Response
+
+from ..errors import StoreError
+from ..messages import Role
+from ..sites.limit_settings import LimitSettings
+from ..store.database import Database
+from . import session_rows
+from .account_book import AccountBook
+from .accounts import Grant
+from .buckets import Bucket
+from .guests import Guests
+from .journal import Journal
+from .session_rows import SessionRow
+from .tokens import TokenKind, bearer, new_id
+from .visitor import Identity, Visitor
+
+log = logging.getLogger(__name__)
+
+LOOK_INTERVAL = 0.4
+"""Seconds after which a token that was revoked elsewhere is noticed."""
+READ_AGAIN_AFTER = 0.1
+"""Seconds between two readings of the accounts because of a token that is not known."""
+REVOKED = 4003
+"""Close code of a connection whose token does not hold any more."""
+ENDED = 4004
+"""Close code of a session that somebody ended."""
+MOST_ADDRESSES = 10_000
+PATHS = {TokenKind.ROBOT: "/robot", TokenKind.OPERATOR: "/desk"}
+
+
+class Gate:
+    """Tells by its token who a connection belongs to, and ends it when the token does not hold any more.
+
+    Where nobody ever made a token of a kind, and ``may_be_open``, everybody is let in: a gateway that only
+    its own computer can reach needs no accounts. Operators are then supervisors.
+    """
+
+    def __init__(
+        self,
+        database: Database,
+        limits: LimitSettings,
+        *,
+        may_be_open: bool,
+        clock: Callable[[], float] = time.time,
+    ) -> None:
+        self.limits = limits
+        self.journal = Journal(database, clock)
+        self.book = AccountBook(database)
+        self._guests = Guests(limits, self.journal)
+        self._database = database
+        self._may_be_open = may_be_open
+        self._clock = clock
+        self._read_at = 0.0
+        self._failures: dict[str, Bucket] = {}
+
+    async def open(self) -> None:
+        """Read the accounts, and note the end of what an earlier gateway left open; raises StoreError."""
+        await self._database.run(session_rows.end_all, self._clock(), "the gateway ended")
+        await self.book.refresh()
+        for kind, path in PATHS.items():
+            if self._is_open(kind):
+                log.warning("%s is open to everybody on this computer: no %s has a token", path, kind.value)
+
+    async def watch(self) -> None:
+        """Take over changed accounts, and end what does not hold any more, until cancelled."""
+        while True:
+            await asyncio.sleep(LOOK_INTERVAL)
+            try:
+                await self.look()
+            except StoreError as error:
+                log.error("%s; accounts stay as they were last read", error)
+
+    async def look(self) -> None:
+        """Take over changed accounts, and end what does not hold any more; raises StoreError."""
+        await self.book.refresh()
+        for visitor, identity in self._guests:
+            if (fault := self._fault(identity)) is not None:
+                self._guests.end(visitor, REVOKED, fault)
+        desks = self._guests.sessions
+        ended = await self._database.run(session_rows.ended_among, list(desks))
+        for session, reason in ended.items():
+            self._guests.end(desks[session], ENDED, reason)
+
+    async def close(self) -> None:
+        """Write what waits to be written down."""
+        try:
+            await self.journal.flush()
+        except StoreError as error:
+            log.error("%s; the end of the audit log is lost", error)
+
+    # --- connections come and go ----------------------------------------------------------------------
+
+    def arrived(self, visitor: Visitor) -> bool:
+        """Count a connection that has not said yet what it wants; false when it is one too many."""
+        return self._guests.arrived(visitor)
+
+    def left(self, visitor: Visitor) -> None:
+        """Count a connection that is gone."""
+        self._guests.left(visitor)
+
+    def name_desk(self, visitor: Visitor, operator: str) -> str:
+        """Return the operator of a desk that says to be ``operator``: its account, where there are any."""
+        assert visitor.identity is not None
+        if visitor.identity.name is not None:
+            return visitor.identity.name
+        self.journal.renamed(visitor.identity.session, operator)
+        return operator
+
+    def role(self, visitor: Visitor) -> Role:
+        """Return what a desk may do now."""
+        assert visitor.identity is not None
+        if visitor.identity.token is None:
+            return Role.SUPERVISOR
+        grant = self.book.grant(visitor.identity.token)
+        return (grant.role if grant is not None else None) or Role.VIEWER
+
+    # --- who is let in --------------------------------------------------------------------------------
+
+    def refuse_page(self, visitor: Visitor, request: Request) -> Response | None:
+        """Return what a script of a web page that may not connect is told, None for everybody else."""
+        if all(origin in self.limits.origins for origin in request.headers.get_all("Origin")):
+            return None
+        return visitor.respond(
+            http.HTTPStatus.FORBIDDEN,
+            "Web pages may not connect here; 'origins' in [limits] of site.toml names those that may.\n",
+        )
+
+    async def may_read(self, visitor: Visitor, request: Request) -> Response | None:
+        """Return what somebody is told who may not read the gateway's own pages, None for a viewer."""
+        found = await self._identify(visitor, request, TokenKind.OPERATOR)
+        return found if isinstance(found, Response) else None
+
+    async def admit(
+        self, visitor: Visitor, request: Request, kind: TokenKind, name: str | None, largest_message: int
+    ) -> Response | None:
+        """Let a visitor in as a desk, or as the robot it says to be, or return what it is told instead."""
+        found = await self._identify(visitor, request, kind)
+        if isinstance(found, Response):
+            return found
+        if kind is TokenKind.ROBOT:
+            if found.name is None:
+                found = Identity(kind, name, None, found.session)
+            elif name not in (None, found.name):
+                self._note_refusal(visitor, found.name, f"/robot: asked to be robot {name}")
+                text = f"This token is robot {found.name}'s, not {name}'s; give each robot its own.\n"
+                return visitor.respond(http.HTTPStatus.FORBIDDEN, text)
+        if (text := self._guests.crowded(visitor, found) or "") != "":
+            return _later(visitor, http.HTTPStatus.SERVICE_UNAVAILABLE, text, 5)
+        self._guests.enter(visitor, found, largest_message)
+        self._note_login(visitor, found)
+        return None
+
+    async def _identify(self, visitor: Visitor, request: Request, kind: TokenKind) -> Identity | Response:
+        if self._is_open(kind):
+            return Identity(kind, None, None, new_id())
+        token = bearer(request.headers.get("Authorization"))
+        if token is None:
+            return self._refuse(visitor, kind, "nobody", "no token came with the request")
+        try:
+            grant = self.book.find(token) or await self._find_new(token)
+        except StoreError as error:
+            log.error("%s; a token could not be looked up", error)
+            text = "The accounts cannot be read now: the database is away. Try again."
+            return _later(visitor, http.HTTPStatus.SERVICE_UNAVAILABLE, text, 5)
+        if grant is None:
+            return self._refuse(visitor, kind, "nobody", "this token is not known")
+        if grant.kind is not kind:
+            fault = f"this is the token of a {grant.kind.value}, and {PATHS[kind]} takes a {kind.value}'s"
+            return self._refuse(visitor, kind, grant.owner, fault)
+        identity = Identity(kind, grant.owner, grant.token, new_id())
+        if (wrong := self._fault(identity)) is not None:
+            return self._refuse(visitor, kind, grant.owner, wrong)
+        return identity
+
+    async def _find_new(self, token: str) -> Grant | None:
+        """Look for a token that may have been made a moment ago."""
+        if time.monotonic() - self._read_at < READ_AGAIN_AFTER:
+            return None
+        self._read_at = time.monotonic()
+        await self.book.refresh()
+        return self.book.find(token)
+
+    def _fault(self, identity: Identity) -> str | None:
+        if identity.token is None:
+            return None if self._is_open(identity.kind) else "accounts are in use now: connect with a token"
+        grant = self.book.grant(identity.token)
+        if grant is None or (identity.kind is TokenKind.OPERATOR and grant.role is None):
+            return "this token is not known any more"
+        return grant.fault(self._clock())
+
+    def _note_login(self, visitor: Visitor, identity: Identity) -> None:
+        role = self.role(visitor).value if identity.kind is TokenKind.OPERATOR else "robot"
+        address = visitor.address
+        if identity.token is not None:
+            self.journal.used(identity.token)
+            who, session = identity.name or "", identity.session
+            self.journal.note(who, "login", role=role, address=address, subject=session)
+        if identity.kind is TokenKind.OPERATOR:
+            who = identity.name or f"desk {address}"
+            session = identity.session
+            self.journal.began(SessionRow(session, who, identity.token, role, address, self._clock()))
+
+    def _refuse(self, visitor: Visitor, kind: TokenKind, who: str, fault: str) -> Response:
+        # Whoever knocks with wrong tokens is to fill neither the log nor the disk.
+        failures = self._failures_of(visitor.address)
+        if not failures.take():
+            text = "Too many refused logins came from this address."
+            return _later(visitor, http.HTTPStatus.TOO_MANY_REQUESTS, text, failures.wait() + 1)
+        self._note_refusal(visitor, who, f"{PATHS[kind]}: {fault}")
+        text = f"{fault[:1].upper()}{fault[1:]}. Ask whoever runs the site for a token.\n"
+        response = visitor.respond(http.HTTPStatus.UNAUTHORIZED, text)
+        response.headers["WWW-Authenticate"] = 'Bearer realm="fleet"'
+        return response
+
+    def _note_refusal(self, visitor: Visitor, who: str, why: str) -> None:
+        log.warning("%s from %s was not let in: %s", who, visitor.address, why)
+        self.journal.note(who, "login", done=False, address=visitor.address, detail=why)
+
+    def _failures_of(self, address: str) -> Bucket:
+        if len(self._failures) > MOST_ADDRESSES:
+            del self._failures[next(iter(self._failures))]
+        a_minute = self.limits.failed_logins_per_minute
+        return self._failures.setdefault(address, Bucket(a_minute / 60, a_minute))
+
+    def _is_open(self, kind: TokenKind) -> bool:
+        return self._may_be_open and self.book.is_open(kind)
+
+
+def _later(visitor: Visitor, status: http.HTTPStatus, text: str, seconds: float) -> Response:
+    response = visitor.respond(status, f"{text}\n")
+    response.headers["Retry-After"] = str(int(seconds))
+    return response

@@ -1,0 +1,66 @@
+"""The gateway's port: how it is listened on, with the limits that hold before anybody is let in."""
+
+from __future__ import annotations
+
+import logging
+import secrets
+import ssl
+from collections.abc import Awaitable, Callable
+from functools import partial
+from typing import Any, cast
+
+from websockets.asyncio.server import Server, ServerConnection, serve
+from websockets.frames import CloseCode
+from websockets.http11 import Request, Response
+
+from ..errors import BridgeError
+from .gate import Gate
+from .visitor import Visitor
+
+log = logging.getLogger(__name__)
+
+PING_INTERVAL = 5.0
+WRITE_LIMIT = 65_536
+"""bytes that wait in this process for a client before whoever sends to it has to wait too."""
+
+Handler = Callable[[Visitor], Awaitable[None]]
+Doorman = Callable[[Visitor, Request], Awaitable[Response | None]]
+
+
+async def listen(
+    gate: Gate, host: str, port: int, context: ssl.SSLContext | None, doorman: Doorman, handler: Handler
+) -> Server:
+    """Listen; ``doorman`` tells who is let in, and ``handler`` serves them.
+
+    :raises BridgeError: when the address cannot be listened on.
+    """
+    try:
+        return await serve(
+            cast("Callable[[ServerConnection], Awaitable[None]]", partial(_serve, handler)),
+            host,
+            port,
+            ssl=context,
+            process_request=cast("Any", doorman),
+            create_connection=cast("type[ServerConnection]", partial(Visitor, gate)),
+            open_timeout=gate.limits.handshake_s,
+            max_size=gate.limits.largest_message_bytes,
+            write_limit=WRITE_LIMIT,
+            compression=None,
+            server_header=None,
+            ping_interval=PING_INTERVAL,
+            ping_timeout=gate.limits.stuck_s,
+        )
+    except OSError as error:
+        raise BridgeError(
+            f"cannot listen on {host}:{port}: {error.strerror or error}; choose another --port, or 0 for any"
+        ) from error
+
+
+async def _serve(handler: Handler, visitor: Visitor) -> None:
+    """Serve one connection; what goes wrong in that ends it alone, and is told to the log alone."""
+    try:
+        await handler(visitor)
+    except Exception:
+        number = secrets.token_hex(4)
+        log.exception("%s from %s: internal error %s", visitor.who, visitor.address, number)
+        await visitor.expel(CloseCode.INTERNAL_ERROR, f"internal error {number}")

@@ -1,0 +1,185 @@
+"""One connection to the gateway, and the limits it is held to."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import logging
+import socket
+from collections.abc import AsyncIterator
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+from websockets.asyncio.server import ServerConnection
+from websockets.frames import CloseCode, Frame, Opcode
+
+from .. import jsonrpc
+from ..sites.limit_settings import LimitSettings
+from .buckets import Bucket
+from .tokens import TokenKind
+
+log = logging.getLogger(__name__)
+
+CONTROL_FRAMES_PER_S = 20.0
+CONTROL_BURST = 100.0
+CLOSE_WITHIN = 0.5
+"""Seconds that a client that is shown the door has for a close in good order."""
+
+
+@dataclass(frozen=True)
+class Identity:
+    """Who a connection belongs to; ``token`` is the token's id, None where no tokens are in use."""
+
+    kind: TokenKind
+    name: str | None
+    token: str | None
+    session: str
+
+
+class Door(Protocol):
+    """What a visitor tells the gate."""
+
+    @property
+    def limits(self) -> LimitSettings:
+        """The limits that hold now."""
+
+    def arrived(self, visitor: Visitor) -> bool:
+        """Count a new connection; false when it is one too many."""
+
+    def left(self, visitor: Visitor) -> None:
+        """Count a connection that is gone."""
+
+
+class Visitor(ServerConnection):
+    """A connection whose messages are counted, and which is cut off when it takes nothing any more."""
+
+    def __init__(self, door: Door, *arguments: Any, **options: Any) -> None:
+        super().__init__(*arguments, **options)
+        self._door = door
+        self._limits = door.limits
+        self._stuck: asyncio.TimerHandle | None = None
+        self._silence: asyncio.TimerHandle | None = None
+        self._heard_at = 0.0
+        self._expelled = False
+        self._control = Bucket(CONTROL_FRAMES_PER_S, CONTROL_BURST)
+        self._messages = self._patience = Bucket(1.0, 1.0)
+        self.identity: Identity | None = None
+        self.address = ""
+
+    # --- the connection's life ------------------------------------------------------------------------
+
+    def connection_made(self, transport: asyncio.BaseTransport) -> None:
+        """Take a new connection, unless it is one too many."""
+        peer = transport.get_extra_info("peername") or ("",)
+        self.address = str(peer[0])
+        super().connection_made(transport)
+        if not self._door.arrived(self):
+            self.transport.abort()
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        """Note that the connection is gone."""
+        for timer in (self._stuck, self._silence):
+            if timer is not None:
+                timer.cancel()
+        super().connection_lost(exc)
+        self._door.left(self)
+
+    def let_in(self, identity: Identity, largest_message: int) -> None:
+        """Hold the connection from now on to the limits of its kind."""
+        self.identity = identity
+        limits = self._limits
+        robot = identity.kind is TokenKind.ROBOT
+        rate = limits.robot_messages_per_s if robot else limits.desk_messages_per_s
+        burst = float(limits.robot_burst if robot else limits.desk_burst)
+        self._messages, self._patience = Bucket(rate, burst), Bucket(rate / 10, burst)
+        self.protocol.max_message_size = largest_message
+        # What waits in the system for a slow client is old when it arrives.
+        own = self.transport.get_extra_info("socket")
+        with contextlib.suppress(OSError):
+            own.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, limits.send_buffer_bytes)
+        self._silence = self.loop.call_later(limits.first_message_s, self._check_silence)
+
+    async def expel(self, code: int, reason: str) -> None:
+        """End the connection, whether the client agrees or not; what still comes in is passed over."""
+        self._expelled = True
+        try:
+            with contextlib.suppress(TimeoutError):
+                await asyncio.wait_for(self.close(code, reason), CLOSE_WITHIN)
+        finally:
+            self.transport.abort()
+
+    # --- what comes in --------------------------------------------------------------------------------
+
+    async def __aiter__(self) -> AsyncIterator[Any]:
+        """Yield the messages; those beyond the limit are refused, and then the connection is closed."""
+        async for frame in super().__aiter__():
+            if self._expelled:
+                return
+            self._heard_at = self.loop.time()
+            if self._messages.take():
+                yield frame
+            elif self._patience.take():
+                await self._refuse(frame)
+            else:
+                log.warning("%s from %s: too many messages; closed", self.who, self.address)
+                await self.expel(CloseCode.POLICY_VIOLATION, "too many messages a second")
+                return
+
+    def process_event(self, event: Any) -> None:
+        """Take in one frame; pings and empty pieces of messages are counted, since nobody waits for them."""
+        if isinstance(event, Frame) and _is_idle_talk(event) and not self._control.take():
+            log.warning("%s from %s: too many control frames; cut off", self.who, self.address)
+            self.transport.abort()
+            return
+        super().process_event(event)
+
+    @property
+    def who(self) -> str:
+        """The connection's owner, for the log."""
+        if self.identity is None:
+            return "somebody"
+        return f"{self.identity.kind.value} {self.identity.name or 'without a name'}"
+
+    async def _refuse(self, frame: str | bytes) -> None:
+        try:
+            message = jsonrpc.decode(frame)
+        except jsonrpc.FrameError:
+            return
+        if isinstance(message, jsonrpc.Call) and message.id is not None:
+            text = f"too many messages; wait {self._messages.wait():.2f} s and send fewer a second"
+            await self.send(jsonrpc.error(message.id, jsonrpc.TOO_MANY, text))
+
+    def _check_silence(self) -> None:
+        limits, robot = self._limits, self.identity is not None and self.identity.kind is TokenKind.ROBOT
+        if self._heard_at and not robot:
+            return
+        due = self._heard_at + limits.silent_s if self._heard_at else self.loop.time()
+        if due <= self.loop.time():
+            log.warning("%s from %s said nothing for too long; closed", self.who, self.address)
+            self._ending = self.loop.create_task(
+                self.expel(CloseCode.POLICY_VIOLATION, "silent for too long")
+            )
+        else:
+            self._silence = self.loop.call_at(due, self._check_silence)
+
+    # --- what goes out --------------------------------------------------------------------------------
+
+    def pause_writing(self) -> None:
+        """Begin to wait for a client that is behind."""
+        super().pause_writing()
+        self._stuck = self.loop.call_later(self._limits.stuck_s, self._give_up)
+
+    def resume_writing(self) -> None:
+        """Go on with a client that has caught up."""
+        if self._stuck is not None:
+            self._stuck.cancel()
+            self._stuck = None
+        super().resume_writing()
+
+    def _give_up(self) -> None:
+        log.warning("%s from %s takes nothing of what it is sent; cut off", self.who, self.address)
+        self.transport.abort()
+
+
+def _is_idle_talk(frame: Frame) -> bool:
+    return frame.opcode in (Opcode.PING, Opcode.PONG) or (not frame.data and not frame.fin)
