@@ -17,6 +17,7 @@ from qgis.core import (
 )
 
 from ...robot_bridge.messages import SiteReport
+from ..sites.feature_filter import FeatureFilter
 from ..sites.roles import KEEPOUT, ROAD_SURFACE, layers_with_role
 from .drafts import Findings, Point
 from .placement import Placement, transformed
@@ -47,6 +48,7 @@ class LayerCheck:
         """Refuse what touches a keepout, warn of what leaves the road; metres in the site frame.
 
         :raises PlacementError: when a point has no place in a layer's CRS.
+        :raises ExpressionError: when the filter of a layer is no expression.
         """
         return self._keepouts(points, placement) + self._surfaces(points, placement)
 
@@ -101,7 +103,10 @@ class LayerCheck:
 
 
 def _near(layer: QgsVectorLayer, geometry: QgsGeometry) -> Iterator[QgsFeature]:
-    yield from layer.getFeatures(QgsFeatureRequest().setFilterRect(geometry.boundingBox()))
+    counted = FeatureFilter.of_layer(layer, layer.createExpressionContext())
+    for feature in layer.getFeatures(QgsFeatureRequest().setFilterRect(geometry.boundingBox())):
+        if counted.keeps(feature, []):
+            yield feature
 
 
 def _name(feature: QgsFeature, layer: QgsVectorLayer) -> str:

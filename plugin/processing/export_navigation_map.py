@@ -9,6 +9,7 @@ from typing import Any
 
 from qgis.core import (
     QgsProcessing,
+    QgsProcessingFeatureSource,
     QgsProcessingFeedback,
     QgsProcessingOutputFile,
     QgsProcessingOutputNumber,
@@ -21,10 +22,12 @@ from qgis.core import (
     QgsProcessingParameterString,
 )
 
+from ..sites.feature_filter import FeatureFilter
 from .errors import ParameterError, shown_by_processing
 from .fleet_algorithm import FleetAlgorithm
 from .map_file import MAP, file_problem, map_parameters, map_place, read_map_file
 from .map_place import PlacedMap
+from .map_profile import filter_in
 from .mask_areas import areas_of, speed_by
 from .navigation_files import FORMATS as MADE
 from .navigation_files import Files, NavigationExport
@@ -143,23 +146,25 @@ class ExportNavigationMap(FleetAlgorithm):
                 "The coordinates of the keepout and speed layers are taken as the map's own metres."
             )
         if "keepout" in wanted:
-            source = self._layer(parameters, KEEPOUTS, context)
-            export.keepouts, warnings = areas_of(source, site, feedback)
+            source, counted = self._layer(parameters, KEEPOUTS, context)
+            export.keepouts, warnings = areas_of(source, site, counted, feedback)
             export.warnings += warnings
         if "speed" in wanted:
-            source = self._layer(parameters, SPEED_AREAS, context)
+            source, counted = self._layer(parameters, SPEED_AREAS, context)
             expression = self.createExpressionContext(parameters, context, source)
             speed = speed_by(self.parameterAsString(parameters, SPEED, context), source, expression)
-            export.speed_areas, warnings = areas_of(source, site, feedback, speed)
+            export.speed_areas, warnings = areas_of(source, site, counted, feedback, speed)
             export.warnings += warnings
 
-    def _layer(self, parameters, name: str, context):
+    def _layer(
+        self, parameters, name: str, context
+    ) -> tuple[QgsProcessingFeatureSource, FeatureFilter | None]:
         source = self.parameterAsSource(parameters, name, context)
         if source is None:
             raise ParameterError(
                 f"{name} {parameters.get(name)} cannot be opened: check the file and the layer's name."
             )
-        return source
+        return source, filter_in(self, parameters, name, context)
 
     def _choice_problem(self, parameters, context) -> str:
         """Return what the formats need and do not have, or nothing."""

@@ -30,12 +30,19 @@ from .map_format import MapFormat, format_of
 from .map_profile import setups_of
 from .map_shaping import shaping_of
 from .map_window import LOCAL, SITE_CRS, map_window, site_frame
-from .obstacle_feet import BASE_EXPRESSION, check_feet
 from .whole_file import OutputError
 
 OBSTACLES, OUTPUT = "OBSTACLES", "OUTPUT"
 HEIGHT_EXPRESSION, DEFAULT_HEIGHT = "HEIGHT_EXPRESSION", "DEFAULT_HEIGHT"
+BASE_EXPRESSION = "BASE_EXPRESSION"
 SEMANTICS_EXPRESSION, OUTDOOR_EXPRESSION = "SEMANTICS_EXPRESSION", "OUTDOOR_EXPRESSION"
+GENERAL = {
+    "height": HEIGHT_EXPRESSION,
+    "base": BASE_EXPRESSION,
+    "semantics": SEMANTICS_EXPRESSION,
+    "outdoor": OUTDOOR_EXPRESSION,
+}
+"""The parameters whose expressions count for layers that have none of their own."""
 
 Parameters = Mapping[str, Any]
 
@@ -48,7 +55,6 @@ class ObstaclePlan:
     site: SitePlacing
     default_height: float
     shaping: Shaping
-    base_expression: str
     format: MapFormat
 
     @property
@@ -98,8 +104,9 @@ def obstacle_plan_of(
     """
     layers = obstacle_layers(algorithm, parameters, context)
     # As strings: parameterAsExpression replaces what is no expression by the default, in silence.
-    names = (HEIGHT_EXPRESSION, SEMANTICS_EXPRESSION, OUTDOOR_EXPRESSION)
-    general = LayerExpressions(*(algorithm.parameterAsString(parameters, name, context) for name in names))
+    general = LayerExpressions(
+        **{what: algorithm.parameterAsString(parameters, name, context) for what, name in GENERAL.items()}
+    )
     setups = setups_of(algorithm, parameters, context)
     scopes = algorithm.createExpressionContext(parameters, context)
     sources = obstacle_sources(layers, general, scopes, setups)
@@ -109,13 +116,11 @@ def obstacle_plan_of(
     site = SitePlacing(crs, frame, context.transformContext(), local)
     check_sources(sources, site)
     shaping = shaping_of(algorithm, parameters, context)
-    base = _base_expression(algorithm, parameters, context, sources, shaping)
     return ObstaclePlan(
         sources,
         site,
         default_height(algorithm, parameters, context),
         shaping,
-        base,
         format_of(algorithm, parameters, context),
     )
 
@@ -183,17 +188,6 @@ def default_height(
     if not 0 <= height < math.inf:
         raise ParameterError(f"DEFAULT_HEIGHT is {height}: give a number of metres of 0 or more.")
     return height
-
-
-def _base_expression(algorithm, parameters: Parameters, context, sources, shaping: Shaping) -> str:
-    expression = algorithm.parameterAsString(parameters, BASE_EXPRESSION, context)
-    if expression and shaping.plane is None:
-        raise ParameterError(
-            "BASE_EXPRESSION matters to the robot's plane alone: give PLANE_LOW and PLANE_HIGH too, or leave "
-            "it out."
-        )
-    check_feet(sources, expression)
-    return expression
 
 
 def _target(algorithm, parameters: Parameters, context) -> Path:

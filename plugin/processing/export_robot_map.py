@@ -16,10 +16,11 @@ from ...robot_bridge.robotmap.builder import Window, build_map
 from ...robot_bridge.robotmap.errors import RobotMapError
 from ...robot_bridge.robotmap.model import RobotMap
 from ..errors import FleetError
-from ..sites.reading import Reading, read_outlines
+from ..sites.reading import Reading
 from .errors import shown_by_processing
 from .export_help import HELP
 from .export_plan import (
+    BASE_EXPRESSION,
     DEFAULT_HEIGHT,
     HEIGHT_EXPRESSION,
     OBSTACLES,
@@ -32,9 +33,9 @@ from .export_plan import (
 from .fleet_algorithm import FleetAlgorithm
 from .map_format import format_parameters
 from .map_profile import profile_parameter
-from .map_shaping import shaped_outlines, shaping_parameters
+from .map_shaping import shaping_parameters
 from .map_window import window_parameters, window_problem
-from .obstacle_feet import raise_feet
+from .obstacle_outlines import obstacle_outlines
 from .whole_file import write_whole
 
 NUMBERS = {
@@ -91,12 +92,10 @@ class ExportRobotMap(FleetAlgorithm):
         with shown_by_processing():
             plan = self._plan
             border = plan.window.border
-            reading = read_outlines(plan.sources, plan.site, border, plan.default_height, feedback)
-            if reading.complete and plan.base_expression:
-                raise_feet(reading, plan.sources, plan.base_expression, feedback)
-            if not reading.complete:
+            found = obstacle_outlines(plan, border, feedback)
+            if found is None:
                 return {}
-            outlines = shaped_outlines(reading, plan.shaping, plan.window, feedback)
+            reading, outlines = found
             robot_map = build_map(outlines, plan.window, plan.meta)
             text, content = plan.format.written(robot_map)
             if feedback.isCanceled():
@@ -120,10 +119,18 @@ class ExportRobotMap(FleetAlgorithm):
 
 def value_parameters() -> list[QgsProcessingParameterDefinition]:
     """Return the parameters that say what a feature is."""
+    base = QgsProcessingParameterExpression(
+        BASE_EXPRESSION, "Where each feature begins above the ground [m] (default: on it)", optional=True
+    )
+    base.setHelp(
+        'Such as "clearance" of arches, or 2.2 for signs; the height of a feature counts from there. The '
+        "upper height of the robot's plane leaves out what begins above it."
+    )
     return [
         QgsProcessingParameterExpression(
             HEIGHT_EXPRESSION, "Height of each feature [m] (default: its field height)", optional=True
         ),
+        base,
         QgsProcessingParameterNumber(
             DEFAULT_HEIGHT,
             "Height where none is known, marked as estimated [m]",

@@ -20,11 +20,9 @@ from qgis.core import (
     QgsWkbTypes,
 )
 
-from ...robot_bridge.robotmap.builder import Window
 from ...robot_bridge.robotmap.errors import RobotMapError
 from ...robot_bridge.robotmap.index import OutlineIndex
 from ..errors import FleetError
-from ..sites.reading import read_outlines
 from .errors import shown_by_processing
 from .export_plan import OBSTACLES, unopened_layer
 from .export_robot_map import value_parameters
@@ -32,9 +30,9 @@ from .fleet_algorithm import FleetAlgorithm, fields_of
 from .map_file import layer_crs
 from .map_format import format_parameters
 from .map_profile import profile_parameter
-from .map_shaping import shaped_outlines, shaping_parameters
+from .map_shaping import shaping_parameters
 from .map_window import EXTENT, PAPERS_SIDE_M, frame_parameters
-from .obstacle_feet import raise_feet
+from .obstacle_outlines import obstacle_outlines
 from .sinks import fill, polygon
 from .tile_folder import TileFolder
 from .tile_plan import (
@@ -147,14 +145,11 @@ class ExportRobotMapTiles(FleetAlgorithm):
         with shown_by_processing(), TileFolder(plan.folder) as folder:
             if feedback.isCanceled():
                 return {}
-            area = area_of(plan.tiles)
-            reading = read_outlines(plan.sources, plan.site, area, plan.default_height, steps)
-            if reading.complete and plan.base_expression:
-                raise_feet(reading, plan.sources, plan.base_expression, feedback)
-            steps.setCurrentStep(1)
-            if not reading.complete:
+            found = obstacle_outlines(plan, area_of(plan.tiles), steps)
+            if found is None:
                 return {}
-            outlines = shaped_outlines(reading, plan.shaping, Window.from_bounds(*area), feedback)
+            reading, outlines = found
+            steps.setCurrentStep(1)
             skip_empty = self.parameterAsBool(parameters, SKIP_EMPTY, context)
             maker = _TileMaker(plan, reading.warnings, skip_empty)
             if not maker.make_all(OutlineIndex(outlines), folder, steps):

@@ -12,6 +12,7 @@ from qgis.core import (
     QgsProcessingParameterFile,
 )
 
+from ..sites.feature_filter import FeatureFilter
 from ..sites.obstacle_source import Setups
 from ..sites.profile_file import SUFFIXES, find_profile, read_profile
 from ..sites.roles import setup_of
@@ -40,3 +41,18 @@ def setups_of(
     """
     chosen = algorithm.parameterAsFile(parameters, PROFILE, context)
     return read_profile(find_profile(chosen)).setup_over if chosen else setup_of
+
+
+def filter_in(
+    algorithm: QgsProcessingAlgorithm, parameters: Mapping[str, Any], name: str, context: QgsProcessingContext
+) -> FeatureFilter | None:
+    """Return which features count of the layer that the parameter ``name`` takes its features from.
+
+    None where that is no layer of the project's kind, which then keeps no filter.
+
+    :raises ExpressionError: when the layer's filter is no expression.
+    """
+    layer = algorithm.parameterAsVectorLayer(parameters, name, context)
+    if layer is None:
+        return None
+    return FeatureFilter.of_layer(layer, algorithm.createExpressionContext(parameters, context))

@@ -9,24 +9,18 @@ from typing import Any
 from qgis.core import (
     QgsProcessingAlgorithm,
     QgsProcessingContext,
-    QgsProcessingFeedback,
     QgsProcessingParameterBoolean,
     QgsProcessingParameterDefinition,
     QgsProcessingParameterNumber,
 )
 
-from ...robot_bridge.robotmap.builder import Window, build_map
 from ...robot_bridge.robotmap.dissolving import shapely_module
-from ...robot_bridge.robotmap.outlines import Outlines
-from ...robot_bridge.robotmap.shaping import Shaping, shaped
-from ..sites.reading import Reading
+from ...robot_bridge.robotmap.shaping import Shaping
 from .errors import ParameterError
-from .obstacle_feet import feet_parameter
 
 PLANE_LOW, PLANE_HIGH, HEIGHT_STEP = "PLANE_LOW", "PLANE_HIGH", "HEIGHT_STEP"
 DISSOLVE, CHAIN, TOLERANCE, SHORTEST = "DISSOLVE", "CHAIN", "TOLERANCE", "SHORTEST"
 
-_UNSHAPED = Shaping()
 _HEIGHTS = {
     PLANE_LOW: (
         "Robot's plane: from this height above the ground [m]",
@@ -35,8 +29,8 @@ _HEIGHTS = {
     ),
     PLANE_HIGH: (
         "Robot's plane: up to this height above the ground [m]",
-        "What begins at this height or above it is left out: the robot drives under it. See the next "
-        "parameter for where things begin.",
+        "What begins at this height or above it is left out: the robot drives under it. Where things begin "
+        "is said by the layers or by the parameter BASE_EXPRESSION.",
     ),
 }
 _FLAGS = {
@@ -78,7 +72,6 @@ def shaping_parameters() -> list[QgsProcessingParameterDefinition]:
     for parameter, help in described:
         parameter.setHelp(help)
     parameters = [parameter for parameter, _ in described]
-    parameters.insert(len(_HEIGHTS), feet_parameter())
     for parameter in parameters:
         parameter.setFlags(parameter.flags() | QgsProcessingParameterDefinition.Flag.FlagAdvanced)
     return parameters
@@ -107,29 +100,6 @@ def shaping_of(
         tolerance=lengths[TOLERANCE],
         shortest=lengths[SHORTEST],
     )
-
-
-def shaped_outlines(
-    reading: Reading, shaping: Shaping, area: Window, feedback: QgsProcessingFeedback
-) -> Outlines:
-    """Return the outlines of which maps are built, and say what ``shaping`` has changed in ``area``.
-
-    :raises MissingGeometryError: when a package is missing.
-    """
-    outlines = reading.outlines()
-    if shaping == _UNSHAPED:
-        return outlines
-    made = shaped(outlines, shaping)
-    before, after = (_counts(some, area) for some in (outlines, made))
-    feedback.pushInfo(
-        f"Reduced from {before[0]} obstacles with {before[1]} segments to {after[0]} with {after[1]}"
-    )
-    return made
-
-
-def _counts(outlines: Outlines, area: Window) -> tuple[int, int]:
-    robot_map = build_map(outlines, area)
-    return len(robot_map.obstacles), robot_map.segment_count
 
 
 def _plane(algorithm, parameters, context) -> tuple[float, float] | None:

@@ -15,6 +15,7 @@ from qgis.core import (
 )
 
 from ...robot_bridge.robotmap.exporters.masks import MaskArea
+from ..sites.feature_filter import FeatureFilter
 from ..sites.placing import PlacingError, SitePlacing
 from ..sites.shapes import Shape, shapes_of
 from .errors import ParameterError
@@ -25,12 +26,14 @@ Speed = Callable[[QgsFeature], float]
 def areas_of(
     source: QgsProcessingFeatureSource,
     site: SitePlacing,
+    counted: FeatureFilter | None,
     feedback: QgsFeedback,
     speed: Speed | None = None,
 ) -> tuple[list[MaskArea], list[str]]:
     """Return the areas of a layer in the site frame, and a warning for each feature that is not as it was.
 
-    With ``speed`` an area without a speed above 0 is left out. Stops early when cancelled.
+    Only features that are ``counted`` are read. With ``speed`` an area without a speed above 0 is left out.
+    Stops early when cancelled.
 
     :raises LayerCrsError: when the layer's coordinates have no known place on the site.
     """
@@ -41,6 +44,10 @@ def areas_of(
         if feedback.isCanceled():
             break
         name = f"Layer {source.sourceName()}, feature {feature.id()}"
+        doubts: list[str] = []
+        if counted is not None and not counted.keeps(feature, doubts):
+            warnings += [f"{name}: {doubt}" for doubt in doubts]
+            continue
         limit = math.nan if speed is None else speed(feature)
         if speed is not None and not 0 < limit < math.inf:
             warnings.append(f"{name}: it has no speed above 0 m/s, so it sets no limit; it is left out")

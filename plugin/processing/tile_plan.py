@@ -15,6 +15,7 @@ from ..sites.shapes import shapes_of
 from ..sites.site_crs import stated_crs
 from .errors import ParameterError
 from .export_plan import ObstaclePlan, obstacle_plan_of
+from .map_profile import filter_in
 from .map_window import EXTENT, map_window
 from .tile_windows import Tile, TileSize, grid_tiles, route_tiles
 
@@ -70,9 +71,10 @@ def _routes(algorithm, parameters, context, site: SitePlacing) -> list[np.ndarra
     if source is None:
         raise ParameterError(f"ROUTE {parameters[ROUTE]} cannot be opened: choose a layer of lines.")
     placing = site.of_layer(source.sourceName(), stated_crs(source.sourceCrs()))
+    counted = filter_in(algorithm, parameters, ROUTE, context)
     routes = []
     for feature in source.getFeatures():
-        if feature.geometry().isNull():
+        if feature.geometry().isNull() or (counted is not None and not counted.keeps(feature, [])):
             continue
         try:
             shapes = shapes_of(placing.to_metres(feature.geometry())).shapes

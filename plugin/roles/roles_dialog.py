@@ -30,9 +30,35 @@ from .delegates import ExpressionDelegate, RoleDelegate
 from .live_preview import LivePreview
 from .preview_view import PreviewView
 from .rows import rows_of
-from .table_model import HEIGHT, LAYER, OUTDOOR, RESULT, ROLE, SEMANTICS, WIDTH, RoleTableModel
+from .table_model import (
+    BASE,
+    FILTER,
+    HEIGHT,
+    LAYER,
+    OUTDOOR,
+    RESULT,
+    ROLE,
+    ROTATION,
+    SEMANTICS,
+    TEMPLATE,
+    WHAT,
+    WIDTH,
+    RoleTableModel,
+)
 
-WIDTHS = {LAYER: 140, ROLE: 150, HEIGHT: 110, SEMANTICS: 175, OUTDOOR: 90, WIDTH: 95}
+WIDTHS = {
+    LAYER: 125,
+    ROLE: 135,
+    FILTER: 110,
+    HEIGHT: 90,
+    BASE: 75,
+    SEMANTICS: 160,
+    OUTDOOR: 80,
+    WIDTH: 85,
+    TEMPLATE: 85,
+    ROTATION: 80,
+    RESULT: 210,
+}
 
 
 class RolesDialog(QDialog):
@@ -55,7 +81,7 @@ class RolesDialog(QDialog):
         self._buttons = self._make_buttons()
         self._lay_out()
         self._wire()
-        self.resize(1040, 760)
+        self.resize(1280, 760)
         self.preview.refresh()
 
     def apply(self) -> None:
@@ -95,7 +121,7 @@ class RolesDialog(QDialog):
         table.setObjectName("fleet_roles_table")
         table.setModel(self.model)
         table.setItemDelegateForColumn(ROLE, RoleDelegate(table))
-        for column in (HEIGHT, SEMANTICS, OUTDOOR, WIDTH):
+        for column in WHAT.keys() - {ROLE}:
             table.setItemDelegateForColumn(column, ExpressionDelegate(table))
         triggers = QAbstractItemView.EditTrigger
         table.setEditTriggers(

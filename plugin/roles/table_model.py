@@ -14,16 +14,43 @@ from .measure import Measure
 from .picture import COLOURS
 from .rows import RoleRow
 
-TITLES = ("Layer", "Role", "Height [m]", "Label", "Outdoors", "Width [m]", "Comes to")
-LAYER, ROLE, HEIGHT, SEMANTICS, OUTDOOR, WIDTH, RESULT = range(7)
-WHAT = {ROLE: "role", HEIGHT: "height", SEMANTICS: "semantics", OUTDOOR: "outdoor", WIDTH: "width"}
+TITLES = (
+    "Layer",
+    "Role",
+    "Filter",
+    "Height [m]",
+    "Foot [m]",
+    "Label",
+    "Outdoors",
+    "Width [m]",
+    "Template",
+    "Turned [°]",
+    "Comes to",
+)
+LAYER, ROLE, FILTER, HEIGHT, BASE, SEMANTICS, OUTDOOR, WIDTH, TEMPLATE, ROTATION, RESULT = range(11)
+WHAT = {
+    ROLE: "role",
+    FILTER: "filter",
+    HEIGHT: "height",
+    BASE: "base",
+    SEMANTICS: "semantics",
+    OUTDOOR: "outdoor",
+    WIDTH: "width",
+    TEMPLATE: "template",
+    ROTATION: "rotation",
+}
 EXPLANATIONS = {
     LAYER: "Layers of the project that can have a role",
     ROLE: "What the layer is to robots and operators",
-    HEIGHT: "Expression for metres above the ground; empty: the field height or height_m",
+    FILTER: "Expression that is true of the features that count, such as \"amenity\" = 'bench'; empty: all",
+    HEIGHT: "Expression for metres from the foot up; empty: the field height or height_m",
+    BASE: "Expression for metres above the ground where it begins, as of an arch; empty: 0",
     SEMANTICS: "Expression for the label, such as 'building,' || \"name\"; of a road its surface",
     OUTDOOR: "Expression for true or false; empty: true",
     WIDTH: "Expression for the metres across, of a road or of furniture that is points",
+    TEMPLATE: "Expression for the shape that a point of furniture stands for, such as 'bench' or "
+    "'rectangle 2 0.5'; empty: an octagon of its width",
+    ROTATION: "Expression for the degrees clockwise that the template is turned; empty: 0",
     RESULT: "What is published of the layer",
 }
 ROLE_NAMES = {"": "–", ROAD_CENTRELINE: "road centreline", "road_surface": "road surface"}
@@ -39,11 +66,11 @@ def role_name(role: str) -> str:
 def used_columns(role: str) -> tuple[int, ...]:
     """Return the columns of expressions that count for a layer of ``role``."""
     if role in OBSTACLE_ROLES:
-        columns = (HEIGHT, SEMANTICS, OUTDOOR)
-        return (*columns, WIDTH) if role == FURNITURE else columns
+        columns = (FILTER, HEIGHT, BASE, SEMANTICS, OUTDOOR)
+        return (*columns, WIDTH, TEMPLATE, ROTATION) if role == FURNITURE else columns
     if role == ROAD_CENTRELINE:
-        return (SEMANTICS, WIDTH)
-    return () if role in ("", ORTHOPHOTO) else (SEMANTICS,)
+        return (FILTER, SEMANTICS, WIDTH)
+    return () if role in ("", ORTHOPHOTO) else (FILTER, SEMANTICS)
 
 
 class RoleTableModel(QAbstractTableModel):

@@ -1,58 +1,55 @@
-"""Height, label and outdoor flag of each feature, by expression."""
+"""Height, foot, label and outdoor flag of each feature, by expression."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from qgis.core import QgsExpressionContext, QgsFeature, QgsFields
+from qgis.core import QgsFeature
 
-from .layer_rules import LayerRules, as_metres
+from .layer_rules import LayerRules, as_flag, as_metres
 from .roles import RAMP, LayerExpressions
 
 HEIGHT_FIELDS = ("height", "height_m")
 """Fields that hold a height in metres where no expression says otherwise."""
 
-POST_ACROSS_M = 0.5
-"""How far across a piece of furniture is that is drawn as a point and says nothing of its size."""
-
-_FLAGS = {"1": True, "true": True, "yes": True, "0": False, "false": False, "no": False}
-
 
 @dataclass(frozen=True)
 class Values:
-    """What a robot map says of one feature; ``estimated`` where ``height`` is the default."""
+    """What a robot map says of one feature; ``estimated`` where ``height`` is the default.
+
+    ``base`` is how many metres above the ground it begins; ``height`` counts from there.
+    """
 
     height: float
     estimated: bool
+    base: float
     semantics: str
     outdoor: bool
     notes: list[str] = field(default_factory=list)
 
 
 class FeatureValues:
-    """Evaluates the expressions of one layer of obstacles.
+    """Evaluates the expressions of one layer of obstacles. Ramps have no height (paper 1, section II).
 
-    ``warnings`` are about the layer as a whole. Ramps have no height (paper 1, section II).
+    :raises ExpressionError: when one of the expressions is none.
     """
 
     def __init__(
         self,
         layer: str,
-        fields: QgsFields,
         role: str,
         expressions: LayerExpressions,
         default_height: float,
-        context: QgsExpressionContext,
+        rules: LayerRules,
     ):
         self._layer = layer
         self._is_ramp = role == RAMP
         self._default_height = default_height
-        self._rules = rules = LayerRules(layer, fields, context)
+        self._rules = rules
         self._height = rules.rule("height", expressions.height or rules.column(*HEIGHT_FIELDS))
         self._semantics = rules.rule("semantics", expressions.semantics)
         self._outdoor = rules.rule("outdoor", expressions.outdoor)
-        self._across = rules.rule("width", expressions.width)
-        self.warnings = rules.warnings
+        self._base = rules.rule("base", expressions.base)
 
     def of(self, feature: QgsFeature) -> Values:
         """Return the values of ``feature``; what is missing or not understood gets the default and a note."""
@@ -62,22 +59,11 @@ class FeatureValues:
         return Values(
             height=self._default_height if height is None else height,
             estimated=height is None,
+            base=self._base_of(notes),
             semantics=self._semantics_of(notes),
             outdoor=self._outdoor_of(notes),
             notes=notes,
         )
-
-    def across(self, feature: QgsFeature, notes: list[str]) -> float:
-        """Return how many metres the point ``feature`` stands for are across."""
-        self._rules.at(feature)
-        value = self._rules.value("width", self._across, notes)
-        if value is None or value == "":
-            return POST_ACROSS_M
-        metres = as_metres(value)
-        if metres is None or metres <= 0:
-            notes.append(f"its width {value!r} is not a number of metres above 0; {POST_ACROSS_M:g} is used")
-            return POST_ACROSS_M
-        return metres
 
     def _height_of(self, notes: list[str]) -> float | None:
         value = self._rules.value("height", self._height, notes)
@@ -89,6 +75,16 @@ class FeatureValues:
             return None
         return height
 
+    def _base_of(self, notes: list[str]) -> float:
+        value = self._rules.value("base", self._base, notes)
+        if value is None or value == "":
+            return 0.0
+        metres = as_metres(value)
+        if metres is None:
+            notes.append(f"its base {value!r} is not a number of metres; it is taken to stand on the ground")
+            return 0.0
+        return metres
+
     def _semantics_of(self, notes: list[str]) -> str:
         value = self._rules.value("semantics", self._semantics, notes)
         return self._layer if value is None else str(value)
@@ -97,7 +93,7 @@ class FeatureValues:
         value = self._rules.value("outdoor", self._outdoor, notes)
         if value is None:
             return True
-        flag = _FLAGS.get(str(value).strip().lower())
+        flag = as_flag(value)
         if flag is None:
             notes.append(f"its outdoor flag {value!r} is neither true nor false; true is used")
         return flag is not False

@@ -10,7 +10,8 @@ import numpy as np
 from qgis.core import QgsAbstractGeometry, QgsFeature, QgsFeedback, QgsGeometry
 
 from ...robot_bridge.sites.features import Area, Centreline
-from .layer_rules import LayerRules, as_metres
+from .feature_filter import FeatureFilter
+from .layer_rules import LayerRules
 from .obstacle_source import ObstacleSource
 from .parts import parts_of
 from .placing import LayerPlacing, PlacingError, SitePlacing
@@ -54,7 +55,7 @@ def read_centrelines(
         unknown: list[int] = []
         for feature, geometry in layer.features(reading, feedback):
             notes: list[str] = []
-            metres = _width(layer.rules, width, notes)
+            metres = layer.rules.metres("width", width, notes)
             if metres is None:
                 unknown.append(feature.id())
             lines = _lines(geometry, notes)
@@ -110,6 +111,7 @@ class _GroundLayer:
         self.source = source
         self.placing: LayerPlacing = site.of_layer(source.name, source.crs)
         self.rules = LayerRules(source.name, source.fields, source.context)
+        self._filter = FeatureFilter(source.name, source.fields, source.expressions.filter, source.context)
         column = self.rules.column(LABEL_FIELDS[role])
         self._label = self.rules.rule("semantics", source.expressions.semantics or column)
         self._otherwise = source.name if role == KEEPOUT else ""
@@ -117,11 +119,15 @@ class _GroundLayer:
     def features(
         self, reading: GroundReading, feedback: QgsFeedback
     ) -> Iterator[tuple[QgsFeature, QgsGeometry]]:
-        """Yield each feature with its geometry in metres; warn of those that have none."""
+        """Yield each feature that counts with its geometry in metres; warn of those that have none."""
         for feature in self.source.features.getFeatures():
             if feedback.isCanceled():
                 reading.complete = False
                 return
+            doubts: list[str] = []
+            if not self._filter.keeps(feature, doubts):
+                self.note(feature, doubts, reading)
+                continue
             geometry = feature.geometry()
             if geometry.isNull() or geometry.isEmpty():
                 self.note(feature, ["has no geometry; it is left out"], reading)
@@ -143,17 +149,6 @@ class _GroundLayer:
     def note(self, feature: QgsFeature, notes: Sequence[str], reading: GroundReading) -> None:
         """Warn of ``feature``."""
         reading.warnings += [f"Layer {self.source.name}, feature {feature.id()}: {note}" for note in notes]
-
-
-def _width(rules: LayerRules, expression, notes: list[str]) -> float | None:
-    value = rules.value("width", expression, notes)
-    if value is None or value == "":
-        return None
-    metres = as_metres(value)
-    if metres is None or metres <= 0:
-        notes.append(f"its width {value!r} is not a number of metres above 0; the default is used")
-        return None
-    return metres
 
 
 def _lines(geometry: QgsGeometry, notes: list[str]) -> list[np.ndarray]:

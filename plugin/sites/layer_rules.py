@@ -6,10 +6,11 @@ import math
 import re
 from typing import Any
 
-from qgis.core import NULL, QgsExpression, QgsExpressionContext, QgsFeature, QgsFields
+from qgis.core import NULL, QgsExpression, QgsExpressionContext, QgsFeature, QgsFeatureRequest, QgsFields
 
 from .errors import ExpressionError
 
+_FLAGS = {"1": True, "true": True, "yes": True, "0": False, "false": False, "no": False}
 _METRES = re.compile(r"\s*([+-]?\d+(?:[.,]\d+)?)\s*m?\s*", re.ASCII)
 
 
@@ -30,21 +31,32 @@ class LayerRules:
         """
         if not text.strip():
             return None
-        expression = QgsExpression(text)
-        if expression.hasParserError():
-            raise ExpressionError(
-                f"The {what} expression {text!r} for the layer {self._layer} is not one: "
-                f"{expression.parserErrorString().strip()}. Correct it."
-            )
-        names = {name.lower() for name in self._fields.names()}
-        columns = expression.referencedColumns() - {"#!allattributes!#"}
-        missing = sorted(name for name in columns if name.lower() not in names)
+        expression = self._parsed(what, text)
+        missing = self._missing(expression)
         if missing:
             self.warnings.append(
-                f"Layer {self._layer}: it has no field {', '.join(missing)}, which the {what} expression "
+                f"Layer {self._layer}: it has no field {missing}, which the {what} expression "
                 f"{text!r} reads; the default is used for all its features"
             )
             return None
+        expression.prepare(self._context)
+        return expression
+
+    def needed_rule(self, what: str, text: str) -> QgsExpression | None:
+        """Return the prepared expression, None for an empty one.
+
+        :raises ExpressionError: when ``text`` is no expression, or is about fields that the layer lacks.
+        """
+        if not text.strip():
+            return None
+        expression = self._parsed(what, text)
+        missing = self._missing(expression)
+        if missing:
+            raise ExpressionError(
+                f"The {what} expression {text!r} for the layer {self._layer} reads the field {missing}, "
+                "which the layer does not have. Correct it, or write attribute('...') for a field that some "
+                "layers lack."
+            )
         expression.prepare(self._context)
         return expression
 
@@ -52,15 +64,35 @@ class LayerRules:
         """Let :meth:`value` speak of ``feature`` from now on."""
         self._context.setFeature(feature)
 
-    def value(self, what: str, expression: QgsExpression | None, notes: list[str]) -> Any:
+    def value(
+        self,
+        what: str,
+        expression: QgsExpression | None,
+        notes: list[str],
+        otherwise: str = "the default is used",
+    ) -> Any:
         """Return what ``expression`` says of the feature, None for nothing; a failure becomes a note."""
         if expression is None:
             return None
         value = expression.evaluate(self._context)
         if expression.hasEvalError():
-            notes.append(f"the {what} expression fails: {expression.evalErrorString()}; the default is used")
+            notes.append(f"the {what} expression fails: {expression.evalErrorString()}; {otherwise}")
             return None
         return None if value is None or value == NULL else value
+
+    def metres(self, what: str, expression: QgsExpression | None, notes: list[str]) -> float | None:
+        """Return the metres above 0 that ``expression`` says of the feature, None where it says none.
+
+        What is no such number becomes a note.
+        """
+        value = self.value(what, expression, notes)
+        if value is None or value == "":
+            return None
+        metres = as_metres(value)
+        if metres is None or metres <= 0:
+            notes.append(f"its {what} {value!r} is not a number of metres above 0; the default is used")
+            return None
+        return metres
 
     def column(self, *names: str) -> str:
         """Return the expression that reads the first of the fields ``names`` that is there, else nothing."""
@@ -69,6 +101,26 @@ class LayerRules:
             if index >= 0:
                 return QgsExpression.quotedColumnRef(self._fields.at(index).name())
         return ""
+
+    def _parsed(self, what: str, text: str) -> QgsExpression:
+        expression = QgsExpression(text)
+        if expression.hasParserError():
+            raise ExpressionError(
+                f"The {what} expression {text!r} for the layer {self._layer} is not one: "
+                f"{expression.parserErrorString().strip()}. Correct it."
+            )
+        return expression
+
+    def _missing(self, expression: QgsExpression) -> str:
+        """Return the fields that ``expression`` reads and the layer lacks, nothing where there are none."""
+        names = {name.lower() for name in self._fields.names()}
+        columns = expression.referencedColumns() - {QgsFeatureRequest.ALL_ATTRIBUTES}
+        return ", ".join(sorted(name for name in columns if name.lower() not in names))
+
+
+def as_flag(value: Any) -> bool | None:
+    """Return whether ``value`` says true, also as text such as ``yes``; None where it is neither."""
+    return _FLAGS.get(str(value).strip().lower())
 
 
 def as_metres(value: Any) -> float | None:

@@ -19,7 +19,7 @@ from qgis.core import (
 )
 
 from .errors import LayerTypeError
-from .roles import FURNITURE, LayerExpressions, LayerSetup, setup_of
+from .roles import EXPRESSIONS, FURNITURE, LayerExpressions, LayerSetup, setup_of
 from .site_crs import stated_crs
 
 
@@ -100,10 +100,7 @@ def _source(
         count=layer.featureCount(),
         features=QgsVectorLayerFeatureSource(layer),
         expressions=LayerExpressions(
-            height=own.height or general.height,
-            semantics=own.semantics or general.semantics,
-            outdoor=own.outdoor or general.outdoor,
-            width=own.width or general.width,
+            **{name: getattr(own, name) or getattr(general, name) for name in EXPRESSIONS}
         ),
         context=scoped,
     )

@@ -11,13 +11,12 @@ from qgis.core import QgsExpression
 
 from .errors import ProfileError
 from .profile import GEOMETRIES, Profile, ProfileRule
-from .roles import ROLES, LayerExpressions, LayerSetup
+from .roles import EXPRESSIONS, ROLES, LayerExpressions, LayerSetup
 
 PROFILES = Path(__file__).parents[2] / "resources" / "profiles"
 SUFFIXES = (".toml", ".json")
 
-_EXPRESSIONS = ("height", "semantics", "outdoor", "width")
-_RULE_KEYS = ("names", "fields", "geometry", "role", *_EXPRESSIONS)
+_RULE_KEYS = ("names", "fields", "geometry", "role", *EXPRESSIONS)
 _KEYS = ("name", "about", "layers")
 
 
@@ -95,7 +94,7 @@ def _rule(content: Any, key: str, file: Path) -> ProfileRule:
     role = _text(content, "role", f"{key}.", file)
     if role not in ROLES:
         raise ProfileError(f"{file}: {key}.role is {role!r}: write one of {', '.join(ROLES)}.")
-    expressions = {name: _expression(content, name, key, file) for name in _EXPRESSIONS}
+    expressions = {name: _expression(content, name, key, file) for name in EXPRESSIONS}
     return ProfileRule(names, fields, geometry, LayerSetup(role, LayerExpressions(**expressions)))
 
 

@@ -9,12 +9,15 @@ import numpy as np
 from qgis.core import QgsFeature, QgsFeedback, QgsGeometry, QgsRectangle, QgsWkbTypes
 
 from ...robot_bridge.robotmap.outlines import OutlineRow, Outlines
+from .feature_filter import FeatureFilter
 from .feature_values import FeatureValues
+from .layer_rules import LayerRules
 from .obstacle_source import ObstacleSource
 from .placing import Bounds, LayerPlacing, PlacingError, SitePlacing
+from .posts import Posts
 from .ramps import normal_extra
 from .roles import OBSTACLE_ROLES, RAMP, STAIRS
-from .shapes import Shape, Shapes, posts_of, shapes_of
+from .shapes import Shape, Shapes, shapes_of
 
 NAMED = 5
 """How many features a warning about a whole layer names."""
@@ -83,16 +86,23 @@ class _LayerReader:
     ):
         self.source = source
         self._default_height = default_height
+        self._filter = FeatureFilter(source.name, source.fields, source.expressions.filter, source.context)
+        self._rules = LayerRules(source.name, source.fields, source.context)
         self._values = FeatureValues(
-            source.name, source.fields, source.role, source.expressions, default_height, source.context
+            source.name, source.role, source.expressions, default_height, self._rules
         )
+        self._posts = Posts(self._rules, source.expressions)
         self._placing: LayerPlacing = site.of_layer(source.name, source.crs)
         self._area: QgsRectangle | None = self._placing.area_of(window) if window else None
         self._estimated: list[int] = []
         self._odd_for_role: list[int] = []
 
     def read(self, feature: QgsFeature, reading: Reading) -> None:
-        """Add the outlines of ``feature``, or a warning why there are none."""
+        """Add the outlines of ``feature`` if it counts, or a warning why there are none."""
+        doubts: list[str] = []
+        if not self._filter.keeps(feature, doubts):
+            reading.warnings.extend(self._named(feature, doubt) for doubt in doubts)
+            return
         geometry = feature.geometry()
         if geometry.isNull() or geometry.isEmpty():
             reading.warnings.append(self._named(feature, "has no geometry; it is left out"))
@@ -110,7 +120,7 @@ class _LayerReader:
     def finish(self, reading: Reading) -> None:
         """Add the warnings that are about the layer as a whole."""
         name, role = self.source.name, self.source.role
-        reading.warnings.extend(self._values.warnings)
+        reading.warnings.extend(self._rules.warnings)
         if role and role not in OBSTACLE_ROLES:
             reading.warnings.append(f"Layer {name}: its role is {role}, yet it is exported as obstacles")
         if self._estimated:
@@ -130,9 +140,7 @@ class _LayerReader:
     def _shapes(self, feature: QgsFeature, geometry: QgsGeometry) -> Shapes:
         if geometry.type() != QgsWkbTypes.GeometryType.PointGeometry:
             return shapes_of(geometry, self.source.role)
-        notes: list[str] = []
-        posts = posts_of(geometry, self._values.across(feature, notes))
-        return Shapes(posts.shapes, [*notes, *posts.notes])
+        return self._posts.of(feature, geometry)
 
     def _may_touch(self, box: QgsRectangle) -> bool:
         """Tell whether a feature with this bounding box must be looked at."""
@@ -162,6 +170,7 @@ class _LayerReader:
                     source=source,
                     courtyard=shape.courtyard,
                     outdoor=values.outdoor,
+                    base=values.base,
                     ext=ext,
                 )
             )

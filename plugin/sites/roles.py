@@ -6,7 +6,7 @@ export, check and publication agrees on it.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 OBSTACLE = "obstacle"
 STAIRS = "stairs"
@@ -23,25 +23,31 @@ ROAD_AND_AREA_ROLES = (ROAD_CENTRELINE, ROAD_SURFACE, KEEPOUT)
 PUBLISHED_ROLES = (*OBSTACLE_ROLES, *ROAD_AND_AREA_ROLES)
 
 ROLE_PROPERTY = "fleet/role"
-HEIGHT_PROPERTY = "fleet/height"
-SEMANTICS_PROPERTY = "fleet/semantics"
-OUTDOOR_PROPERTY = "fleet/outdoor"
-WIDTH_PROPERTY = "fleet/width"
 
 
 @dataclass(frozen=True)
 class LayerExpressions:
     """QGIS expressions of one layer; an empty one leaves the choice to whoever exports.
 
-    ``height`` gives metres above the ground (of one riser for stairs), ``semantics`` a label such as
+    ``height`` gives metres from the foot up (of one riser for stairs), ``semantics`` a label such as
     ``building,A5`` (of a road its surface, of a keepout its name), ``outdoor`` true or false, ``width`` the
-    metres of a road.
+    metres of a road or across a point of furniture, ``base`` the metres above the ground where a thing
+    begins. ``filter`` is true of the features that count. ``template`` names the shape that a point of
+    furniture stands for, ``rotation`` the degrees that it is turned clockwise.
     """
 
     height: str = ""
     semantics: str = ""
     outdoor: str = ""
     width: str = ""
+    base: str = ""
+    filter: str = ""
+    template: str = ""
+    rotation: str = ""
+
+
+EXPRESSIONS = tuple(field.name for field in fields(LayerExpressions))
+"""The names of all expressions; each is kept in the custom property ``fleet/`` and its name."""
 
 
 @dataclass(frozen=True)
@@ -68,19 +74,14 @@ def set_role(layer, role: str) -> None:
 def expressions_of(layer) -> LayerExpressions:
     """Return the expressions kept in ``layer``."""
     return LayerExpressions(
-        height=str(layer.customProperty(HEIGHT_PROPERTY, "") or ""),
-        semantics=str(layer.customProperty(SEMANTICS_PROPERTY, "") or ""),
-        outdoor=str(layer.customProperty(OUTDOOR_PROPERTY, "") or ""),
-        width=str(layer.customProperty(WIDTH_PROPERTY, "") or ""),
+        **{name: str(layer.customProperty(f"fleet/{name}", "") or "") for name in EXPRESSIONS}
     )
 
 
 def set_expressions(layer, expressions: LayerExpressions) -> None:
     """Keep ``expressions`` in ``layer``; an empty one is taken away."""
-    _write(layer, HEIGHT_PROPERTY, expressions.height)
-    _write(layer, SEMANTICS_PROPERTY, expressions.semantics)
-    _write(layer, OUTDOOR_PROPERTY, expressions.outdoor)
-    _write(layer, WIDTH_PROPERTY, expressions.width)
+    for name in EXPRESSIONS:
+        _write(layer, f"fleet/{name}", getattr(expressions, name))
 
 
 def setup_of(layer) -> LayerSetup:

@@ -16,6 +16,8 @@ from .soundness import lines_with_length, risers_of, sound_polygons
 SAGITTA_M = 0.02
 """How far a chord may be from the curve it stands for (design, section 6)."""
 
+NO_PLACE = "has a coordinate that is no number or has no place in the site's CRS; it is left out"
+
 
 class Shape(NamedTuple):
     """One outline: ``points`` is (n, 2) in the geometry's coordinates, rings repeat their first point.
@@ -49,9 +51,7 @@ def shapes_of(geometry: QgsGeometry, role: str = "") -> Shapes:
         geometry = QgsGeometry(geometry.constGet().segmentize(SAGITTA_M, maximum))
     parts = parts_of(geometry)
     if not parts.finite:
-        return Shapes(
-            [], ["has a coordinate that is no number or has no place in the site's CRS; it is left out"]
-        )
+        return Shapes([], [NO_PLACE])
     # Valid as a whole is the rule and quickly told; GEOS takes a ring without points for valid, too.
     sound = parts.rings_have_points and geometry.isGeosValid()
     polygons, polygon_notes = (parts.polygons, []) if sound else sound_polygons(parts.polygons)
@@ -66,19 +66,6 @@ def shapes_of(geometry: QgsGeometry, role: str = "") -> Shapes:
         return Shapes([*shapes, Shape(risers, ShapeType.STAIRS)], [*notes, *bent])
     opened = ShapeType.OPEN_CURVE if curved else ShapeType.OPEN_POLYGON
     return Shapes([*shapes, *(Shape(line, opened) for line in lines)], notes)
-
-
-def posts_of(geometry: QgsGeometry, across: float) -> Shapes:
-    """Return an octagon around each point of ``geometry``, in metres, that holds a circle ``across``."""
-    points = np.array([(point.x(), point.y()) for point in geometry.vertices()]).reshape(-1, 2)
-    if not np.isfinite(points).all():
-        return Shapes(
-            [], ["has a coordinate that is no number or has no place in the site's CRS; it is left out"]
-        )
-    angles = np.radians(np.arange(22.5, 360.0, 45.0))
-    corners = np.column_stack([np.cos(angles), np.sin(angles)]) * (across / 2 / np.cos(np.radians(22.5)))
-    ring = np.concatenate([corners, corners[:1]])
-    return Shapes([Shape(point + ring, ShapeType.CLOSED_POLYGON) for point in points], [])
 
 
 def _with_heights(ramps: list[Shape], geometry: QgsGeometry) -> list[Shape]:

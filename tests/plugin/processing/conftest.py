@@ -17,12 +17,9 @@ from fleet_supervisor.robot_bridge.robotmap.model import RobotMap
 from fleet_supervisor.robot_bridge.robotmap.text import read_text
 from qgis.core import (
     QgsApplication,
-    QgsFeature,
-    QgsGeometry,
     QgsProcessingContext,
     QgsProcessingFeedback,
     QgsProject,
-    QgsVectorLayer,
 )
 
 INI = "[PythonPlugins]\nfleet_supervisor=true\nprocessing=true\n"
@@ -83,26 +80,6 @@ def cancels_at(qgis_app):
         listener = Listener()
         listener.progressChanged.connect(lambda value: listener.cancel() if value >= percent else None)
         return listener
-
-    return make
-
-
-@pytest.fixture
-def make_layer(qgis_app):
-    """Return a layer in memory; each of ``features`` is (WKT or None, *values)."""
-
-    def make(name="walls", kind="LineString", crs="EPSG:32633", fields="&field=height:double", features=()):
-        layer = QgsVectorLayer(f"{kind}?crs={crs}{fields}", name, "memory")
-        made = []
-        for wkt, *values in features:
-            feature = QgsFeature(layer.fields())
-            if wkt is not None:
-                feature.setGeometry(QgsGeometry.fromWkt(wkt))
-            feature.setAttributes(list(values))
-            made.append(feature)
-        assert layer.dataProvider().addFeatures(made)[0]
-        layer.updateExtents()
-        return layer
 
     return make
 

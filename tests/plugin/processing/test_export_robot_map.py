@@ -181,7 +181,7 @@ def test_a_profile_says_what_a_layer_is_and_wins_over_what_it_keeps(export, make
     profile = tmp_path / "mine.toml"
     profile.write_text(
         '[[layers]]\nnames = ["*wall"]\nrole = "obstacle"\n'
-        'height = \'"height" * 2\'\nsemantics = "\'wall\'"\n'
+        "height = '\"height\" * 2'\nsemantics = \"'wall'\"\n"
     )
     (obstacle,) = export(wall, CENTER="0,0", PROFILE=str(profile)).map.obstacles
     assert (obstacle.semantics, obstacle.height.tolist()) == ("wall", [3.0])

@@ -170,7 +170,7 @@ def test_the_papers_sample_is_loaded_and_its_short_obstacle_named(load, listener
 def test_what_was_exported_comes_back_where_it_was(load, export, make_layer):
     crs = "EPSG:32633"
     shape = "Polygon((640500 5193500, 640530 5193500, 640530 5193520, 640500 5193500))"
-    houses = make_layer("houses", "Polygon", crs, features=[(shape, 9.5)])
+    houses = make_layer("houses", "Polygon", crs=crs, features=[(shape, 9.5)])
     exported = export(
         houses, CENTER=f"640515,5193510 [{crs}]", SITE_CRS=crs, ORIGIN=f"640420,5193480 [{crs}]", ROTATION=30
     )

@@ -132,6 +132,20 @@ def test_layers_come_from_the_project_by_their_roles(publish, make_layer):
     assert site.outlines.shape_type.tolist() == [1, 1, 5]
 
 
+def test_feet_filters_and_templates_of_the_layers_are_published(publish, make_layer):
+    project = QgsProject()
+    fields = "&field=height:double&field=foot:double&field=kind:string"
+    signs = make_layer("signs", fields=fields, features=[(ROAD, 1.0, 2.2, "sign"), (ROAD, 1.0, 0.0, "plan")])
+    things = make_layer("things", "Point", fields, [("Point(5 5)", 1.0, 0.0, "bench")])
+    project.addMapLayers([signs, things])
+    keep_setup(signs, LayerSetup("obstacle", LayerExpressions(base='"foot"', filter="\"kind\" = 'sign'")))
+    keep_setup(things, LayerSetup("furniture", LayerExpressions(template='"kind"', rotation="90")))
+    site = read_site(publish(project=project).folder)
+    assert site.outlines.source == ["signs:1", "things:1"]
+    assert site.outlines.base.tolist() == [2.2, 0.0]
+    assert np.ptp(site.outlines.points(1), axis=0) == pytest.approx([0.6, 1.8])
+
+
 def test_the_version_goes_up_by_itself(publish, yard):
     assert [publish(**yard).results["VERSION"] for _ in range(3)] == [1, 2, 3]
 
@@ -206,6 +220,12 @@ def test_a_folder_that_cannot_be_written_is_named(refused, yard, tmp_path):
     (tmp_path / "file").write_text("in the way")
     said = refused(**yard, FOLDER=str(tmp_path / "file" / "site"))
     assert f"cannot be published in {tmp_path / 'file' / 'site'}" in said
+
+
+@pytest.mark.parametrize("name", ["OBSTACLES", "ROAD_CENTRELINES", "ROAD_SURFACES", "KEEPOUTS"])
+def test_a_wrong_filter_is_named_with_its_layer(refused, yard, name):
+    yard[name][0].setCustomProperty("fleet/filter", "1 +")
+    assert f"The filter expression '1 +' for the layer {yard[name][0].name()} is not one" in refused(**yard)
 
 
 def test_obstacles_beyond_the_bounds_are_published_as_far_as_a_robot_sees(publish, make_layer):

@@ -7,51 +7,32 @@ import time
 import pytest
 from fleet_supervisor.plugin.roles.roles_dialog import RolesDialog
 from fleet_supervisor.plugin.sites.roles import LayerExpressions, LayerSetup, keep_setup
-from qgis.core import QgsCoordinateReferenceSystem, QgsFeature, QgsGeometry, QgsProject, QgsVectorLayer
+from qgis.core import QgsCoordinateReferenceSystem, QgsProject
 from qgis.PyQt.QtCore import QCoreApplication, QEvent
 from qgis.PyQt.QtWidgets import QApplication
 
 CRS = "EPSG:32633"
 
 
-def memory_layer(name, kind, fields="", features=(), crs=CRS):
-    """Return a layer in memory; each of ``features`` is (WKT or None, *values)."""
-    layer = QgsVectorLayer(f"{kind}?crs={crs}{fields}", name, "memory")
-    made = []
-    for wkt, *values in features:
-        feature = QgsFeature(layer.fields())
-        if wkt is not None:
-            feature.setGeometry(QgsGeometry.fromWkt(wkt))
-        feature.setAttributes(list(values))
-        made.append(feature)
-    assert layer.dataProvider().addFeatures(made)[0]
-    return layer
-
-
 @pytest.fixture
-def make_layer(qgis_app):
-    return memory_layer
-
-
-@pytest.fixture
-def project(qgis_app):
+def project(make_layer):
     """Buildings with a role, barriers and roads without, as OpenStreetMap has them."""
     project = QgsProject()
     project.setCrs(QgsCoordinateReferenceSystem(CRS))
     tags = "&field=height:string&field=barrier:string"
-    buildings = memory_layer(
+    buildings = make_layer(
         "buildings",
         "Polygon",
         tags,
         [("Polygon((0 0, 9 0, 9 9, 0 0))", "6"), ("Polygon((20 0, 29 0, 29 9, 20 0))",)],
     )
-    barriers = memory_layer(
+    barriers = make_layer(
         "barriers", "LineString", tags, [("LineString(0 20, 9 20, 9 30)", None, "wall"), (None, None, None)]
     )
-    roads = memory_layer("roads", "LineString", "&field=width:string", [("LineString(0 40, 90 40)", "4")])
+    roads = make_layer("roads", "LineString", "&field=width:string", [("LineString(0 40, 90 40)", "4")])
     keep_setup(buildings, LayerSetup("obstacle", LayerExpressions(semantics="'house'")))
     project.addMapLayers(
-        [buildings, barriers, roads, memory_layer("trees", "Point", features=[("Point(5 50)",)])]
+        [buildings, barriers, roads, make_layer("trees", "Point", features=[("Point(5 50)",)])]
     )
     project.setDirty(False)
     yield project

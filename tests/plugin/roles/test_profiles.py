@@ -3,16 +3,26 @@
 from __future__ import annotations
 
 import json
+from collections import Counter
 
+import numpy as np
 import pytest
 from fleet_supervisor.plugin.sites.errors import ProfileError
+from fleet_supervisor.plugin.sites.obstacle_source import obstacle_sources
+from fleet_supervisor.plugin.sites.placing import SitePlacing
 from fleet_supervisor.plugin.sites.profile_file import find_profile, read_profile, shipped_profiles
+from fleet_supervisor.plugin.sites.reading import read_outlines
 from fleet_supervisor.plugin.sites.roles import LayerExpressions, LayerSetup, keep_setup
+from fleet_supervisor.robot_bridge.robotmap.model import ShapeType
+from fleet_supervisor.robot_bridge.sites.frame import SiteFrame
 from qgis.core import (
+    NULL,
     QgsExpression,
     QgsExpressionContext,
     QgsExpressionContextUtils,
     QgsFeatureRequest,
+    QgsFeedback,
+    QgsProject,
     QgsVectorLayer,
 )
 
@@ -83,6 +93,7 @@ def test_json_says_the_same_as_toml(qgis_app, profile):
         ('[[layers]]\nrole = "obstacle"\n', "layers[0] fits no layer"),
         (RULE + 'hight = "2"\n', "layers[0].hight is no key of a profile: known are names"),
         (RULE + 'height = "2 +"\n', "layers[0].height is no QGIS expression"),
+        (RULE + 'filter = "2 +"\n', "layers[0].filter is no QGIS expression"),
         (RULE + "height = 2\n", "layers[0].height is 2: write text in quotes"),
         (RULE + "fields = [2]\n", "layers[0].fields is [2]: write a list of texts"),
         (RULE + 'geometry = "dot"\n', "layers[0].geometry is 'dot': write one of point, line, polygon"),
@@ -136,11 +147,82 @@ def test_openstreetmap_knows_heights_and_widths_of_helsinki(qgis_app, data):
 
 
 @pytest.mark.parametrize("tags", ["&field=height:string", "&field=building:string", ""])
-def test_openstreetmap_needs_none_of_its_fields(qgis_app, tags):
-    setup = read_profile(find_profile("openstreetmap")).setup_for(layer("my buildings", "Polygon", tags))
-    assert setup.role == "obstacle"
-    columns = QgsExpression(setup.expressions.height).referencedColumns()
-    assert columns <= {QgsFeatureRequest.ALL_ATTRIBUTES}
+@pytest.mark.parametrize(
+    ("name", "kind", "role"), [("my buildings", "Polygon", "obstacle"), ("furniture", "Point", "furniture")]
+)
+def test_openstreetmap_needs_none_of_its_fields(qgis_app, name, kind, role, tags):
+    setup = read_profile(find_profile("openstreetmap")).setup_for(layer(name, kind, tags))
+    assert setup.role == role
+    for text in vars(setup.expressions).values():
+        assert QgsExpression(text).referencedColumns() <= {QgsFeatureRequest.ALL_ATTRIBUTES}
+
+
+@pytest.fixture
+def read_by_profile(qgis_app):
+    """Read layers of a file, together in the project, as a profile says; by the layers' names."""
+    project = QgsProject.instance()
+
+    def run(file, profile, *names):
+        layers = [QgsVectorLayer(f"{file}|layername={name}", name, "ogr") for name in names]
+        project.addMapLayers(layers)
+        site = SitePlacing(
+            layers[0].crs(), SiteFrame("EPSG:32635", (0.0, 0.0)), project.transformContext(), True
+        )
+        setups = read_profile(find_profile(profile)).setup_over
+        context = QgsExpressionContext()
+        return {
+            one.name(): read_outlines(
+                obstacle_sources([one], LayerExpressions(), context, setups), site, None, 3.0, QgsFeedback()
+            )
+            for one in layers
+        }
+
+    yield run
+    project.clear()
+
+
+def test_openstreetmap_takes_of_points_what_stands_in_the_way(read_by_profile, data):
+    city = data / "osm" / "helsinki_centre_utm35n.gpkg"
+    reading = read_by_profile(city, "openstreetmap", "furniture")["furniture"]
+    counts = Counter(row.semantics for row in reading.rows)
+    assert (counts["bench"], counts["waste_basket"], counts["street_lamp"]) == (162, 36, 586)
+    assert not {"restaurant", "crossing", "traffic_signals", "gate"} & counts.keys()
+    assert reading.warnings == []
+    benches = [row for row in reading.rows if row.semantics == "bench"]
+    assert all(len(row.points) == 5 and row.height == 0.9 for row in benches)
+
+
+@pytest.mark.parametrize(
+    ("way", "degrees"),
+    [("90", 90), ("NE", 45), ("NNW", 337.5), ("XX", None), ("forward", None), (None, None)],
+)
+def test_openstreetmap_turns_furniture_as_its_direction_says(qgis_app, make_layer, way, degrees):
+    tags = f'"ref"=>"3","direction"=>"{way}"' if way else None
+    fields = "&field=direction:string&field=other_tags:string"
+    for values in ((way, None), (None, tags)):
+        things = make_layer("furniture", "Point", fields, [("Point(0 0)", *values)])
+        (value,) = evaluated(things, "rotation")
+        assert value == degrees or (degrees is None and value == NULL)
+
+
+def test_the_campus_has_ramps_among_its_ground_and_walls_that_begin_above_it(read_by_profile, data):
+    file = data / "upc_campus_nord" / "upc_campus_nord_local.gpkg"
+    names = ("walls", "furniture", "ground_surfaces")
+    read = read_by_profile(file, "upc_campus_nord", *names)
+    ramps = read["ground_surfaces"].rows
+    assert len({row.source for row in ramps}) == 39
+    assert {row.shape_type for row in ramps} == {ShapeType.RAMP}
+    bases = np.array([row.base for row in read["walls"].rows])
+    # Of 1618 faces most stand on the ground; those of storeys above begin metres over it, none below it.
+    assert bases.min() == 0.0 and np.median(bases) == 0.0
+    assert 100 < (bases > 2.5).sum() < 300
+    assert all(reading.warnings == [] for reading in read.values())
+
+
+def test_without_its_ground_the_campus_stands_on_it(read_by_profile, data):
+    file = data / "upc_campus_nord" / "upc_campus_nord_local.gpkg"
+    reading = read_by_profile(file, "upc_campus_nord", "walls")["walls"]
+    assert {row.base for row in reading.rows} == {0.0} and reading.warnings == []
 
 
 def test_the_profile_in_the_guide_is_one(qgis_app, profile, root):

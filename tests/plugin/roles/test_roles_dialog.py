@@ -10,7 +10,19 @@ from fleet_supervisor.plugin.roles.picture import COLOURS, GROUND
 from fleet_supervisor.plugin.roles.preview_view import PreviewView
 from fleet_supervisor.plugin.roles.roles_action import RolesAction
 from fleet_supervisor.plugin.roles.roles_dialog import RolesDialog
-from fleet_supervisor.plugin.roles.table_model import HEIGHT, LAYER, RESULT, ROLE, SEMANTICS, WIDTH
+from fleet_supervisor.plugin.roles.table_model import (
+    BASE,
+    FILTER,
+    HEIGHT,
+    LAYER,
+    OUTDOOR,
+    RESULT,
+    ROLE,
+    ROTATION,
+    SEMANTICS,
+    TEMPLATE,
+    WIDTH,
+)
 from fleet_supervisor.plugin.sites.profile_file import PROFILES, find_profile
 from fleet_supervisor.plugin.sites.roles import LayerExpressions, LayerSetup, setup_of
 from qgis.core import QgsApplication, QgsCoordinateReferenceSystem
@@ -132,13 +144,58 @@ def test_an_expression_that_is_none_is_told_in_its_row(dialog, wait):
     wait(lambda: "1 layer refused" in said(dialog))
 
 
-def test_only_expressions_that_count_can_be_edited(dialog):
-    put(dialog, "roads", ROLE, "road_centreline")
+@pytest.mark.parametrize(
+    ("layer", "role", "columns"),
+    [
+        ("roads", "road_centreline", {ROLE, FILTER, SEMANTICS, WIDTH}),
+        ("buildings", "keepout", {ROLE, FILTER, SEMANTICS}),
+        ("buildings", "obstacle", {ROLE, FILTER, HEIGHT, BASE, SEMANTICS, OUTDOOR}),
+        (
+            "trees",
+            "furniture",
+            {ROLE, FILTER, HEIGHT, BASE, SEMANTICS, OUTDOOR, WIDTH, TEMPLATE, ROTATION},
+        ),
+        ("roads", "", {ROLE}),
+    ],
+)
+def test_only_expressions_that_count_can_be_edited(dialog, layer, role, columns):
+    put(dialog, layer, ROLE, role)
     editable = {
-        column: bool(cell(dialog, "roads", column).flags() & Qt.ItemFlag.ItemIsEditable)
-        for column in (LAYER, ROLE, HEIGHT, SEMANTICS, WIDTH, RESULT)
+        column
+        for column in range(LAYER, RESULT + 1)
+        if cell(dialog, layer, column).flags() & Qt.ItemFlag.ItemIsEditable
     }
-    assert editable == {LAYER: False, ROLE: True, HEIGHT: False, SEMANTICS: True, WIDTH: True, RESULT: False}
+    assert editable == columns
+
+
+def test_the_count_follows_the_filter(dialog, project, wait):
+    editor = edit(dialog, "buildings", FILTER, QgsFieldExpressionWidget)
+    editor.setExpression('"height" is not null')
+    dialog.findChild(QTableView).commitData(editor)
+    wait(lambda: cell(dialog, "buildings", RESULT).data() == "1 obstacle, 3 segments")
+    wait(lambda: said(dialog).startswith("1 obstacle of 3 segments,"))
+    put(dialog, "buildings", FILTER, '"levels" > 2')
+    wait(lambda: cell(dialog, "buildings", RESULT).data() == "refused")
+    reason = cell(dialog, "buildings", RESULT).data(Qt.ItemDataRole.ToolTipRole)
+    assert "The filter expression '\"levels\" > 2' for the layer buildings reads the field levels" in reason
+    put(dialog, "buildings", FILTER, "")
+    wait(lambda: cell(dialog, "buildings", RESULT).data() == "2 obstacles, 6 segments, 1 warning")
+
+
+def test_a_template_is_drawn_and_kept(dialog, project, wait):
+    for column, text in ((ROLE, "furniture"), (HEIGHT, "1"), (TEMPLATE, "'bench'"), (ROTATION, "30")):
+        put(dialog, "trees", column, text)
+    wait(lambda: cell(dialog, "trees", RESULT).data() == "1 obstacle, 4 segments")
+    put(dialog, "trees", TEMPLATE, "'sofa'")
+    wait(lambda: cell(dialog, "trees", RESULT).data() == "1 obstacle, 8 segments, 1 warning")
+    press(dialog, BUTTONS.Apply)
+    kept = LayerExpressions(height="1", template="'sofa'", rotation="30")
+    assert of_layer(project, "trees") == LayerSetup("furniture", kept)
+
+
+def test_the_table_fits_its_columns_into_the_dialog(dialog):
+    table = dialog.findChild(QTableView, "fleet_roles_table")
+    assert table.horizontalHeader().length() <= table.viewport().width()
 
 
 def test_nothing_is_kept_before_apply(dialog, project):

@@ -1,4 +1,4 @@
-"""Layers in memory, made from what QGIS calls them: a type, a CRS, fields, and WKT with values."""
+"""Layers read into outlines."""
 
 from __future__ import annotations
 
@@ -12,33 +12,8 @@ from qgis.core import (
     QgsCoordinateReferenceSystem,
     QgsCoordinateTransformContext,
     QgsExpressionContext,
-    QgsFeature,
     QgsFeedback,
-    QgsGeometry,
-    QgsVectorLayer,
 )
-
-
-def memory_layer(name="walls", kind="LineString", crs="EPSG:32633", fields="", features=()):
-    """Return a layer; each of ``features`` is (WKT or QgsGeometry or None, *values)."""
-    layer = QgsVectorLayer(f"{kind}?crs={crs}{fields}", name, "memory")
-    assert layer.isValid()
-    made = []
-    for shape, *values in features:
-        feature = QgsFeature(layer.fields())
-        if shape is not None:
-            feature.setGeometry(QgsGeometry.fromWkt(shape) if isinstance(shape, str) else shape)
-        feature.setAttributes(list(values))
-        made.append(feature)
-    ok, added = layer.dataProvider().addFeatures(made)
-    assert ok and len(added) == len(made)
-    layer.updateExtents()
-    return layer
-
-
-@pytest.fixture
-def make_layer(qgis_app):
-    return memory_layer
 
 
 @pytest.fixture

@@ -78,6 +78,26 @@ def test_an_expression_about_a_field_that_one_layer_lacks_is_one_warning_for_tha
     ]
 
 
+def test_where_a_thing_begins_is_said_by_its_layer_else_by_the_general_expression(make_layer, read):
+    fields = "&field=height:double&field=foot:string"
+    feet = [(LINE, 1.0, foot) for foot in ("2.5", "2,5 m", "-0.5", "", NULL, "high")]
+    arches, signs, walls = (
+        make_layer("arches", fields=fields, features=feet),
+        make_layer("signs"),
+        make_layer(),
+    )
+    for layer in (signs, walls):
+        layer.dataProvider().addFeature(next(arches.getFeatures()))
+    set_expressions(arches, LayerExpressions(base='"foot"'))
+    set_expressions(signs, LayerExpressions(base="2.2"))
+    reading = read(arches, signs, walls, general=LayerExpressions(base="1"))
+    assert [row.base for row in reading.rows] == [2.5, 2.5, -0.5, 0, 0, 0, 2.2, 1]
+    assert reading.warnings == [
+        "Layer arches, feature 6: its base 'high' is not a number of metres; "
+        "it is taken to stand on the ground"
+    ]
+
+
 def test_what_is_no_expression_is_refused_before_a_feature_is_read(make_layer, read):
     with pytest.raises(ExpressionError, match=r"height expression '1 \+' for the layer walls is not one"):
         read(make_layer(features=[(None,)]), general=LayerExpressions(height="1 +"))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 from fleet_supervisor.plugin.sites.roles import (
+    EXPRESSIONS,
     OBSTACLE,
     STAIRS,
     LayerExpressions,
@@ -18,7 +19,7 @@ from qgis.core import QgsProject
 
 def test_a_role_and_expressions_survive_saving_and_opening_the_project(make_layer, tmp_path):
     project = QgsProject()
-    kept = LayerExpressions(height='"h" + 1', semantics="'stairs,A5'", outdoor="false")
+    kept = LayerExpressions(**{name: f"'{name}' || 1" for name in EXPRESSIONS})
     steps, plain = make_layer("steps"), make_layer("plain")
     set_role(steps, STAIRS)
     set_expressions(steps, kept)
@@ -34,7 +35,9 @@ def test_a_role_and_expressions_survive_saving_and_opening_the_project(make_laye
 def test_taking_a_role_away_leaves_no_property_behind(make_layer):
     layer = make_layer()
     set_role(layer, OBSTACLE)
+    set_expressions(layer, LayerExpressions(**dict.fromkeys(EXPRESSIONS, "1")))
     set_role(layer, "")
+    set_expressions(layer, LayerExpressions())
     assert role_of(layer) == ""
     assert layer.customPropertyKeys() == []
 
