@@ -62,16 +62,16 @@ def _shares(ends: NDArray[Any], sides: NDArray[Any]) -> NDArray[Any]:
     One that is outside does not end after it begins. ``ends`` is (2, 2, n) and ``sides`` (2, 2, 1): from
     and to, then x and y.
     """
-    a = ends[0]
+    a, shares = ends[0], np.empty((2, ends.shape[2]))
+    direction = ends[1] - a
     with np.errstate(divide="ignore", invalid="ignore"):
         # Of a segment along a side: minus infinity and infinity inside, infinity twice outside, and no number
         # on the side itself, where the other axis decides.
-        at = (sides - a) / (ends[1] - a)
-    first, last = np.minimum(at[0], at[1]), np.maximum(at[0], at[1])
-    shares = np.empty((2, a.shape[1]))
-    np.fmax(np.fmax(first[0], first[1]), 0.0, out=shares[0])
-    np.fmin(np.fmin(last[0], last[1]), 1.0, out=shares[1])
-    return shares
+        low, high = (sides[0] - a) / direction, (sides[1] - a) / direction
+    first, last = np.minimum(low, high), np.maximum(low, high)
+    np.fmax(first[0], first[1], out=shares[0])
+    np.fmin(last[0], last[1], out=shares[1])
+    return shares.clip(0.0, 1.0)
 
 
 def _crossings(ends: NDArray[Any], shares: NDArray[Any], sides: NDArray[Any]) -> NDArray[Any]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import math
+from math import floor
 from typing import Any
 
 import numpy as np
@@ -51,10 +51,12 @@ class BoxGrid:
         begins: list[int] = []
         ends: list[int] = []
         for base, size in self._levels:
-            left, right = _cell((border.x_min - size - x) / size), _cell((border.x_max - x) / size)
-            lower, upper = _cell((border.y_min - size - y) / size), _cell((border.y_max - y) / size)
+            left, right = floor((border.x_min - size - x) / size), floor((border.x_max - x) / size)
+            lower, upper = floor((border.y_min - size - y) / size), floor((border.y_max - y) / size)
             if upper - lower >= len(self._keys):
                 return [slice(0, len(self.order))]
+            if min(left, lower) < -_FARTHEST or max(right, upper) > _FARTHEST:
+                left, right, lower, upper = map(_within_reach, (left, right, lower, upper))
             first, last = base + lower * _ROW + left, base + upper * _ROW + left
             begins += range(first, last + 1, _ROW)
             ends += range(first + right - left + 1, last + right - left + 2, _ROW)
@@ -62,5 +64,5 @@ class BoxGrid:
         return [*map(slice, places[: len(begins)], places[len(begins) :]), *self._always]
 
 
-def _cell(number: float) -> int:
-    return math.floor(max(-_FARTHEST, min(_FARTHEST, number)))
+def _within_reach(cell: int) -> int:
+    return max(-_FARTHEST, min(_FARTHEST, cell))
