@@ -1,0 +1,232 @@
+"""Accounts of MariaDB: robots see a database of their own with the views ``rr`` and ``sa`` alone.
+
+The views are those of a locked account, and keep rows apart by ``user()``, which is who connected;
+``current_user()`` would be the locked account. A trigger writes the robot's name into its requests.
+"""
+
+from __future__ import annotations
+
+import hashlib
+
+from sqlalchemy import text
+
+from .keeper import (
+    LARGEST_PARAMS,
+    LARGEST_PAYLOAD,
+    MOST_CONNECTIONS,
+    MOST_PAYLOADS,
+    MOST_WAITING,
+    STATEMENT_SECONDS,
+    AccountError,
+    AccountKeeper,
+)
+
+_VERSION = "robots' side of the fleet, version 1"
+_LONGEST_DATABASE = 40
+_SERVER_OWN = (
+    "root",
+    "mysql",
+    "mariadb.sys",
+    "public",
+    "none",
+    "current_user",
+    "current_role",
+    "session_user",
+)
+_NOT_GATEWAYS = {"rr": "select, delete", "sa": "select, insert, delete"}
+
+
+class MariaDbAccounts(AccountKeeper):
+    """Robots come from any host; TLS and the firewall say from where they may."""
+
+    def robots(self) -> list[str]:
+        return self._names(
+            f"select User from mysql.tables_priv where Db = {self._text(self._side())} and Table_name = 'sa'"
+        )
+
+    def gateways(self) -> list[str]:
+        keeper = self._text(self._keeper())
+        return self._names(
+            f"select User from mysql.tables_priv where Db = {self._text(self._database())} "
+            f"and Table_name = 'rr' and User <> {keeper} and find_in_set('Delete', Table_priv) > 0"
+        )
+
+    def prepare(self) -> None:
+        side = self._text(self._side())
+        found = self._names(
+            f"select schema_comment from information_schema.schemata where schema_name = {side}"
+        )
+        if found == [_VERSION]:
+            return
+        if len(self._database()) > _LONGEST_DATABASE:
+            raise AccountError(
+                f"database name {self._database()!r} is longer than {_LONGEST_DATABASE} characters, and "
+                "accounts are named after it; rename the database"
+            )
+        # What is defined is committed at once here: done again after a failure it must go through.
+        self._all(
+            _COMMON.format(
+                base=self._quoted(self._database()),
+                side=self._quoted(self._side()),
+                side_text=self._text(self._side()),
+                keeper=f"{self._text(self._keeper())}@'localhost'",
+                me="substring_index(user(), '@', 1)",
+                version=_VERSION.replace("'", "''"),
+                params=LARGEST_PARAMS,
+                payload=LARGEST_PAYLOAD,
+                waiting=MOST_WAITING,
+                payloads=MOST_PAYLOADS,
+            ).split("\n\n")
+        )
+
+    def renew_rights(self) -> None:
+        for name in self.gateways():
+            self._grant_tables(self._account(name))
+
+    def _exists(self, name: str) -> bool:
+        found = self._connection.execute(text("select 1 from mysql.user where User = :name"), {"name": name})
+        return found.first() is not None
+
+    def _check_name(self, name: str) -> None:
+        super()._check_name(name)
+        if name.lower() in _SERVER_OWN:
+            raise AccountError(f"name {name!r} is MariaDB's own; choose another one")
+        for known in self.robots():
+            if known != name and known.lower() == name.lower():
+                raise AccountError(
+                    f"robot {known!r} has an account already, and MariaDB takes {name!r} for the same robot; "
+                    "choose a name that differs in more than capital letters"
+                )
+
+    def _make_robot(self, name: str, password: str) -> None:
+        account, side = self._account(name), self._quoted(self._side())
+        self._make_user(
+            account,
+            password,
+            f"with max_user_connections {MOST_CONNECTIONS} max_statement_time {STATEMENT_SECONDS}",
+            f"grant insert (robot, op, params, payload) on {side}.rr to {account}",
+            f"grant select, delete on {side}.sa to {account}",
+        )
+
+    def _drop_robot(self, name: str) -> None:
+        self._do(f"alter user {self._account(name)} account lock")
+        self._end_connections(name)
+        base = self._quoted(self._database())
+        for table in ("rr", "sa"):
+            self._connection.execute(text(f"delete from {base}.{table} where robot = :name"), {"name": name})
+        self._do(f"drop user {self._account(name)}")
+
+    def _set_password(self, name: str, password: str) -> None:
+        self._do(f"alter user {self._account(name)} {_identified(password)}")
+
+    def _end_connections(self, name: str) -> None:
+        self._do(f"kill soft user {self._account(name)}")
+
+    def _make_gateway(self, name: str, password: str) -> None:
+        account, base = self._account(name), self._quoted(self._database())
+        self._make_user(
+            account, password, "", f"grant execute on procedure {base}.end_stuck_robots to {account}"
+        )
+        self._grant_tables(account)
+
+    def _make_user(self, account: str, password: str, options: str, *grants: str) -> None:
+        self._do(f"create user {account} {_identified(password)} {options}")
+        try:
+            self._all(grants)
+        except BaseException:
+            self._do(f"drop user {account}")
+            raise
+
+    def _grant_tables(self, account: str) -> None:
+        base = self._quoted(self._database())
+        tables = self._names(
+            "select table_name from information_schema.tables where table_type = 'BASE TABLE' "
+            f"and table_schema = {self._text(self._database())}"
+        )
+        for table in tables:
+            rights = _NOT_GATEWAYS.get(table, "select, insert, update, delete")
+            self._do(f"grant {rights} on {base}.{self._quoted(table)} to {account}")
+
+    def _database(self) -> str:
+        return str(self._connection.engine.url.database)
+
+    def _side(self) -> str:
+        return f"{self._database()}_robots"
+
+    def _keeper(self) -> str:
+        return f"{self._database()}_keeper"
+
+    def _account(self, name: str) -> str:
+        return f"{self._text(name)}@'%'"
+
+    def _quoted(self, name: str) -> str:
+        return "`" + name.replace("`", "``") + "`"
+
+    def _text(self, value: str) -> str:
+        return "'" + value.replace("\\", "\\\\").replace("'", "''") + "'"
+
+
+def _identified(password: str) -> str:
+    """Return the clause with the password as the server keeps it: itself it never gets into a log."""
+    once = hashlib.sha1(password.encode()).digest()
+    return f"identified via mysql_native_password using '*{hashlib.sha1(once).hexdigest().upper()}'"
+
+
+_COMMON = """\
+create or replace user {keeper} identified via mysql_native_password using 'invalid' account lock
+
+grant select, insert, update, trigger on {base}.rr to {keeper}
+
+grant select, delete on {base}.sa to {keeper}
+
+grant process, connection admin on *.* to {keeper}
+
+grant select on mysql.tables_priv to {keeper}
+
+alter table {base}.rr
+    add constraint if not exists rr_params_size check (params is null or octet_length(params) <= {params}),
+    add constraint if not exists rr_payload_size check (payload is null or octet_length(payload) <= {payload})
+
+create or replace definer = {keeper} trigger {base}.rr_of_whom before insert on {base}.rr for each row
+begin
+    if new.robot is not null and binary new.robot <> binary {me} then
+        signal sqlstate '42000' set mysql_errno = 1142,
+            message_text = 'a robot writes under its own name only';
+    end if;
+    set new.robot = {me};
+    if {waiting} <= (select count(*) from (select 1 from {base}.rr where robot = {me} limit {waiting}) as w) then
+        signal sqlstate '45000' set
+            message_text = '{waiting} requests wait already; write again when the gateway has read some';
+    end if;
+    if new.payload is not null and {payloads} <= (
+        select count(*) from {base}.rr where robot = {me} and payload is not null
+    ) then
+        signal sqlstate '45000' set
+            message_text = '{payloads} images wait already; write again when the gateway has read some';
+    end if;
+end
+
+create database if not exists {side}
+
+create or replace definer = {keeper} sql security definer view {side}.rr as
+    select robot, op, params, payload from {base}.rr where robot = {me} and binary robot = binary {me}
+
+create or replace definer = {keeper} sql security definer view {side}.sa as
+    select id, robot, op, params, payload, created_at, urgent from {base}.sa
+    where robot = {me} and binary robot = binary {me}
+
+create or replace definer = {keeper} procedure {base}.end_stuck_robots(seconds int) sql security definer
+begin
+    for stuck in (
+        select p.id from information_schema.processlist p
+        join information_schema.innodb_trx t on t.trx_mysql_thread_id = p.id
+        join mysql.tables_priv g on g.User = p.user and g.Db = {side_text} and g.Table_name = 'sa'
+        where t.trx_started < now() - interval seconds second
+    ) do
+        kill connection stuck.id;
+    end for;
+end
+
+grant execute on procedure {base}.end_stuck_robots to {keeper}
+
+alter database {side} comment '{version}'"""
