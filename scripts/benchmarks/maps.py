@@ -28,7 +28,8 @@ numpy {numpy}, shapely {shapely}, GDAL {gdal}.
 ### A window from a published site
 
 Malta's buildings and barriers (OpenStreetMap), published as the gateway serves them. Everything is warm: the
-site is loaded, the file is in the system's cache. In brackets, times the extraction.
+site is loaded, the file is in the system's cache. In brackets, times the extraction, whose result is segments
+with direction, height and obstacle in centimetres; the others return clipped geometries.
 
 {speed}
 
