@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pyogrio
 import pytest
@@ -13,6 +15,7 @@ from qgis.core import (
     QgsProcessingException,
     QgsProcessingParameterDefinition,
     QgsProject,
+    QgsVectorLayer,
 )
 
 HERE = {"CENTER": "20,20", "WIDTH": 80, "HEIGHT": 80}
@@ -136,6 +139,62 @@ def test_segments_shorter_than_the_shortest_are_left_out(export, lines):
     assert export(layer, SHORTEST=0.1, **HERE).results["SEGMENT_COUNT"] == 5
 
 
+def test_fewer_walls_can_be_more_obstacles_and_the_log_says_so(export, make_layer):
+    row = [(f"Polygon(({x} 0, {x + 9} 0, {x + 9} 9, {x} 9, {x} 0))", 4.0) for x in (0, 9, 18)]
+    done = export(make_layer("houses", "Polygon", features=row), DISSOLVE=True, **HERE)
+    assert "3 obstacles with 12 segments became 4 with 8" in done.log
+
+
+@pytest.fixture
+def street(make_layer):
+    """Many houses wall to wall, so that what is done to them takes a while."""
+    squares = [
+        (f"Polygon(({x} {y}, {x + 9} {y}, {x + 9} {y + 9}, {x} {y + 9}, {x} {y}))", 4.0)
+        for x in range(0, 360, 9)
+        for y in range(0, 600, 20)
+    ]
+    return make_layer("houses", "Polygon", features=squares)
+
+
+EVERYTHING = {"DISSOLVE": True, "CHAIN": True, "TOLERANCE": 0.05, "SHORTEST": 0.1}
+
+
+def test_the_progress_goes_on_while_obstacles_are_reduced(export, street, listener):
+    told = []
+    listener.progressChanged.connect(told.append)
+    export(street, feedback=listener, EXTENT="0,400,0,600", **EVERYTHING)
+    assert told == sorted(told) and told[-1] == 100
+    assert len([percent for percent in told if 50 <= percent < 100]) > 10
+
+
+@pytest.mark.parametrize("percent", [55, 65, 75, 85, 95])
+def test_a_cancel_while_obstacles_are_reduced_ends_it_there_and_writes_nothing(
+    export, street, cancels_at, tmp_path, percent
+):
+    feedback, told = cancels_at(percent), []
+    feedback.progressChanged.connect(told.append)
+    done = export(street, feedback=feedback, EXTENT="0,400,0,600", **EVERYTHING)
+    assert done.results == {} and not done.file.exists()
+    assert percent <= told[-1] < percent + 10
+
+
+def test_a_cancel_while_tiles_are_reduced_writes_none(provider, street, cancels_at, tmp_path):
+    import processing
+
+    context = QgsProcessingContext()
+    context.setProject(QgsProject())
+    everything = {"OBSTACLES": [street], "EXTENT": "0,400,0,600", "INDEX": "memory:", **EVERYTHING}
+    everything["OUTPUT"] = str(tmp_path / "out")
+    results = processing.run(
+        "fleet:exportrobotmaptiles",
+        everything,
+        context=context,
+        feedback=cancels_at(35),
+        is_child_algorithm=True,
+    )
+    assert results == {} and not list(tmp_path.glob("out/*"))
+
+
 @pytest.mark.parametrize("option", [{"DISSOLVE": True}, {"CHAIN": True}, {"TOLERANCE": 1, "SHORTEST": 1}])
 def test_where_there_is_nothing_to_reduce_the_map_is_as_without(export, make_layer, lines, option):
     wall = lines("LineString(0 5, 50 5)")
@@ -234,6 +293,14 @@ def export_campus(data, export_by_process):
     return run
 
 
+def shaped_as_said(done):
+    """Return how many segments there were before and after, as the log says it and the outputs agree."""
+    counts = re.search(r"(\d+) obstacles with (\d+) segments became (\d+) with (\d+)", done.said).groups()
+    before, obstacles, after = (int(count) for count in counts[1:])
+    assert (obstacles, after) == (done.result("OBSTACLE_COUNT"), done.result("SEGMENT_COUNT"))
+    return before, after
+
+
 @pytest.fixture(scope="module")
 def campus_with_feet(data, tmp_path_factory):
     """The campus with how high above the ground beside it each thing begins."""
@@ -266,15 +333,42 @@ def test_the_campus_in_the_robots_plane_is_within_the_papers_three_bytes(campus_
     plane = {"PLANE_LOW": 0.3, "PLANE_HIGH": 1, "BASE_EXPRESSION": '"base"'}
     done, _ = export_by_process(*layers, **place, **plane, DISSOLVE="true", CHAIN="true")
     assert done.status == 0, done.said
-    assert "1496 obstacles with 2139 segments became 173 with 529" in done.said
+    assert shaped_as_said(done)
     assert done.result("BYTES_PER_M2") <= 3
+
+
+@pytest.fixture(scope="module")
+def campus_project(qgis_app, data, tmp_path_factory):
+    """A project with the layers of the campus, among them its ground."""
+    file = data / "upc_campus_nord" / "upc_campus_nord_local.gpkg"
+    project = QgsProject()
+    for name in ("buildings", "walls", "furniture", "ground_surfaces"):
+        project.addMapLayer(QgsVectorLayer(f"{file}|layername={name}", name, "ogr"))
+    made = tmp_path_factory.mktemp("project") / "campus.qgz"
+    assert project.write(str(made))
+    return made
+
+
+def test_the_profile_of_the_campus_knows_what_hangs_above_the_robots_plane(
+    campus_project, qgis_process, tmp_path
+):
+    counts = []
+    for low, high in ((0.3, 1), (0.3, 1000)):
+        words = [f"OBSTACLES={name}" for name in ("buildings", "walls", "furniture")]
+        words += ["CENTER=48,48", "WIDTH=104", "HEIGHT=104", "PROFILE=upc_campus_nord"]
+        words += [f"PLANE_LOW={low}", f"PLANE_HIGH={high}", f"OUTPUT={tmp_path / 'map.txt'}"]
+        done = qgis_process("run", "fleet:exportrobotmap", f"--PROJECT_PATH={campus_project}", "--", *words)
+        assert done.status == 0, done.said
+        assert done.result("WARNING_COUNT") == 0
+        counts.append(done.result("OBSTACLE_COUNT"))
+    assert 100 < counts[1] - counts[0] < 300
 
 
 def test_the_campus_dissolved_and_chained_is_half_as_large(export_campus):
     done, file = export_campus(DISSOLVE="true", CHAIN="true")
     assert done.status == 0, done.said
-    assert "1496 obstacles with 2139 segments became 473 with 1362" in done.said
-    assert done.result("SEGMENT_COUNT") == 1362
+    before, after = shaped_as_said(done)
+    assert after < 0.65 * before
     assert done.result("BYTES_PER_M2") < 7
     compact, binary = export_campus(DISSOLVE="true", CHAIN="true", FORMAT="compact", output="campus.rmap")
     assert decode_text(binary.read_bytes()) == file.read_text()
@@ -299,4 +393,5 @@ def test_a_missing_package_is_named_before_the_run_and_nothing_is_written(export
 def test_without_packages_what_needs_none_still_runs(export_campus):
     done, _ = export_campus(CHAIN="true", PLANE_LOW=0.3, PLANE_HIGH=1, HEIGHT_STEP=0.5, packages=False)
     assert done.status == 0, done.said
-    assert "1496 obstacles with 2139 segments became" in done.said
+    before, after = shaped_as_said(done)
+    assert after < before
