@@ -105,7 +105,9 @@ class LayerCheck:
 def _near(layer: QgsVectorLayer, geometry: QgsGeometry) -> Iterator[QgsFeature]:
     counted = FeatureFilter.of_layer(layer, layer.createExpressionContext())
     for feature in layer.getFeatures(QgsFeatureRequest().setFilterRect(geometry.boundingBox())):
-        if counted.keeps(feature, []):
+        doubts: list[str] = []
+        # What the filter cannot tell of may be a keepout.
+        if counted.keeps(feature, doubts) or doubts:
             yield feature
 
 

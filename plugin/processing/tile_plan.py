@@ -8,8 +8,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from qgis.core import QgsProcessingAlgorithm, QgsProcessingContext
+from qgis.core import QgsFeature, QgsProcessingAlgorithm, QgsProcessingContext
 
+from ..sites.feature_filter import FeatureFilter
 from ..sites.placing import PlacingError, SitePlacing
 from ..sites.shapes import shapes_of
 from ..sites.site_crs import stated_crs
@@ -74,7 +75,7 @@ def _routes(algorithm, parameters, context, site: SitePlacing) -> list[np.ndarra
     counted = filter_in(algorithm, parameters, ROUTE, context)
     routes = []
     for feature in source.getFeatures():
-        if feature.geometry().isNull() or (counted is not None and not counted.keeps(feature, [])):
+        if feature.geometry().isNull() or not _counts(feature, source.sourceName(), counted):
             continue
         try:
             shapes = shapes_of(placing.to_metres(feature.geometry())).shapes
@@ -85,3 +86,13 @@ def _routes(algorithm, parameters, context, site: SitePlacing) -> list[np.ndarra
             ) from error
         routes += [placing.to_site(shape.points) for shape in shapes]
     return routes
+
+
+def _counts(feature: QgsFeature, layer: str, counted: FeatureFilter | None) -> bool:
+    doubts: list[str] = []
+    kept = counted is None or counted.keeps(feature, doubts)
+    if doubts:
+        raise ParameterError(
+            f"ROUTE: feature {feature.id()} of {layer}: {doubts[0]}. Correct the filter of the layer."
+        )
+    return kept

@@ -181,6 +181,26 @@ def test_a_target_in_a_keepout_is_refused_by_name(cone, iface, gateway):
     assert gateway.asked("send") == []
 
 
+@pytest.mark.parametrize(
+    ("text", "refused"), [("\"name\" = 'Pond'", False), ("\"name\" <> 'Pond'", True), ("to_int('a')", True)]
+)
+def test_only_what_the_filter_of_a_layer_keeps_is_a_keepout(cone, iface, text, refused):
+    layer = layer_with_role("keepout", 60, 50, 80, 60, name="Loading bay")
+    layer.setCustomProperty("fleet/filter", text)
+    iface.click(70, 55)
+    assert ("Not to be sent" in drawn(cone)) is refused
+
+
+def test_a_filter_that_is_none_is_told_with_its_layer_and_nothing_is_drafted(cone, iface):
+    layer = layer_with_role("keepout", 60, 50, 80, 60)
+    layer.setCustomProperty("fleet/filter", "1 +")
+    iface.click(70, 55)
+    assert any(
+        "The filter expression '1 +' for the layer the keepouts is not one" in t for t in iface.texts()
+    )
+    assert cone.desk.drafts.draft is None
+
+
 def test_a_target_beside_the_road_is_warned_of_and_can_be_sent(cone, iface, gateway, wait):
     layer_with_role("road_surface", 60, 50, 80, 60)
     iface.click(70, 55)

@@ -74,6 +74,41 @@ def areas(make_layer):
 
 
 @pytest.fixture
+def masked(export, robot_map, areas):
+    """Make a keepout and a speed mask of the areas that a filter keeps."""
+
+    def run(text, **layers):
+        areas.setCustomProperty("fleet/filter", text)
+        both = {"KEEPOUTS": areas, "SPEED_AREAS": areas, "SPEED": "2", "FORMATS": ["keepout", "speed"]}
+        return export(robot_map, **{**both, **layers})
+
+    return run
+
+
+def test_masks_are_of_the_features_that_count(masked):
+    def inside_is_as_outside(text):
+        results, _, warnings = masked(text)
+        assert warnings == []
+        files = (results["KEEPOUT"], results["SPEED"])
+        return [value_at(file, 25, 12) == value_at(file, 35, 17) for file in files]
+
+    assert inside_is_as_outside('"limit" > 1') == [False, False]
+    assert inside_is_as_outside('"limit" < 1') == [True, True]
+
+
+def test_a_mask_by_a_filter_that_fails_names_the_feature(masked):
+    _, _, warnings = masked("to_int('a')", FORMATS=["keepout"])
+    assert len(warnings) == 2
+    assert warnings[0].startswith("Layer zones, feature 1: the filter expression fails: Cannot convert")
+
+
+def test_a_mask_by_a_filter_that_is_none_is_refused_and_nothing_is_written(masked, tmp_path):
+    with pytest.raises(QgsProcessingException, match=r"The filter expression '1 \+' for the layer zones"):
+        masked("1 +")
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.fixture
 def export(provider, tmp_path):
     """Run the algorithm; return its results, the folder and what it warned of."""
     import processing

@@ -158,6 +158,25 @@ def test_tiles_follow_a_route_in_another_crs(tiles, wall, make_layer, tmp_path):
     assert names(tmp_path / "out")[0] == "route_0001.txt"
 
 
+def test_tiles_follow_what_the_filter_of_the_route_keeps(tiles, wall, make_layer):
+    lines = [
+        ("LineString(600010 5100030, 600090 5100030)", 1.0),
+        ("LineString(0 0, 9e5 0)", 2.0),
+        (None, 3.0),
+    ]
+    route = make_layer("drive", features=lines)
+    route.setCustomProperty("fleet/filter", '"height" < 1.5')
+    assert tiles(wall, ROUTE=route, TILE_WIDTH=40, TILE_HEIGHT=40, OVERLAP=10)["TILE_COUNT"] == 4
+    route.setCustomProperty("fleet/filter", "to_int('a')")
+    with pytest.raises(
+        QgsProcessingException, match="ROUTE: feature 1 of drive: the filter expression fails"
+    ):
+        tiles(wall, ROUTE=route)
+    route.setCustomProperty("fleet/filter", "1 +")
+    with pytest.raises(QgsProcessingException, match=r"The filter expression '1 \+' for the layer drive"):
+        tiles(wall, ROUTE=route)
+
+
 def test_binary_strict_and_empty_tiles(tiles, wall, tmp_path):
     results = tiles(wall, EXTENT=EXTENT, TILE_WIDTH=100, TILE_HEIGHT=20, FORMAT="binary", SKIP_EMPTY=True)
     assert results["TILE_COUNT"] == 1
