@@ -14,8 +14,11 @@ from .errors import ForbiddenError
 from .fleet import Fleet
 from .messages import (
     AbortAll,
+    AbortTask,
+    ClearEmergencyStop,
     CommandReport,
     DeskRequest,
+    EmergencyStop,
     GetCommands,
     GetImage,
     GetObservations,
@@ -79,7 +82,19 @@ async def _send(fleet: Fleet, request: Send, caller: Caller) -> Json:
 
 
 async def _abort_all(fleet: Fleet, request: AbortAll, caller: Caller) -> Json:
-    return _commands(await fleet.abort_all(caller.operator, request.command))
+    return _commands(await fleet.abort_all(caller.operator, request.command, request.reason))
+
+
+async def _abort(fleet: Fleet, request: AbortTask, caller: Caller) -> Json:
+    return to_json(await fleet.abort(request, caller.operator))
+
+
+async def _emergency_stop(fleet: Fleet, request: EmergencyStop, caller: Caller) -> Json:
+    return to_json(await fleet.emergency.stop(request, caller.operator))
+
+
+async def _clear_emergency_stop(fleet: Fleet, request: ClearEmergencyStop, caller: Caller) -> Json:
+    return to_json(await fleet.emergency.clear(request, caller.operator))
 
 
 async def _get_commands(fleet: Fleet, request: GetCommands, _caller: Caller) -> Json:
@@ -109,4 +124,7 @@ SERVICES: dict[type[DeskRequest], Service] = {
     Send: Service(Role.OPERATOR, _send),
     SetPositions: Service(Role.OPERATOR, _set_positions),
     AbortAll: Service(Role.OPERATOR, _abort_all),
+    AbortTask: Service(Role.OPERATOR, _abort),
+    EmergencyStop: Service(Role.OPERATOR, _emergency_stop),
+    ClearEmergencyStop: Service(Role.SUPERVISOR, _clear_emergency_stop),
 }

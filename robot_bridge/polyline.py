@@ -25,6 +25,11 @@ class Polyline:
         return float(self._stations[-1])
 
     @property
+    def stations(self) -> list[float]:
+        """The station of each of the n points."""
+        return [float(station) for station in self._stations]
+
+    @property
     def end(self) -> tuple[float, float]:
         """The last point."""
         return float(self._points[-1, 0]), float(self._points[-1, 1])

@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
-from functools import cached_property
+import threading
+from collections.abc import Sequence
 
-from .messages import SiteReport
+from .errors import RefusedError
+from .messages import ObservationReport, SiteReport
+from .observed_objects import ObservedObjects
 from .robotmap.binary import encode
+from .sites.earth import Earth
+from .sites.errors import CrsError
 from .sites.settings import SiteSettings
 from .sites.site import Site
 
@@ -15,6 +20,10 @@ class SiteMaps:
 
     def __init__(self, site: Site) -> None:
         self._site = site
+        self._earth = Earth(site.frame)
+        self._objects = ObservedObjects([], site.settings.observations.object_radius_m)
+        self._whole_map: tuple[ObservedObjects, bytes] | None = None
+        self._making = threading.Lock()
 
     @property
     def settings(self) -> SiteSettings:
@@ -38,18 +47,36 @@ class SiteMaps:
             lost_after=settings.liveness.lost_after_s,
         )
 
-    @cached_property
-    def _whole_map(self) -> bytes:
-        return encode(self._site.whole_map())
-
     def contains(self, x: float, y: float) -> bool:
         """Tell whether (x, y), metres in the site frame, lies on the site."""
         return self._site.contains(x, y)
 
     def whole_map(self) -> bytes:
         """Return the map of the whole site in the binary format."""
-        return self._whole_map
+        # Of a hundred robots that ask at once the first has it made, and the others wait.
+        with self._making:
+            objects, made = self._objects, self._whole_map
+            if made is None or made[0] is not objects:
+                made = self._whole_map = (objects, encode(objects.join(self._site.whole_map())))
+            return made[1]
 
     def map_around(self, x: float, y: float, area: float) -> bytes:
         """Return the map of a square of ``area`` square metres centred on (x, y) in the binary format."""
-        return encode(self._site.map_around(x, y, area))
+        return encode(self._objects.join(self._site.map_around(x, y, area)))
+
+    def show(self, objects: Sequence[ObservationReport]) -> None:
+        """Draw accepted objects, and no others, on the maps from now on."""
+        self._objects = ObservedObjects(objects, self._site.settings.observations.object_radius_m)
+
+    def place_on_earth(
+        self, lat: float, lon: float, heading: float | None
+    ) -> tuple[tuple[float, float], float | None]:
+        """Return (x, y) in metres and theta in radians, site frame, of a GPS position in degrees.
+
+        ``heading`` is clockwise from true north. Raises RefusedError where the site's CRS has no such place.
+        """
+        try:
+            theta = None if heading is None else self._earth.theta(lat, lon, heading)
+            return self._earth.place(lat, lon), theta
+        except CrsError as error:
+            raise RefusedError(f"SendGPS: {error}") from error

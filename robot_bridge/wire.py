@@ -10,25 +10,34 @@ import msgspec
 
 from . import jsonrpc
 from .errors import ForbiddenError, NotReadyError, StoreError
-from .messages import ANSWERS, DESK_REQUESTS, REQUESTS, Answer, DeskRequest, MessageError, Request, SetMap
+from .messages import (
+    ANSWERS,
+    DESK_REQUESTS,
+    PAYLOADS,
+    REQUESTS,
+    Answer,
+    DeskRequest,
+    MessageError,
+    Request,
+    to_json,
+)
 
 
 class UnknownOperationError(MessageError):
     """An operation code or method that is in no table."""
 
 
-def decode_request(op: str, params: Any) -> Request:
-    """Return the robot's request ``op`` with its parameters (a dict of JSON values, or None for none)."""
-    return cast("Request", _convert(REQUESTS, "operation", op, params))
+def decode_request(op: str, params: Any, payload: bytes | None = None) -> Request:
+    """Return the robot's request ``op`` with its parameters (a dict of JSON values, or None for none).
+
+    What is binary in it comes as ``payload``, or as base64 text among the parameters.
+    """
+    return cast("Request", _convert(REQUESTS, "operation", op, params, payload))
 
 
 def decode_answer(op: str, params: Any, payload: bytes | None = None) -> Answer:
-    """Return the server's answer ``op``; ``payload`` carries the map of a SetMap."""
-    if op == "SetMap":
-        if payload is None:
-            raise MessageError("SetMap came without its payload; the robot map is missing")
-        return SetMap(payload)
-    return cast("Answer", _convert(ANSWERS, "operation", op, params))
+    """Return the server's answer ``op``; ``params`` and ``payload`` as in :func:`decode_request`."""
+    return cast("Answer", _convert(ANSWERS, "operation", op, params, payload))
 
 
 def decode_desk_request(method: str, params: Any) -> DeskRequest:
@@ -36,16 +45,30 @@ def decode_desk_request(method: str, params: Any) -> DeskRequest:
     return cast("DeskRequest", _convert(DESK_REQUESTS, "method", method, params))
 
 
-def _convert(table: dict[str, Any], kind: str, name: str, params: Any) -> Any:
+def _convert(table: dict[str, Any], kind: str, name: str, params: Any, payload: bytes | None = None) -> Any:
     cls = table.get(name)
     if cls is None:
         raise UnknownOperationError(f"unknown {kind} {name!r}; known are {', '.join(table)}")
     if params is not None and not isinstance(params, dict):
         raise MessageError(f"{name}: params is {type(params).__name__}; give an object with named parameters")
+    if name in PAYLOADS:
+        params = _with_payload(name, params or {}, payload)
     try:
         return msgspec.convert(params or {}, cls)
     except msgspec.ValidationError as error:
         raise MessageError(f"{name}: {error}") from None
+
+
+def _with_payload(op: str, params: dict[str, Any], payload: bytes | None) -> dict[str, Any]:
+    name = PAYLOADS[op]
+    if payload is not None:
+        return {**params, name: payload}
+    if name not in params:
+        raise MessageError(f"{op} came without its payload; its {name} is missing")
+    try:
+        return {**params, name: base64.b64decode(params[name], validate=True)}
+    except (TypeError, ValueError, binascii.Error):
+        raise MessageError(f"{op}: {name} is not base64 text") from None
 
 
 def error_code(error: Exception) -> int:
@@ -70,14 +93,19 @@ def parse_params(op: str, text: str | bytes | None) -> Any:
         raise MessageError(f"{op}: params is not JSON ({error}): {str(text)[:80]!r}") from None
 
 
-def encode_map(content: bytes) -> str:
-    """Return a robot map as base64 text, as it travels inside JSON."""
-    return base64.b64encode(content).decode("ascii")
+def payload_of(message: Request | Answer) -> bytes | None:
+    """Return what is binary in ``message``: the payload of its row."""
+    name = PAYLOADS.get(type(message).__name__)
+    return None if name is None else cast("bytes", getattr(message, name))
 
 
-def decode_map(text: Any) -> bytes:
-    """Return the bytes of a robot map that travelled inside JSON."""
-    try:
-        return base64.b64decode(text, validate=True)
-    except (TypeError, ValueError, binascii.Error):
-        raise MessageError("SetMap: map is not base64 text") from None
+def with_base64(op: str, params: dict[str, Any], payload: bytes | None) -> dict[str, Any]:
+    """Return the parameters of a message with its payload among them, as it travels inside JSON."""
+    if payload is None or op not in PAYLOADS:
+        return params
+    return {**params, PAYLOADS[op]: base64.b64encode(payload).decode("ascii")}
+
+
+def params_of(message: Request | Answer) -> dict[str, Any]:
+    """Return all of a message as JSON values."""
+    return with_base64(type(message).__name__, to_json(message), payload_of(message))

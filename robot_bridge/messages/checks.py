@@ -4,6 +4,11 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Mapping
+from typing import Any
+
+Ranges = Mapping[str, tuple[float, float]]
+"""The smallest and the largest value of numbers, by the name of the parameter."""
 
 ROBOT_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,62}")
 LARGEST_NUMBER = 2**63 - 1
@@ -26,6 +31,21 @@ def check_stored_number(**numbers: int | None) -> None:
     for name, value in numbers.items():
         if value is not None and not 0 <= value <= LARGEST_NUMBER:
             raise MessageError(f"{name} is {value}; give a whole number from 0 to {LARGEST_NUMBER}")
+
+
+def check_ranges(message: Any) -> None:
+    """Refuse a number outside the ``ranges`` of its message, NaN included; raises MessageError."""
+    for name, (low, high) in message.ranges.items():
+        value = getattr(message, name)
+        if value is not None and not low <= value <= high:
+            raise MessageError(f"{name} is {value}; give a number from {low:g} to {high:g}")
+
+
+def check_text(longest: int, **texts: str | None) -> None:
+    """Refuse a text that is empty, too long or has a line break; raises MessageError naming the parameter."""
+    for name, value in texts.items():
+        if value is not None and not (0 < len(value) <= longest and value.isprintable()):
+            raise MessageError(f"{name} is {value[:40]!r}; give 1 to {longest} printable characters")
 
 
 def check_robot_name(name: str) -> str:

@@ -7,8 +7,12 @@ from enum import Enum
 from typing import Any, ClassVar
 
 from .checks import MessageError, check_command_id, check_finite
+from .observations import GetImage, GetObservations, ReviewObservation
+from .stopping import AbortTask, ClearEmergencyStop, EmergencyStop, check_reason
 
 PROTOCOL_VERSION = 1
+LONGEST_EXPIRY = 366 * 86400.0
+"""seconds."""
 
 
 class Role(str, Enum):
@@ -46,11 +50,13 @@ class CommandState(str, Enum):
     SUPERSEDED = "superseded"
 
 
-@dataclass(frozen=True)
+@dataclass  # not frozen: thousands are made every second, and a frozen one takes three times as long
 class RobotReport:
     """One robot as the gateway knows it. ``age`` is seconds since its last message, when this was sent.
 
-    A robot that has said Ready and not yet where it is has no pose: x, y, theta, v are None.
+    A robot that has said Ready and not yet where it is has no pose: x, y, theta, v are None. ``device_time``
+    and ``fix_time`` are the robot's own clocks, ``pose_age`` is seconds since its pose came in, by the
+    gateway's. ``latency`` is the seconds that the robot's link took there and back when last measured.
     """
 
     robot: str
@@ -63,9 +69,15 @@ class RobotReport:
     theta: float | None = None
     v: float | None = None
     device_time: float | None = None
+    fix_time: float | None = None
+    pose_age: float | None = None
+    latency: float | None = None
     battery: float | None = None
     status: str | None = None
     command: str | None = None
+    accuracy: float | None = None
+    altitude: float | None = None
+    theta_from: str | None = None
 
 
 @dataclass(frozen=True)
@@ -164,16 +176,27 @@ class SetPositions:
 
 @dataclass(frozen=True)
 class Send:
-    """Ask for one command. ``command`` is an id that the operator's side invents: sent twice, done once."""
+    """Ask for one command. ``command`` is an id that the operator's side invents: sent twice, done once.
+
+    It is given up when the robot has not fetched it within ``expires_in`` seconds, if that is given, else
+    within the time that the site's settings say.
+    """
 
     method: ClassVar[str] = "send"
     command: str
     robot: str
     op: str
     params: dict[str, Any] = field(default_factory=dict)
+    expires_in: float | None = None
+    reason: str | None = None
 
     def __post_init__(self) -> None:
         check_command_id(self.command)
+        check_reason(self.reason)
+        if self.expires_in is not None and not 0 < self.expires_in <= LONGEST_EXPIRY:
+            raise MessageError(
+                f"expires_in is {self.expires_in}; give seconds, above 0 and up to {LONGEST_EXPIRY:g}"
+            )
 
 
 @dataclass(frozen=True)
@@ -185,8 +208,10 @@ class AbortAll:
 
     method: ClassVar[str] = "abort_all"
     command: str | None = None
+    reason: str | None = None
 
     def __post_init__(self) -> None:
+        check_reason(self.reason)
         if self.command is not None:
             check_command_id(self.command)
 
@@ -204,8 +229,37 @@ class GetCommands:
             raise MessageError(f"limit is {self.limit}; give a number from 1 to 10000")
 
 
-DeskRequest = Hello | Subscribe | GetPositions | SetPositions | Send | AbortAll | GetCommands
+DeskRequest = (
+    Hello
+    | Subscribe
+    | GetPositions
+    | SetPositions
+    | Send
+    | AbortAll
+    | AbortTask
+    | EmergencyStop
+    | ClearEmergencyStop
+    | GetCommands
+    | GetObservations
+    | GetImage
+    | ReviewObservation
+)
 
 DESK_REQUESTS: dict[str, type[DeskRequest]] = {
-    cls.method: cls for cls in (Hello, Subscribe, GetPositions, SetPositions, Send, AbortAll, GetCommands)
+    cls.method: cls
+    for cls in (
+        Hello,
+        Subscribe,
+        GetPositions,
+        SetPositions,
+        Send,
+        AbortAll,
+        AbortTask,
+        EmergencyStop,
+        ClearEmergencyStop,
+        GetCommands,
+        GetObservations,
+        GetImage,
+        ReviewObservation,
+    )
 }

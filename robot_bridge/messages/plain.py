@@ -7,6 +7,8 @@ from enum import Enum
 from typing import Any
 
 from .desk import CommandReport, CommandState, CommandStep, RobotReport, RobotState, SiteReport
+from .observations import ObservationReport, ObservationState
+from .stopping import EmergencyReport
 
 
 def to_json(message: Any) -> dict[str, Any]:
@@ -48,6 +50,17 @@ def site_report(values: dict[str, Any]) -> SiteReport:
     """Return the site that a gateway sent as JSON."""
     known = _known(SiteReport, values)
     return SiteReport(**{**known, "origin": tuple(values["origin"]), "bounds": tuple(values["bounds"])})
+
+
+def observation_report(values: dict[str, Any]) -> ObservationReport:
+    """Return the observation that a gateway sent as JSON."""
+    known = _known(ObservationReport, values)
+    return ObservationReport(**{**known, "state": ObservationState(values["state"])})
+
+
+def emergency_report(values: dict[str, Any]) -> EmergencyReport:
+    """Return how an emergency stop stands, as a gateway sent it as JSON."""
+    return EmergencyReport(**_known(EmergencyReport, values))
 
 
 def _known(cls: type, values: dict[str, Any]) -> dict[str, Any]:

@@ -11,6 +11,7 @@ from ..messages import (
     Abort,
     Alive,
     Answer,
+    GetPath,
     OpAck,
     Ready,
     Request,
@@ -18,6 +19,7 @@ from ..messages import (
     SetMap,
     SetPath,
     SetPosEnd,
+    SetPosIni,
     Start,
     Stopped,
 )
@@ -26,16 +28,23 @@ from ..robotmap.errors import RobotMapError
 from ..robotmap.model import RobotMap
 from .body import Body, BodyLimits, Pose
 from .driver import Driver
+from .sightings import Sightings, Thing
 
 STANDING = 0.01
 """m/s."""
 RANGE = 10_000.0
 """metres that the simulated battery lasts."""
+GREET_AGAIN = 1.0
+"""seconds after which a robot that was refused says Ready once more."""
 
 
 @dataclass(frozen=True)
 class AgentSettings:
-    """``magic`` names this run of the robot, ``noise`` is metres on reported positions."""
+    """``magic`` names this run of the robot, ``noise`` is metres on reported positions.
+
+    ``things`` are seen on the way, with ``image`` as the picture of each; with ``asks_path`` the robot asks
+    for a path to every target.
+    """
 
     magic: int
     pose: Pose
@@ -43,12 +52,16 @@ class AgentSettings:
     rate: float = 5.0
     noise: float = 0.01
     seed: int = 1
+    things: tuple[Thing, ...] = ()
+    image: bytes | None = None
+    asks_path: bool = False
 
 
 class Agent:
     """Takes in answers, lets time pass, and hands out the requests to send through ``say``.
 
-    A message that came twice is acknowledged twice and done once.
+    A message that came twice is acknowledged twice and done once. Until the gateway has taken its Ready the
+    robot says nothing else: another one may run under its account.
     """
 
     def __init__(self, settings: AgentSettings, say: Callable[[Request], None]) -> None:
@@ -57,7 +70,11 @@ class Agent:
         self._random = random.Random(settings.seed)
         self._body = Body(settings.pose, settings.limits)
         self._driver: Driver | None = None
+        self._sightings = Sightings(settings.things, settings.image, say)
         self._done: set[int] = set()
+        self._database: str | None = None
+        self._admitted = False
+        self._greet_in = math.inf
         self._since_pose = math.inf
         self._moving = False
         self.map: RobotMap | None = None
@@ -69,14 +86,17 @@ class Agent:
 
     def greet(self) -> None:
         """Say Ready; done again whenever the link is made anew."""
+        self._greet_in = math.inf
         self._say(Ready(magic=self._settings.magic))
 
     def receive(self, answer: Answer, id: int | None) -> OpAck | None:
         """Take in message ``id`` of the server; return what to acknowledge it with."""
         if isinstance(answer, Start):
+            self._count_ids_of(answer.database)
             self.greet()
             return None if id is None else OpAck(id=id)
         if isinstance(answer, OpAck):
+            self._take_acknowledgement(answer)
             return None
         if id is not None and id in self._done:
             return OpAck(id=id)
@@ -84,6 +104,12 @@ class Agent:
         if id is not None:
             self._done.add(id)
         return OpAck(id=id, ok=refusal is None, reason=refusal)
+
+    def concerns(self, answer: Answer) -> bool:
+        """Tell whether a message is for this run of the robot, and not for another one of its account."""
+        if isinstance(answer, OpAck) and answer.magic is not None:
+            return answer.magic == self._settings.magic
+        return self._admitted or isinstance(answer, Start)
 
     def step(self, dt: float) -> None:
         """Let ``dt`` seconds pass: drive, and say where the robot is when it is time."""
@@ -93,6 +119,12 @@ class Agent:
                 self._driver = None
             self._body.drive(*(motion or (0.0, 0.0)))
         self._body.step(dt)
+        if not self._admitted:
+            self._greet_in -= dt
+            if self._greet_in <= 0:
+                self.greet()
+            return
+        self._sightings.look(self._body.pose)
         self._since_pose += dt
         if self._since_pose >= 1 / self._settings.rate - dt / 2:
             self._since_pose = 0.0
@@ -102,11 +134,28 @@ class Agent:
     def stop(self) -> None:
         """Say that the robot stands and does nothing."""
         self._driver = None
-        self._say(Stopped())
+        if self._admitted:
+            self._say(Stopped())
 
     def alive(self) -> None:
         """Say Alive."""
-        self._say(Alive())
+        if self._admitted:
+            self._say(Alive())
+
+    def _take_acknowledgement(self, ack: OpAck) -> None:
+        if ack.magic != self._settings.magic:
+            return
+        self._admitted = ack.ok
+        if ack.ok:
+            self._count_ids_of(ack.database)
+        else:
+            self._greet_in = GREET_AGAIN
+
+    def _count_ids_of(self, database: str | None) -> None:
+        """Forget what was done when ids begin anew, in another database."""
+        if database != self._database:
+            self._done.clear()
+            self._database = database
 
     def _do(self, answer: Answer) -> str | None:
         """Do what a message asks; return why not, or None."""
@@ -115,8 +164,12 @@ class Agent:
             return self._take_map(answer)
         if isinstance(answer, SetPosEnd):
             self._driver = Driver([(answer.x, answer.y)], answer.theta, limits)
+            if self._settings.asks_path:
+                self._say(GetPath())
         elif isinstance(answer, SetPath):
-            self._driver = Driver(answer.points, None, limits)
+            self._driver = Driver(answer.points, answer.theta, limits)
+        elif isinstance(answer, SetPosIni):
+            return self._take_place(answer)
         elif isinstance(answer, Abort):
             self._driver = None
             self._body.drive(0.0, 0.0)
@@ -128,6 +181,12 @@ class Agent:
             self.map = decode(answer.map)
         except RobotMapError as error:
             return f"the map cannot be read: {error}"
+        return None
+
+    def _take_place(self, begin: SetPosIni) -> str | None:
+        if self._driver is not None or abs(self._body.v) >= STANDING:
+            return "it drives, and knows where; abort its task first"
+        self._body.place((begin.x, begin.y, self._body.pose[2] if begin.theta is None else begin.theta))
         return None
 
     def _position(self) -> SendPos:

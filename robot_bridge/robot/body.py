@@ -33,6 +33,10 @@ class Body:
         self._limits = limits
         self._wanted = (0.0, 0.0)
 
+    def place(self, pose: Pose) -> None:
+        """Take the body to be at ``pose``, as a robot that is told where it stands."""
+        self.pose = pose
+
     def drive(self, v: float, turn_rate: float) -> None:
         """Ask for a speed (m/s) and a turn rate (rad/s), within the limits."""
         limits = self._limits

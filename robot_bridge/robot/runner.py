@@ -7,9 +7,11 @@ import secrets
 from dataclasses import dataclass, field
 from typing import Protocol
 
+from ..access.credentials import Credentials
 from ..messages import Request, check_robot_name
 from .agent import Agent, AgentSettings
 from .body import BodyLimits, Pose
+from .sightings import Thing
 from .sql_link import SqlLink
 from .websocket_link import WebSocketLink
 
@@ -29,6 +31,10 @@ class RobotSettings:
     rate: float = 5.0
     noise: float = 0.01
     seed: int = 1
+    credentials: Credentials = field(default_factory=Credentials)
+    things: tuple[Thing, ...] = ()
+    image: bytes | None = None
+    asks_path: bool = False
 
 
 class Link(Protocol):
@@ -52,6 +58,9 @@ async def run(settings: RobotSettings, stop: asyncio.Event) -> None:
             rate=settings.rate,
             noise=settings.noise,
             seed=settings.seed,
+            things=settings.things,
+            image=settings.image,
+            asks_path=settings.asks_path,
         ),
         link.say,
     )
@@ -71,7 +80,7 @@ async def run(settings: RobotSettings, stop: asyncio.Event) -> None:
 def _link(settings: RobotSettings) -> Link:
     name = check_robot_name(settings.name)
     if settings.url is not None:
-        return WebSocketLink(settings.url, name)
+        return WebSocketLink(settings.url, name, settings.credentials)
     assert settings.database is not None
     return SqlLink(settings.database, name)
 

@@ -6,22 +6,24 @@ import asyncio
 import itertools
 import logging
 import random
-from typing import Any
 from urllib.parse import quote
 
 from websockets.asyncio.client import ClientConnection, connect
-from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidURI
+from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidStatus, InvalidURI
 
 from .. import jsonrpc
+from ..access.credentials import Credentials
 from ..errors import BridgeError
-from ..messages import MessageError, OpAck, Request, to_json
-from ..wire import decode_answer, decode_map
+from ..messages import MessageError, Observed, OpAck, Ready, Request, to_json
+from ..wire import decode_answer, params_of
 from .agent import Agent
 
 log = logging.getLogger(__name__)
 
 FIRST_WAIT = 0.5
 LONGEST_WAIT = 10.0
+SAY_AGAIN = 1.0
+"""seconds after which an observation that the gateway could not store is said once more."""
 REPLACED = 4001
 """Close code of a gateway to which another robot has connected under the same name."""
 LARGEST_FRAME = 64 << 20
@@ -29,25 +31,40 @@ LARGEST_FRAME = 64 << 20
 
 
 class WebSocketLink:
-    """Carries what the agent says while connected; what it says in between is dropped as out of date."""
+    """Carries what the agent says while connected; what it says in between is dropped as out of date.
 
-    def __init__(self, url: str, robot: str) -> None:
+    Observations are kept, and said again after the next Ready, until the gateway has acknowledged them.
+    """
+
+    def __init__(self, url: str, robot: str, credentials: Credentials | None = None) -> None:
+        self._credentials = credentials or Credentials()
         self._url = f"{url}{'&' if '?' in url else '?'}robot={quote(robot)}"
         self._outgoing: asyncio.Queue[Request] = asyncio.Queue()
         self._connected = False
         self._ids = itertools.count(1)
+        self._untold: list[Observed] = []
+        self._asked: dict[int, Request] = {}
 
     def say(self, request: Request) -> None:
         """Send a request, if connected."""
-        if self._connected:
-            self._outgoing.put_nowait(request)
+        if isinstance(request, Observed):
+            self._untold.append(request)
+        if not self._connected:
+            return
+        self._outgoing.put_nowait(request)
+        if isinstance(request, Ready):
+            for observed in self._untold:
+                self._outgoing.put_nowait(observed)
 
     async def run(self, agent: Agent) -> None:
         """Carry messages until cancelled; raises BridgeError for a URL that cannot be right."""
         wait = FIRST_WAIT
         while True:
             try:
-                async with connect(self._url, max_size=LARGEST_FRAME, close_timeout=1) as connection:
+                options = self._credentials.options(self._url)
+                async with connect(
+                    self._url, max_size=LARGEST_FRAME, close_timeout=1, **options
+                ) as connection:
                     wait = FIRST_WAIT
                     await self._carry(connection, agent)
                 reason = "the gateway closed the connection"
@@ -60,14 +77,14 @@ class WebSocketLink:
                     ) from None
                 reason = str(error)
             except (OSError, InvalidHandshake) as error:
-                reason = str(error)
+                reason = _reason(error)
             log.warning("%s: %s; trying again in %.1f s", self._url, reason, wait)
             await asyncio.sleep(wait * random.uniform(0.8, 1.2))
             wait = min(wait * 2, LONGEST_WAIT)
 
     async def _carry(self, connection: ClientConnection, agent: Agent) -> None:
         self._outgoing = asyncio.Queue()
-        self._connected = True
+        self._asked = {}
         sending = asyncio.create_task(self._send_all(connection))
         try:
             async for frame in connection:
@@ -81,7 +98,9 @@ class WebSocketLink:
             while True:
                 request = await self._outgoing.get()
                 id = next(self._ids) if request.acknowledged else None
-                await connection.send(jsonrpc.call(type(request).__name__, to_json(request), id))
+                if id is not None:
+                    self._asked[id] = request
+                await connection.send(jsonrpc.call(type(request).__name__, params_of(request), id))
         except ConnectionClosed:
             return
 
@@ -92,26 +111,51 @@ class WebSocketLink:
             log.error("%s: %s", self._url, error)
             return
         if isinstance(message, jsonrpc.Reply):
-            if message.error is not None:
-                log.error("the gateway refused request %s: %s", message.id, message.error)
+            self._receive_reply(agent, message)
             return
+        # Nothing is said before the gateway's Start.
+        self._connected = True
         id = message.id if isinstance(message.id, int) else None
         try:
-            ack = agent.receive(_answer(message), id)
+            ack = agent.receive(decode_answer(message.method, message.params), id)
         except MessageError as error:
             await connection.send(jsonrpc.error(id, jsonrpc.INVALID_PARAMS, str(error)))
             return
         if id is not None:
             await connection.send(_reply(id, ack or OpAck(id=id)))
 
+    def _receive_reply(self, agent: Agent, reply: jsonrpc.Reply) -> None:
+        asked = self._asked.pop(reply.id, None) if isinstance(reply.id, int) else None
+        ack = _acknowledgement(reply)
+        if isinstance(asked, Observed) and reply.code == jsonrpc.INTERNAL_ERROR:
+            # What could not be stored just now is said again; what is wrong is not.
+            asyncio.get_running_loop().call_later(SAY_AGAIN, self._outgoing.put_nowait, asked)
+        elif isinstance(asked, Observed) and asked in self._untold:
+            self._untold.remove(asked)
+        if not ack.ok:
+            log.error("the gateway refused %s: %s", type(asked).__name__, ack.reason)
+        agent.receive(ack, None)
 
-def _answer(call: jsonrpc.Call) -> Any:
-    if call.method != "SetMap" or not isinstance(call.params, dict) or "map" not in call.params:
-        return decode_answer(call.method, call.params)
-    return decode_answer(call.method, None, decode_map(call.params["map"]))
+
+def _acknowledgement(reply: jsonrpc.Reply) -> OpAck:
+    if reply.error is not None:
+        return OpAck(ok=False, reason=reply.error)
+    try:
+        answer = decode_answer("OpAck", reply.result)
+    except MessageError as error:
+        return OpAck(ok=False, reason=f"its answer cannot be read: {error}")
+    return answer if isinstance(answer, OpAck) else OpAck()
 
 
 def _reply(id: int, ack: OpAck) -> str:
     if ack.ok:
         return jsonrpc.result(id, to_json(ack))
     return jsonrpc.error(id, jsonrpc.REFUSED, ack.reason or "no reason given")
+
+
+def _reason(error: OSError | InvalidHandshake) -> str:
+    """Return why there is no connection, in the gateway's own words where it gave some."""
+    if isinstance(error, InvalidStatus):
+        said = bytes(error.response.body).decode("utf-8", "replace").strip()
+        return f"the gateway refuses (HTTP {error.response.status_code}): {said[:300]}"
+    return str(error)

@@ -49,10 +49,10 @@ from robot_bridge.wire import (
     UnknownOperationError,
     decode_answer,
     decode_desk_request,
-    decode_map,
     decode_request,
-    encode_map,
+    params_of,
     parse_params,
+    payload_of,
 )
 
 metres = st.floats(-1e6, 1e6)
@@ -103,7 +103,8 @@ def test_an_answer_comes_out_of_json_as_it_went_in(answer):
 @given(st.binary(max_size=200))
 def test_a_map_travels_in_the_payload_and_inside_json(content):
     assert decode_answer("SetMap", None, content) == SetMap(content)
-    assert decode_map(encode_map(content)) == content
+    assert decode_answer("SetMap", through_json(params_of(SetMap(content)))) == SetMap(content)
+    assert payload_of(SetMap(content)) == content
     assert to_json(SetMap(content)) == {}
 
 
@@ -247,7 +248,7 @@ def test_a_map_without_its_payload_is_refused():
 @pytest.mark.parametrize("text", [None, 5, "not base64!", "AAA", "ä"])
 def test_a_map_that_is_not_base64_is_refused(text):
     with pytest.raises(MessageError, match="SetMap: map is not base64"):
-        decode_map(text)
+        decode_answer("SetMap", {"map": text})
 
 
 @pytest.mark.parametrize("text", ["{", "nothing", '{"x": NaN}', '{"x": 1e400}', b"\xff", "[" * 100_000])

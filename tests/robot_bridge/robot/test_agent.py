@@ -10,22 +10,28 @@ import pytest
 from robot_bridge.messages import (
     Abort,
     Alive,
+    GetPath,
     OpAck,
     Ready,
+    SendImage,
     SendPos,
     SetMap,
+    SetObject,
     SetPath,
     SetPosEnd,
+    SetPosIni,
     Start,
     Stopped,
 )
 from robot_bridge.robot.agent import Agent, AgentSettings
 from robot_bridge.robot.body import BodyLimits
+from robot_bridge.robot.sightings import Thing
 from robot_bridge.robotmap.binary import encode
 from robot_bridge.robotmap.builder import Window, build_map
 from robot_bridge.robotmap.outlines import Outlines
 
 DT = 0.05
+PNG = b"\x89PNG\r\n\x1a\n" + b"pixels"
 
 
 class Robot:
@@ -36,6 +42,7 @@ class Robot:
         limits = BodyLimits(speed=3.0)
         values = {"magic": 42, "pose": (0.0, 0.0, 0.0), "limits": limits, "rate": 5.0, **settings}
         self.agent = Agent(AgentSettings(**values), self.said.append)
+        self.agent.receive(OpAck(magic=42, robot="r1", database="first"), None)
 
     def live(self, seconds):
         for _ in range(round(seconds / DT)):
@@ -55,8 +62,8 @@ def robot() -> Robot:
 
 
 def test_start_makes_it_say_ready_with_its_magic_number(robot):
-    assert robot.agent.receive(Start(), 3) == OpAck(id=3)
-    assert robot.agent.receive(Start(), None) is None
+    assert robot.agent.receive(Start("first"), 3) == OpAck(id=3)
+    assert robot.agent.receive(Start("first"), None) is None
     assert robot.said == [Ready(42), Ready(42)]
 
 
@@ -129,3 +136,106 @@ def test_it_says_stopped_when_it_leaves(robot):
     robot.agent.stop()
     robot.agent.alive()
     assert robot.said == [Stopped(), Alive()]
+
+
+# --- the handshake ----------------------------------------------------------------------------------------
+
+
+def test_it_says_nothing_before_its_ready_was_taken():
+    said = []
+    settings = AgentSettings(magic=42, pose=(0.0, 0.0, 0.0), limits=BodyLimits())
+    agent = Agent(settings, said.append)
+    agent.greet()
+    agent.alive()
+    for _ in range(20):
+        agent.step(DT)
+    agent.stop()
+    assert said == [Ready(42)]
+
+
+def test_it_says_ready_again_while_another_robot_uses_its_name(robot):
+    robot.said.clear()
+    robot.agent.receive(OpAck(id=1, ok=False, magic=42, reason="in use"), None)
+    robot.live(2.5)
+    assert robot.said == [Ready(42)]
+    robot.agent.receive(OpAck(id=2, ok=False, magic=42, reason="in use"), None)
+    robot.live(1.5)
+    assert robot.said == [Ready(42), Ready(42)]
+    robot.agent.receive(OpAck(id=3, magic=42), None)
+    robot.live(1)
+    assert robot.heard(SendPos)
+
+
+def test_what_is_for_another_robot_of_its_account_it_leaves_alone(robot):
+    assert not robot.agent.concerns(OpAck(id=1, ok=False, magic=43))
+    assert robot.agent.concerns(OpAck(id=1, magic=42))
+    assert robot.agent.concerns(OpAck(id=1))
+    assert robot.agent.concerns(SetPosEnd(1.0, 1.0))
+    robot.agent.receive(OpAck(ok=False, magic=42), None)
+    assert robot.agent.concerns(Start())
+    assert not robot.agent.concerns(SetPosEnd(1.0, 1.0))
+    robot.agent.receive(OpAck(magic=43), None)
+    assert not robot.agent.concerns(SetPosEnd(1.0, 1.0)), "it took another robot's Ready for its own"
+
+
+@pytest.mark.parametrize("news", [Start("second"), OpAck(magic=42, database="second")])
+def test_in_another_database_the_same_id_is_another_message(robot, news):
+    robot.agent.receive(SetPosEnd(3.0, 0.0), 1)
+    robot.live(8)
+    robot.agent.receive(news, None)
+    robot.agent.receive(OpAck(magic=42, database="second"), None)
+    robot.agent.receive(SetPosEnd(0.0, 0.0), 1)
+    robot.live(10)
+    assert robot.distance < 0.1
+
+
+def test_in_the_same_database_a_new_start_makes_nothing_be_done_twice(robot):
+    robot.agent.receive(SetPosEnd(3.0, 0.0), 1)
+    robot.live(8)
+    robot.agent.receive(Start("first"), None)
+    robot.agent.receive(SetPosEnd(0.0, 0.0), 1)
+    robot.live(8)
+    assert robot.distance > 2.9
+
+
+# --- beginnings, paths, and what it sees ------------------------------------------------------------------
+
+
+def test_told_where_it_stands_it_takes_itself_to_be_there(robot):
+    assert robot.agent.receive(SetPosIni(5.0, 6.0, 1.0), 1) == OpAck(id=1)
+    assert robot.agent.pose == (5.0, 6.0, 1.0)
+    robot.agent.receive(SetPosIni(7.0, 8.0), 2)
+    assert robot.agent.pose == (7.0, 8.0, 1.0)
+
+
+def test_while_it_drives_it_will_not_be_told_where_it_is(robot):
+    robot.agent.receive(SetPosEnd(30.0, 0.0), 1)
+    robot.live(2)
+    refusal = robot.agent.receive(SetPosIni(5.0, 6.0), 2)
+    assert (refusal.ok, refusal.reason) == (False, "it drives, and knows where; abort its task first")
+    assert robot.agent.pose[1] == pytest.approx(0.0)
+
+
+def test_it_asks_for_a_path_and_drives_what_it_is_answered():
+    robot = Robot(asks_path=True)
+    robot.agent.receive(SetPosEnd(3.0, 3.0, 0.0), 1)
+    assert robot.heard(GetPath) == [GetPath()]
+    robot.agent.receive(SetPath([(0.0, 0.0), (3.0, 0.0), (3.0, 3.0)], 0.0), 2)
+    passed = []
+    for _ in range(400):
+        robot.agent.step(DT)
+        passed.append(math.hypot(robot.agent.pose[0] - 3, robot.agent.pose[1]))
+    assert min(passed) < 0.8, "it did not come by the corner"
+    assert robot.agent.pose == pytest.approx((3.0, 3.0, 0.0), abs=0.06)
+
+
+def test_it_tells_of_a_thing_once_when_it_comes_near():
+    robot = Robot(things=(Thing(20.0, 0.0, "cone-7"), Thing(0.0, 90.0, "far")), image=PNG)
+    robot.live(1)
+    assert not robot.heard(SetObject)
+    robot.agent.receive(SetPosEnd(20.0, 0.0), 1)
+    robot.live(15)
+    assert robot.heard(SetObject) == [SetObject(20.0, 0.0, "cone-7", source="1")]
+    (image,) = robot.heard(SendImage)
+    assert (image.image, image.object, image.source) == (PNG, "cone-7", "2")
+    assert 9.0 < image.x < 12.0

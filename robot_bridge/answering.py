@@ -1,0 +1,97 @@
+"""What a robot's questions are answered with (paper 1, table II: GetMap, GetPath, GetPosIni, GetPosEnd)."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import Protocol
+
+from .command_book import CommandBook
+from .command_life import is_open
+from .errors import RefusedError
+from .messages import (
+    Answer,
+    CommandState,
+    GetMap,
+    GetPath,
+    GetPosIni,
+    Question,
+    SetMap,
+    SetPath,
+    SetPosEnd,
+    SetPosIni,
+)
+from .planning import Planner, way_left
+from .robots import Robots
+from .store import tracks
+from .store.database import Database
+from .wire import decode_answer
+
+
+class Maps(Protocol):
+    """Where maps come from."""
+
+    def map_around(self, x: float, y: float, area: float) -> bytes:
+        """Return the map of a square of ``area`` square metres centred on (x, y)."""
+
+
+class Answering:
+    """Answers questions from what is known of the robots, their commands and the site."""
+
+    def __init__(
+        self, maps: Maps, database: Database, robots: Robots, book: CommandBook, planner: Planner
+    ) -> None:
+        self._maps = maps
+        self._database = database
+        self._robots = robots
+        self._book = book
+        self._planner = planner
+
+    async def answer(self, robot: str, question: Question) -> SetMap | SetPath | SetPosIni | SetPosEnd:
+        """Return the answer to ``question``; raises RefusedError where there is none, saying why."""
+        if isinstance(question, GetMap):
+            return SetMap(
+                await asyncio.to_thread(self._maps.map_around, question.x, question.y, question.area)
+            )
+        if isinstance(question, GetPath):
+            return await self._path(robot)
+        if isinstance(question, GetPosIni):
+            return await self._begin(robot)
+        return await self._end(robot)
+
+    async def _path(self, robot: str) -> SetPath:
+        task = self._book.task(robot)
+        if task is None:
+            raise RefusedError(f"GetPath: robot {robot!r} has no task; wait for SetPosEnd or SetPath")
+        pose = self._robots.get(robot).pose
+        if pose is None:
+            raise RefusedError(f"GetPath: it is not known where robot {robot!r} is; send SendPos first")
+        message, driven = task
+        return await asyncio.to_thread(way_left, message, (pose.x, pose.y), driven, self._planner)
+
+    async def _begin(self, robot: str) -> SetPosIni:
+        given = await self._given("GetPosIni", robot, "SetPosIni", "SetPath")
+        if isinstance(given, SetPath):
+            return SetPosIni(*given.points[0])
+        assert isinstance(given, SetPosIni)
+        return given
+
+    async def _end(self, robot: str) -> SetPosEnd:
+        given = await self._given("GetPosEnd", robot, "SetPosEnd", "SetPath")
+        if isinstance(given, SetPath):
+            return SetPosEnd(*given.points[-1], given.theta)
+        assert isinstance(given, SetPosEnd)
+        return given
+
+    async def _given(self, question: str, robot: str, *ops: str) -> Answer:
+        """Return the newest of such commands, unless it was given up."""
+        found = await self._database.run(tracks.last_given, robot, ops)
+        if found is None:
+            raise RefusedError(
+                f"{question}: robot {robot!r} was given no {' or '.join(ops)} yet; wait for one"
+            )
+        if not (is_open(found.state) or found.state is CommandState.REACHED):
+            raise RefusedError(
+                f"{question}: the last {found.op} of robot {robot!r} is {found.state.value}; "
+                "wait for a new one"
+            )
+        return decode_answer(found.op, found.params)

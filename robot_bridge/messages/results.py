@@ -1,0 +1,51 @@
+"""What operators' requests are answered with."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from .desk import CommandReport, RobotReport, SiteReport
+from .observations import ObservationReport
+
+
+@dataclass(frozen=True)
+class HelloResult:
+    """The answer to ``hello``: which protocol is spoken here, and the site."""
+
+    protocol: int
+    site: SiteReport
+
+
+@dataclass(frozen=True)
+class Done:
+    """The answer to what has nothing to tell."""
+
+
+@dataclass(frozen=True)
+class Positions:
+    """Where robots are, at the gateway's time ``t``."""
+
+    t: float
+    robots: list[RobotReport]
+
+
+@dataclass(frozen=True)
+class Commands:
+    """Commands with every step of their lives."""
+
+    commands: list[CommandReport]
+
+
+@dataclass(frozen=True)
+class Observations:
+    """What robots saw, newest first."""
+
+    observations: list[ObservationReport]
+
+
+@dataclass(frozen=True)
+class Image:
+    """An image, in base64."""
+
+    media_type: str
+    image: bytes

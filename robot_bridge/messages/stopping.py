@@ -1,0 +1,97 @@
+"""How operators stop robots: one task, one robot, and all of them in an emergency."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import ClassVar
+
+from .checks import MessageError, check_command_id, check_robot_name
+
+LONGEST_REASON = 500
+"""characters."""
+
+
+def check_reason(reason: str | None) -> None:
+    """Refuse a reason that is too long for a line of the log; raises MessageError."""
+    if reason is not None and len(reason) > LONGEST_REASON:
+        raise MessageError(f"reason has {len(reason)} characters; give at most {LONGEST_REASON}")
+
+
+@dataclass(frozen=True)
+class AbortTask:
+    """Ask for the end of one command, named by ``aborts``, or of whatever ``robot`` is doing.
+
+    ``command`` is an id that the operator's side invents: sent twice, done once. A command that was
+    superseded or has ended in the meantime is not aborted, nor what came after it: that is refused.
+    """
+
+    method: ClassVar[str] = "abort"
+    command: str
+    robot: str | None = None
+    aborts: str | None = None
+    reason: str | None = None
+
+    def __post_init__(self) -> None:
+        check_command_id(self.command)
+        check_reason(self.reason)
+        if (self.robot is None) == (self.aborts is None):
+            raise MessageError("give one of robot and aborts: whose task is to end, or which command")
+        if self.robot is not None:
+            check_robot_name(self.robot)
+
+
+@dataclass(frozen=True)
+class EmergencyStop:
+    """Stop every robot now and let none be sent anywhere until a supervisor clears it.
+
+    ``command`` is an id that the operator's side invents: sent twice, done once.
+    """
+
+    method: ClassVar[str] = "emergency_stop"
+    command: str
+    reason: str | None = None
+
+    def __post_init__(self) -> None:
+        check_command_id(self.command)
+        check_reason(self.reason)
+
+
+@dataclass(frozen=True)
+class ClearEmergencyStop:
+    """Let robots be sent again. ``stop`` is the stop that the supervisor means, as last told.
+
+    With ``stop`` a newer one, which that supervisor has not seen yet, is not cleared by accident.
+    """
+
+    method: ClassVar[str] = "clear_emergency_stop"
+    reason: str | None = None
+    stop: str | None = None
+
+    def __post_init__(self) -> None:
+        check_reason(self.reason)
+
+
+@dataclass(frozen=True)
+class EmergencyReport:
+    """The emergency stop in force, or the last one that was cleared; without ``stop`` there was none.
+
+    Of ``robots`` known robots ``acknowledged`` have said that they stop and ``standing`` were seen to stand
+    since; ``waiting`` names those that have not answered, ``refused`` those that answered that they will not
+    (some fifty at most of either). ``stored`` is false while the database could not be written: the stop
+    holds, and a gateway that ends before it is stored forgets it.
+    """
+
+    in_force: bool = False
+    stop: str | None = None
+    at: float | None = None
+    by: str | None = None
+    reason: str | None = None
+    stored: bool = True
+    robots: int = 0
+    acknowledged: int = 0
+    standing: int = 0
+    waiting: list[str] = field(default_factory=list)
+    refused: list[str] = field(default_factory=list)
+    cleared_at: float | None = None
+    cleared_by: str | None = None
+    clear_reason: str | None = None

@@ -1,0 +1,181 @@
+"""What robots saw: stored before it is acknowledged, reviewed by operators, and then on the map."""
+
+from __future__ import annotations
+
+import asyncio
+import hashlib
+import json
+from collections.abc import Callable, Sequence
+from typing import Any, Protocol
+
+from .errors import RefusedError
+from .images import check_size, media_type_of
+from .messages import (
+    GetObservations,
+    MessageError,
+    ObservationReport,
+    ObservationState,
+    Observed,
+    ReviewObservation,
+    SendImage,
+    SetObject,
+    to_json,
+)
+from .places import Ground, check_places
+from .robots import Robot
+from .sites.settings import SiteSettings
+from .store import observations
+from .store.database import Database
+from .store.observations import NewObservation
+
+PENDING, ACCEPTED, REJECTED = ObservationState
+
+
+class ObservedSite(Ground, Protocol):
+    """What is needed of a site to keep observations of it."""
+
+    @property
+    def settings(self) -> SiteSettings:
+        """The settings of the site."""
+
+    def show(self, objects: Sequence[ObservationReport]) -> None:
+        """Draw accepted objects, and no others, on the maps from now on; oldest first."""
+
+
+class ObservationBook:
+    """Every observation of the robots of one site.
+
+    ``changed`` is called with each new and each reviewed one, after it was stored.
+    """
+
+    def __init__(
+        self,
+        site: ObservedSite,
+        database: Database,
+        clock: Callable[[], float],
+        changed: Callable[[ObservationReport], None],
+    ) -> None:
+        self._site = site
+        self._database = database
+        self._clock = clock
+        self._changed = changed
+        self._lock = asyncio.Lock()
+
+    async def restore(self) -> None:
+        """Draw on the maps what operators accepted before."""
+        accepted = await self._database.run(observations.newest, ACCEPTED, None, None, None)
+        self._site.show([report for report in reversed(accepted) if report.op == SetObject.__name__])
+
+    async def add(self, robot: Robot, link: str, told: Observed, id: int | None) -> ObservationReport:
+        """Store what a robot told by its message ``id``; what it told before is there already.
+
+        :raises RefusedError: when an object is not on the site, or an image too large; MessageError when it
+            is no image.
+        """
+        if isinstance(told, SetObject):
+            check_places(self._site, [(told.x, told.y)])
+        else:
+            self.check_size(len(told.image))
+        new = _new(robot.name, told, _occasion(robot, link, told, id), self._clock())
+        report, is_new = await self._database.run(observations.add, new)
+        if is_new:
+            self._changed(report)
+        return report
+
+    def check_size(self, size: int) -> None:
+        """Raise RefusedError for an image of more bytes than the site takes."""
+        check_size(size, self._site.settings.observations.largest_image_bytes)
+
+    async def newest(self, wanted: GetObservations) -> list[ObservationReport]:
+        """Return observations, newest first."""
+        return await self._database.run(
+            observations.newest, wanted.state, wanted.robot, wanted.before, wanted.limit
+        )
+
+    async def image(self, id: int) -> tuple[bytes, str]:
+        """Return the image of observation ``id`` and its media type; raises RefusedError without one."""
+        found = await self._database.run(observations.image, id)
+        if found is None:
+            raise RefusedError(f"observation {id} has no image; get_observations lists those with media_type")
+        return found
+
+    async def review(self, review: ReviewObservation, operator: str) -> ObservationReport:
+        """Accept or reject an observation; returns when that is stored. The same again changes nothing.
+
+        :raises RefusedError: when there is no such observation, or it was reviewed otherwise before.
+        """
+        async with self._lock:
+            report = await self._database.run(observations.find, review.observation)
+            if report is None:
+                raise RefusedError(f"there is no observation {review.observation}; see get_observations")
+            state = ACCEPTED if review.accept else REJECTED
+            if _says_the_same(report, review, state):
+                return report
+            _check_review(report, review)
+            values = {name: getattr(review, name) for name in ("semantics", "height", "radius", "reason")}
+            reviewed = await self._database.run(
+                observations.review, report.observation, state, operator, self._clock(), values
+            )
+            if ACCEPTED in (report.state, reviewed.state) and report.op == SetObject.__name__:
+                await self.restore()
+        self._changed(reviewed)
+        return reviewed
+
+
+def _new(robot: str, told: Observed, occasion: str, now: float) -> NewObservation:
+    is_image = isinstance(told, SendImage)
+    details = {} if is_image else {name: getattr(told, name) for name in ("label", "height", "radius")}
+    return NewObservation(
+        robot=robot,
+        source=_source(told, occasion),
+        kind=type(told).__name__,
+        object=told.object,
+        x=told.x,
+        y=told.y,
+        details={name: value for name, value in details.items() if value is not None},
+        seen_at=told.t,
+        received_at=now,
+        image=told.image if isinstance(told, SendImage) else None,
+        media_type=media_type_of(told.image, told.media_type) if isinstance(told, SendImage) else None,
+    )
+
+
+def _occasion(robot: Robot, link: str, told: Observed, id: int | None) -> str:
+    """Return on what occasion a robot told something: its own source, else the message that it came with."""
+    if told.source is None and link == "sql":
+        return f"row {id}"
+    # The ids of calls, and most sources, begin anew with each run of a robot.
+    return f"run {robot.magic}" if told.source is not None else f"run {robot.magic} call {id}"
+
+
+def _source(told: Observed, occasion: str) -> str:
+    """Return what two tellings have in common only if they are one.
+
+    The content counts: a robot that uses a source or a call's id once more for something else loses nothing.
+    """
+    said: dict[str, Any] = {"op": type(told).__name__, "occasion": occasion, **to_json(told)}
+    if told.source is not None:
+        said.pop("t", None)
+    content = hashlib.sha256(json.dumps(said, sort_keys=True).encode())
+    content.update(told.image if isinstance(told, SendImage) else b"")
+    return content.hexdigest()
+
+
+def _says_the_same(report: ObservationReport, review: ReviewObservation, state: ObservationState) -> bool:
+    if report.state is not state:
+        return False
+    said = {name: getattr(review, name) for name in ("semantics", "height", "radius")}
+    return all(value is None or value == getattr(report, name) for name, value in said.items())
+
+
+def _check_review(report: ObservationReport, review: ReviewObservation) -> None:
+    if report.state is not PENDING and not review.revise:
+        raise RefusedError(
+            f"observation {report.observation} was {report.state.value} by {report.reviewed_by} before; "
+            "give revise to change that"
+        )
+    if report.op == SendImage.__name__ and (review.semantics, review.height, review.radius) != (None,) * 3:
+        raise MessageError(
+            f"review_observation: observation {report.observation} is an image, which is not drawn on the "
+            "map; leave out semantics, height and radius"
+        )

@@ -1,0 +1,71 @@
+"""The way that is left: from where a robot is to the end of its task, in straight lines or along its path.
+
+A road planner plugs in as a :class:`Planner`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Protocol
+
+import numpy as np
+
+from .messages import SetPath, SetPosEnd
+from .polyline import Polyline
+
+Point = tuple[float, float]
+"""x, y in metres, site frame."""
+
+_SAME = 1e-6
+"""metres below which two points are one."""
+_LOOK_AHEAD = 5.0
+"""metres of a drawn path ahead on which a robot may join it again, so that a loop is not cut short."""
+
+
+class Planner(Protocol):
+    """Finds a way. Paths begin at ``start`` and end at ``goal``, and have at least two points."""
+
+    def path(self, start: Point, goal: Point) -> Sequence[Point]:
+        """Return the points of a path; raises RefusedError when there is none."""
+
+
+class StraightPlanner:
+    """Knows no roads: every path is one straight line."""
+
+    def path(self, start: Point, goal: Point) -> Sequence[Point]:
+        """Return ``start`` and ``goal``."""
+        return [start, goal]
+
+
+def way_left(task: SetPosEnd | SetPath, start: Point, driven: float, planner: Planner) -> SetPath:
+    """Return the path from ``start`` to the end of ``task``.
+
+    Of a path that was drawn it is what lies ahead of the first ``driven`` metres. Raises RefusedError when
+    the planner finds no way.
+    """
+    if isinstance(task, SetPosEnd):
+        return SetPath(list(planner.path(start, (task.x, task.y))), task.theta)
+    line = Polyline(task.points)
+    here = _joins(line, start, driven)
+    corners = [point for point, at in zip(task.points, line.stations, strict=True) if at > here + _SAME]
+    return SetPath(_without_repetition([start, line.at(here), *(corners or [line.end])]), task.theta)
+
+
+def _joins(line: Polyline, start: Point, driven: float) -> float:
+    """Return the station nearest to ``start`` of those just ahead of ``driven`` metres."""
+    station, off = line.feet(*start)
+    near = (station >= driven) & (station <= driven + _LOOK_AHEAD)
+    joint = line.at(driven)
+    stations = [min(driven, line.length), *station[near]]
+    distances = [math.hypot(joint[0] - start[0], joint[1] - start[1]), *off[near]]
+    return float(stations[int(np.argmin(distances))])
+
+
+def _without_repetition(points: Sequence[Point]) -> list[Point]:
+    """Return ``points`` without those that stand on the one before; at least two are kept."""
+    kept = [points[0]]
+    for point in points[1:]:
+        if max(abs(point[0] - kept[-1][0]), abs(point[1] - kept[-1][1])) > _SAME:
+            kept.append(point)
+    return kept if len(kept) > 1 else [points[0], points[-1]]

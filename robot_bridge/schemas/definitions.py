@@ -1,0 +1,62 @@
+"""The JSON Schema (draft 2020-12) of each message, from its class: types, defaults, ranges and texts."""
+
+from __future__ import annotations
+
+import inspect
+import re
+from collections.abc import Sequence
+from typing import Any
+
+import msgspec
+
+from ..messages import PAYLOADS
+
+Schema = dict[str, Any]
+
+
+def definitions(classes: Sequence[type], template: str) -> dict[str, Schema]:
+    """Return the schemas of ``classes`` and of what they hold, by class name.
+
+    ``template`` is how they refer to each other, such as ``#/$defs/{name}``.
+    """
+    _, found = msgspec.json.schema_components(classes, ref_template=template)
+    holders = {cls.__name__: cls for cls in classes}
+    return {name: _refined(schema, holders.get(name)) for name, schema in found.items()}
+
+
+def schema_of(cls: type) -> Schema:
+    """Return the schema of one message by itself."""
+    found = definitions([cls], "#/$defs/{name}")
+    schema = found.pop(cls.__name__)
+    inner = {"$defs": found} if found else {}
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema, **inner}
+
+
+def plain_text(text: str) -> str:
+    """Return a docstring as text for people who do not read Python."""
+    text = re.sub(r":\w+:`[~.]*([^`]*)`", r"`\1`", inspect.cleandoc(text)).replace("``", "`")
+    return re.sub(r"(?<!\n)\n(?!\n)", " ", text)
+
+
+def _refined(schema: Schema, cls: type | None) -> Schema:
+    refined = dict(schema)
+    if "description" in refined:
+        refined["description"] = plain_text(refined["description"])
+    properties = {name: dict(value) for name, value in schema.get("properties", {}).items()}
+    for name, (least, most) in getattr(cls, "ranges", {}).items():
+        _limit(properties[name], {"minimum": least, "maximum": most})
+    for name, longest in getattr(cls, "texts", {}).items():
+        _limit(properties[name], {"minLength": 1, "maxLength": longest})
+    payload = PAYLOADS.get(refined.get("title", ""))
+    if payload is not None:
+        properties[payload]["description"] = "In base64; on SQL it is the row's payload, and not here."
+        refined["required"] = [name for name in refined.get("required", []) if name != payload]
+    return {**refined, "properties": properties} if properties else refined
+
+
+def _limit(value: Schema, limits: Schema) -> None:
+    """Write ``limits`` where a property says its type; null stays what it is."""
+    if "anyOf" not in value:
+        value.update(limits)
+        return
+    value["anyOf"] = [each if each.get("type") == "null" else {**each, **limits} for each in value["anyOf"]]

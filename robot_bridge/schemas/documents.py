@@ -1,0 +1,28 @@
+"""Every schema as a file: what ``robot-bridge schemas`` writes and the gateway serves under ``/schemas/``."""
+
+from __future__ import annotations
+
+import json
+from functools import cache
+
+from ..messages import ANSWERS, DESK_REQUESTS, REQUESTS
+from .asyncapi import asyncapi
+from .definitions import schema_of
+from .tables import NOTIFICATIONS, RESULTS
+
+
+@cache
+def documents() -> dict[str, str]:
+    """Return the text of each JSON document by its path, such as ``robot/SendPos.json``.
+
+    ``robot`` holds what robots say, ``gateway`` what they are told, ``desk`` what operators ask, ``result``
+    what they are answered with, and ``news`` what they are told unasked; ``index.json`` lists them all.
+    """
+    files = {f"robot/{op}.json": schema_of(cls) for op, cls in REQUESTS.items()}
+    files |= {f"gateway/{op}.json": schema_of(cls) for op, cls in ANSWERS.items()}
+    files |= {f"desk/{method}.json": schema_of(cls) for method, cls in DESK_REQUESTS.items()}
+    files |= {f"result/{request.method}.json": schema_of(cls) for request, cls in RESULTS.items()}
+    files |= {f"news/{method}.json": schema_of(cls) for method, cls in NOTIFICATIONS.items()}
+    files["asyncapi.json"] = asyncapi()
+    files["index.json"] = {"documents": sorted(files)}
+    return {path: json.dumps(content, indent=2) + "\n" for path, content in files.items()}

@@ -1,0 +1,37 @@
+"""Which class each message of the wires is, for those that no table of the messages names."""
+
+from __future__ import annotations
+
+from ..messages import CommandReport, DeskRequest, ObservationReport
+from ..messages.desk import (
+    AbortAll,
+    GetCommands,
+    GetPositions,
+    Hello,
+    Send,
+    SetPositions,
+    Subscribe,
+)
+from ..messages.observations import GetImage, GetObservations, ReviewObservation
+from ..messages.results import Commands, Done, HelloResult, Image, Observations, Positions
+
+RESULTS: dict[type[DeskRequest], type] = {
+    Hello: HelloResult,
+    Subscribe: Done,
+    GetPositions: Positions,
+    SetPositions: Commands,
+    Send: CommandReport,
+    AbortAll: Commands,
+    GetCommands: Commands,
+    GetObservations: Observations,
+    GetImage: Image,
+    ReviewObservation: ObservationReport,
+}
+"""What each request of an operator is answered with."""
+
+NOTIFICATIONS: dict[str, type] = {
+    "positions": Positions,
+    "command": CommandReport,
+    "observation": ObservationReport,
+}
+"""What operators are told without asking, by method."""

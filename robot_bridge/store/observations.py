@@ -1,0 +1,127 @@
+"""What robots saw, and what operators made of it."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+from sqlalchemy import Connection, func, insert, select, update
+
+from ..messages import ObservationReport, ObservationState
+from .schema import observations as table
+
+_REPORTED = [
+    *(column for column in table.c if column.name != "image"),
+    func.length(table.c.image).label("image_bytes"),
+]
+
+
+class NewObservation(NamedTuple):
+    """What a robot told; ``source`` tells it from everything else that the robot told."""
+
+    robot: str
+    source: str
+    kind: str
+    object: str
+    x: float
+    y: float
+    details: Mapping[str, Any]
+    seen_at: float | None
+    received_at: float
+    image: bytes | None = None
+    media_type: str | None = None
+
+
+def add(connection: Connection, told: NewObservation) -> tuple[ObservationReport, bool]:
+    """Store an observation, once; return its report and whether it is new."""
+    query = select(table.c.id).where(table.c.robot == told.robot, table.c.source == told.source)
+    known = connection.scalar(query)
+    if known is None:
+        values = {**told._asdict(), "details": json.dumps(told.details), "state": "pending"}
+        key = connection.execute(insert(table).values(values)).inserted_primary_key
+        assert key is not None
+        return _one(connection, int(key[0])), True
+    return _one(connection, int(known)), False
+
+
+def find(connection: Connection, id: int) -> ObservationReport | None:
+    """Return an observation by its id."""
+    found = connection.execute(select(*_REPORTED).where(table.c.id == id)).mappings().one_or_none()
+    return None if found is None else _report(found)
+
+
+def newest(
+    connection: Connection,
+    state: ObservationState | None,
+    robot: str | None,
+    before: int | None,
+    limit: int | None,
+) -> list[ObservationReport]:
+    """Return observations, newest first: those with an id below ``before``, at most ``limit``."""
+    query = select(*_REPORTED).order_by(table.c.id.desc())
+    if state is not None:
+        query = query.where(table.c.state == state.value)
+    if robot is not None:
+        query = query.where(table.c.robot == robot)
+    if before is not None:
+        query = query.where(table.c.id < before)
+    if limit is not None:
+        query = query.limit(limit)
+    return [_report(row) for row in connection.execute(query).mappings()]
+
+
+def image(connection: Connection, id: int) -> tuple[bytes, str] | None:
+    """Return the image of an observation and its media type."""
+    row = connection.execute(select(table.c.image, table.c.media_type).where(table.c.id == id)).one_or_none()
+    return None if row is None or row[0] is None else (bytes(row[0]), row[1])
+
+
+def review(
+    connection: Connection,
+    id: int,
+    state: ObservationState,
+    by: str,
+    at: float,
+    review: Mapping[str, Any],
+) -> ObservationReport:
+    """Write what an operator made of an observation."""
+    values = {
+        "state": state.value,
+        "reviewed_by": by,
+        "reviewed_at": at,
+        "review": json.dumps({name: value for name, value in review.items() if value is not None}),
+    }
+    connection.execute(update(table).where(table.c.id == id).values(values))
+    return _one(connection, id)
+
+
+def _one(connection: Connection, id: int) -> ObservationReport:
+    found = find(connection, id)
+    assert found is not None
+    return found
+
+
+def _report(row: Mapping[Any, Any]) -> ObservationReport:
+    told = json.loads(row["details"]) if row["details"] else {}
+    review = json.loads(row["review"]) if row["review"] else {}
+    return ObservationReport(
+        observation=row["id"],
+        robot=row["robot"],
+        op=row["kind"],
+        object=row["object"],
+        x=row["x"],
+        y=row["y"],
+        received_at=row["received_at"],
+        state=ObservationState(row["state"]),
+        seen_at=row["seen_at"],
+        label=told.get("label"),
+        height=review.get("height", told.get("height")),
+        radius=review.get("radius", told.get("radius")),
+        media_type=row["media_type"],
+        image_bytes=row["image_bytes"],
+        semantics=review.get("semantics"),
+        reason=review.get("reason"),
+        reviewed_at=row["reviewed_at"],
+        reviewed_by=row["reviewed_by"],
+    )
