@@ -30,6 +30,15 @@ class ServerFiles:
     key: Path
 
 
+def server_files(certificate: Path | None, key: Path | None) -> ServerFiles | None:
+    """Return both files, None where neither is given; raises AccessError for one alone."""
+    if certificate is None and key is None:
+        return None
+    if certificate is None or key is None:
+        raise AccessError("a certificate goes with its key; give both --certificate and --key, or neither")
+    return ServerFiles(certificate, key)
+
+
 class ServerTls:
     """The gateway's TLS: its context, and a new certificate in it whenever the files change."""
 
@@ -75,37 +84,6 @@ class ServerTls:
                 self._files.certificate,
                 f"holds for {left.days} days more" if left.days >= 0 else "has expired",
             )
-
-
-def client_context(ca: Path | None) -> ssl.SSLContext:
-    """Return the context of who connects: trusts the authority in ``ca`` alone, without it the system's.
-
-    :raises AccessError: when ``ca`` cannot be read.
-    """
-    try:
-        context = ssl.create_default_context(cafile=ca)
-    except (OSError, ssl.SSLError) as error:
-        raise AccessError(
-            f"CA file {ca} cannot be used: {error.strerror or error}; give the site's ca.pem"
-        ) from error
-    context.minimum_version = ssl.TLSVersion.TLSv1_2
-    return context
-
-
-def read_token(file: Path) -> str:
-    """Return the token in ``file``; raises AccessError when there is none."""
-    try:
-        token = file.read_text(encoding="utf-8").strip()
-        mode = file.stat().st_mode
-    except (OSError, UnicodeDecodeError) as error:
-        raise AccessError(
-            f"token file {file} cannot be read: {getattr(error, 'strerror', None) or error}"
-        ) from None
-    if not token or len(token.split()) != 1:
-        raise AccessError(f"token file {file} holds no token; write the one that was printed into it, alone")
-    if sys.platform != "win32" and mode & (stat.S_IRGRP | stat.S_IROTH):
-        log.warning("token file %s can be read by others; chmod 600 keeps it to yourself", file)
-    return token
 
 
 def _server_context(files: ServerFiles) -> ssl.SSLContext:

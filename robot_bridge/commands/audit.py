@@ -1,0 +1,50 @@
+"""``robot-bridge audit``: who did what."""
+
+from __future__ import annotations
+
+from datetime import datetime
+from typing import Annotated
+
+import typer
+
+from ..access import audit as audit_log
+from ..errors import BridgeError
+from .database_option import DEFAULT, DatabaseOption, PasswordFileOption, database_address
+from .noted import moment, read
+
+
+def audit(
+    since: Annotated[
+        str | None, typer.Option(help="Not before: 2026-11-21T08:00, in this computer's time zone.")
+    ] = None,
+    who: Annotated[str | None, typer.Option(help="Only what this account did.")] = None,
+    limit: Annotated[int, typer.Option(help="How many at most, the newest.", min=1)] = 1000,
+    database: DatabaseOption = DEFAULT,
+    database_password_file: PasswordFileOption = None,
+) -> None:
+    """Print who did what, oldest first: when, who, role, from where, what, to what, done or refused."""
+    at = _seconds(since)
+    address = database_address(database, database_password_file)
+    found = read(address, lambda c: audit_log.newest(c, limit, since=at, who=who))
+    for entry in reversed(found):
+        row = (
+            moment(entry.at),
+            entry.who,
+            entry.role or "-",
+            entry.address or "-",
+            entry.action,
+            entry.subject or "-",
+            "done" if entry.done else "refused",
+            entry.detail or "",
+        )
+        # A line break in what somebody sent must not look like an entry of its own.
+        typer.echo("\t".join("".join(c if c.isprintable() else "?" for c in text) for text in row))
+
+
+def _seconds(text: str | None) -> float | None:
+    if text is None:
+        return None
+    try:
+        return datetime.fromisoformat(text).timestamp()
+    except ValueError:
+        raise BridgeError(f"--since {text!r} is no time; write it like 2026-11-21T08:00") from None
