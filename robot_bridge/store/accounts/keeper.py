@@ -64,6 +64,10 @@ class AccountKeeper(abc.ABC):
         self._make_gateway(name, password)
 
     @abc.abstractmethod
+    def robots_database(self) -> str:
+        """Return the name of the database that robots connect to."""
+
+    @abc.abstractmethod
     def robots(self) -> list[str]:
         """Return the robots that have an account in this database, by name."""
 

@@ -39,9 +39,13 @@ _NOT_GATEWAYS = {"rr": "select, delete", "sa": "select, insert, delete"}
 class MariaDbAccounts(AccountKeeper):
     """Robots come from any host; TLS and the firewall say from where they may."""
 
+    def robots_database(self) -> str:
+        return f"{self._database()}_robots"
+
     def robots(self) -> list[str]:
         return self._names(
-            f"select User from mysql.tables_priv where Db = {self._text(self._side())} and Table_name = 'sa'"
+            f"select User from mysql.tables_priv where Db = {self._text(self.robots_database())} "
+            "and Table_name = 'sa'"
         )
 
     def gateways(self) -> list[str]:
@@ -52,7 +56,7 @@ class MariaDbAccounts(AccountKeeper):
         )
 
     def prepare(self) -> None:
-        side = self._text(self._side())
+        side = self._text(self.robots_database())
         found = self._names(
             f"select schema_comment from information_schema.schemata where schema_name = {side}"
         )
@@ -67,8 +71,8 @@ class MariaDbAccounts(AccountKeeper):
         self._all(
             _COMMON.format(
                 base=self._quoted(self._database()),
-                side=self._quoted(self._side()),
-                side_text=self._text(self._side()),
+                side=self._quoted(self.robots_database()),
+                side_text=self._text(self.robots_database()),
                 keeper=f"{self._text(self._keeper())}@'localhost'",
                 me="substring_index(user(), '@', 1)",
                 version=_VERSION.replace("'", "''"),
@@ -99,7 +103,7 @@ class MariaDbAccounts(AccountKeeper):
                 )
 
     def _make_robot(self, name: str, password: str) -> None:
-        account, side = self._account(name), self._quoted(self._side())
+        account, side = self._account(name), self._quoted(self.robots_database())
         self._make_user(
             account,
             password,
@@ -150,9 +154,6 @@ class MariaDbAccounts(AccountKeeper):
     def _database(self) -> str:
         return str(self._connection.engine.url.database)
 
-    def _side(self) -> str:
-        return f"{self._database()}_robots"
-
     def _keeper(self) -> str:
         return f"{self._database()}_keeper"
 
@@ -194,7 +195,7 @@ begin
             message_text = 'a robot writes under its own name only';
     end if;
     set new.robot = {me};
-    if {waiting} <= (select count(*) from (select 1 from {base}.rr where robot = {me} limit {waiting}) as w) then
+    if {waiting} <= (select count(*) from (select 1 from {base}.rr where robot = {me} limit {waiting}) w) then
         signal sqlstate '45000' set
             message_text = '{waiting} requests wait already; write again when the gateway has read some';
     end if;

@@ -39,6 +39,9 @@ _TO_GATEWAYS = "pg\\_(try\\_)?advisory\\_"  # hold a lock that a gateway wants
 class PostgreSqlAccounts(AccountKeeper):
     """The rights are the tables' own; rows are kept apart by ``current_user``."""
 
+    def robots_database(self) -> str:
+        return self._scalar("select current_database()")
+
     def robots(self) -> list[str]:
         return self._names(_ROBOTS)
 
@@ -54,7 +57,7 @@ class PostgreSqlAccounts(AccountKeeper):
         )
         if found == [_VERSION]:
             return
-        database = self._scalar("select current_database()")
+        database = self.robots_database()
         if len(database) > _LONGEST_DATABASE:
             raise AccountError(
                 f"database name {database!r} is longer than {_LONGEST_DATABASE} characters, and accounts are "
@@ -90,7 +93,7 @@ class PostgreSqlAccounts(AccountKeeper):
             raise AccountError(f"name {name!r} is PostgreSQL's own; choose another one")
 
     def _make_robot(self, name: str, password: str) -> None:
-        role, database = self._quoted(name), self._quoted(self._scalar("select current_database()"))
+        role, database = self._quoted(name), self._quoted(self.robots_database())
         limits = {
             "search_path": "for_robots, public",
             "statement_timeout": f"'{STATEMENT_SECONDS}s'",
@@ -112,7 +115,7 @@ class PostgreSqlAccounts(AccountKeeper):
         )
 
     def _drop_robot(self, name: str) -> None:
-        role, database = self._quoted(name), self._quoted(self._scalar("select current_database()"))
+        role, database = self._quoted(name), self._quoted(self.robots_database())
         self._do(f"alter role {role} nologin")
         self._end_connections(name)
         for table in ("rr", "sa"):
@@ -137,7 +140,7 @@ class PostgreSqlAccounts(AccountKeeper):
         )
 
     def _make_gateway(self, name: str, password: str) -> None:
-        role, database = self._quoted(name), self._quoted(self._scalar("select current_database()"))
+        role, database = self._quoted(name), self._quoted(self.robots_database())
         self._make_role(name, password)
         self._do(f"grant connect, temporary on database {database} to {role}")
         self._do(f"grant usage on schema public, for_robots to {role}")
@@ -276,7 +279,7 @@ create function for_robots.refuse_too_much() returns trigger
     language plpgsql security definer set search_path = pg_catalog, pg_temp as $$
 begin
     if {waiting} <= (
-        select count(*) from (select from public.rr where robot = session_user::text limit {waiting}) as waiting
+        select count(*) from (select from public.rr where robot = session_user::text limit {waiting}) as w
     ) then
         raise exception '{waiting} requests wait already; write again when the gateway has read some'
             using errcode = 'configuration_limit_exceeded';
