@@ -185,17 +185,24 @@ class Fleet:
 
     async def delivered_by_deletion(self, link: str) -> None:
         """Note the messages that the robots of ``link`` have read and deleted from SA themselves."""
-        waiting = {
+        sent = self._undelivered(link)
+        if sent:
+            await self._book.delivered(sent - await self._database.run(answers.waiting, sorted(sent)))
+
+    async def look(self, link: str) -> list[requests.RequestRow]:
+        """Return the oldest requests in RR, which stay there until :meth:`finish`; note what was read."""
+        sent = self._undelivered(link)
+        rows, waiting = await self._database.run(_look, sorted(sent))
+        if sent - waiting:
+            await self._book.delivered(sent - waiting)
+        return rows
+
+    def _undelivered(self, link: str) -> set[int]:
+        return {
             id
             for id, robot in self._book.undelivered().items()
             if robot in self.robots and self.robots.get(robot).link == link
         }
-        if waiting:
-            await self._book.delivered(waiting - await self._database.run(answers.waiting, sorted(waiting)))
-
-    async def take_requests(self) -> list[requests.RequestRow]:
-        """Return the oldest requests in RR; they stay there until they are dealt with."""
-        return await self._database.run(requests.read)
 
     # --- operators ------------------------------------------------------------------------------------
 
@@ -347,10 +354,16 @@ def _finish(
 ) -> None:
     for outcome in outcomes:
         kinds = outcome.void if outcome.answer is None else (*outcome.void, type(outcome.answer).__name__)
-        answers.remove_kinds(connection, outcome.robot, kinds)
-    for robot, answer in rows:
-        answers.add(connection, robot, answer)
+        if kinds:
+            answers.remove_kinds(connection, outcome.robot, kinds)
+    answers.add_all(connection, rows)
     requests.remove(connection, request_ids)
+
+
+def _look(connection: Connection, sent: Sequence[int]) -> tuple[list[requests.RequestRow], set[int]]:
+    # In this order: a robot deletes what it read before it acknowledges it.
+    rows = requests.read(connection)
+    return rows, answers.waiting(connection, sent)
 
 
 def _save(connection: Connection, robots: Sequence[Robot], fixes: Sequence[Fix]) -> None:

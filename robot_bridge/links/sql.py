@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import asyncio
 import logging
+import uuid
+from collections.abc import Iterable
 
-from ..errors import NotReadyError, StoreError
+from ..errors import DataRefusedError, NotReadyError, RefusedError, StoreError
 from ..fleet import Fleet, Outcome
 from ..messages import MessageError, OpAck, Start, check_robot_name
 from ..store.database import Database
 from ..store.requests import RequestRow
+from ..store.wakeups import GATEWAY_CHANNEL
 from ..wire import decode_request, parse_params
 
 log = logging.getLogger(__name__)
@@ -19,37 +22,62 @@ RETRY_AFTER = 1.0
 
 
 class SqlLink:
-    """Watches RR and SA. Requests are dealt with in their order; one that fails is answered, not retried."""
+    """Watches RR and SA. A robot's requests are dealt with in their order; one that fails is answered."""
 
-    def __init__(self, fleet: Fleet, database: Database, poll_interval: float = 0.02) -> None:
+    def __init__(self, fleet: Fleet, database: Database) -> None:
         self._fleet = fleet
         self._database = database
-        self._poll_interval = poll_interval
-        self._seen_version = -1
+        self._seen_version: int | None = None
         self._greeted: set[str] = set()
 
     async def run(self) -> None:
         """Serve until cancelled; a database that fails for a while is tried again."""
-        while True:
-            try:
-                await self.poll()
-                await asyncio.sleep(self._poll_interval)
-            except StoreError as error:
-                log.error("link sql: %s; trying again in %g s", error, RETRY_AFTER)
-                self._seen_version = -1
-                await asyncio.sleep(RETRY_AFTER)
+        wakeup = self._database.wakeup(GATEWAY_CHANNEL)
+        try:
+            while True:
+                try:
+                    await wakeup.wait(found=await self.poll())
+                except StoreError as error:
+                    log.error("link sql: %s; trying again in %g s", error, RETRY_AFTER)
+                    self._seen_version = None
+                    await asyncio.sleep(RETRY_AFTER)
+        finally:
+            await wakeup.close()
 
-    async def poll(self) -> None:
-        """Look once whether robots wrote or deleted something, and deal with it."""
-        version = await self._database.changed_elsewhere()
-        if version == self._seen_version:
-            return
-        # What a robot read comes before what it says to it: it may delete and acknowledge at once.
-        await self._fleet.delivered_by_deletion(NAME)
-        while rows := await self._fleet.take_requests():
-            outcomes = [outcome for row in rows if (outcome := await self._deal_with(row)) is not None]
-            await self._fleet.finish(outcomes, [row.id for row in rows], acks=True)
+    async def poll(self) -> bool:
+        """Look once whether robots wrote or deleted something, and deal with it; tell whether they did."""
+        version = await self._database.version()
+        if version is not None and version == self._seen_version:
+            return False
+        found = False
+        while rows := await self._fleet.look(NAME):
+            found = True
+            await self._deal_with_all(rows)
         self._seen_version = version
+        return found
+
+    async def _deal_with_all(self, rows: list[RequestRow]) -> None:
+        """Deal with requests side by side, those of one robot one after the other."""
+        by_robot: dict[str, list[RequestRow]] = {}
+        for row in rows:
+            by_robot.setdefault(row.robot, []).append(row)
+        dealt = await asyncio.gather(*map(self._deal_with_robot, by_robot.values()), return_exceptions=True)
+        for result in dealt:
+            if isinstance(result, BaseException):
+                raise result
+        outcomes = [outcome for result in dealt if isinstance(result, list) for outcome in result]
+        await self._finish(outcomes, [row.id for row in rows])
+
+    async def _deal_with_robot(self, rows: Iterable[RequestRow]) -> list[Outcome]:
+        return [outcome for row in rows if (outcome := await self._deal_with(row)) is not None]
+
+    async def _finish(self, outcomes: list[Outcome], ids: list[int]) -> None:
+        try:
+            await self._fleet.finish(outcomes, ids, acks=True)
+        except DataRefusedError as error:
+            # Nothing that the gateway writes should be refused; what is must not come back for ever.
+            log.exception("link sql: %s; these requests stay without an answer: %s", error, ids)
+            await self._fleet.finish([], ids, acks=True)
 
     async def _deal_with(self, row: RequestRow) -> Outcome | None:
         try:
@@ -58,9 +86,15 @@ class SqlLink:
             return await self._fleet.receive(row.robot, NAME, request, row.id)
         except NotReadyError:
             return self._greet(row.robot)
-        except MessageError as error:
+        except (MessageError, RefusedError, DataRefusedError) as error:
             log.warning("link sql: request %d of robot %r: %s", row.id, row.robot, error)
-            return Outcome(row.robot, OpAck(id=row.id, ok=False, reason=str(error)))
+            return _refusal(row, str(error))
+        except StoreError:
+            raise
+        except Exception:
+            number = uuid.uuid4().hex[:8]
+            log.exception("link sql: request %d of robot %r failed: error %s", row.id, row.robot, number)
+            return _refusal(row, f"{row.op}: internal error {number}; the gateway's log says more")
 
     def _greet(self, robot: str) -> Outcome | None:
         """Tell a robot that never said Ready that it may, once: it sends positions many times a second."""
@@ -68,3 +102,7 @@ class SqlLink:
             return None
         self._greeted.add(robot)
         return Outcome(robot, answer=Start())
+
+
+def _refusal(row: RequestRow, reason: str) -> Outcome:
+    return Outcome(row.robot, OpAck(id=row.id, ok=False, reason=reason))

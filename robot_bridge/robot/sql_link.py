@@ -3,29 +3,31 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import json
 import logging
 
-from sqlalchemy import Connection
+from sqlalchemy import URL, Connection
 
 from ..errors import StoreError
 from ..messages import MessageError, OpAck, Request, to_json
 from ..store import answers, requests
 from ..store.answers import AnswerRow
 from ..store.database import Database
+from ..store.wakeups import robot_channel
 from ..wire import decode_answer, parse_params
 from .agent import Agent
 
 log = logging.getLogger(__name__)
 
-POLL_INTERVAL = 0.05
+WRITE_INTERVAL = 0.02
 RETRY_AFTER = 1.0
 
 
 class SqlLink:
-    """Writes what the agent says and hands it what is answered, twenty times a second."""
+    """Writes what the agent says as it says it, and hands it what is answered as soon as it is there."""
 
-    def __init__(self, database: str, robot: str) -> None:
+    def __init__(self, database: str | URL, robot: str) -> None:
         self._database = Database(database)
         self._robot = robot
         self._outgoing: list[Request] = []
@@ -35,25 +37,45 @@ class SqlLink:
         self._outgoing.append(request)
 
     async def run(self, agent: Agent) -> None:
-        """Carry messages until cancelled; raises StoreError if the database cannot be used at all."""
-        await self._database.open()
+        """Carry messages until cancelled."""
         agent.greet()
+        try:
+            async with asyncio.TaskGroup() as tasks:
+                tasks.create_task(self._read(agent))
+                tasks.create_task(self._write())
+        finally:
+            with contextlib.suppress(StoreError):
+                await self._flush([], [])
+            await self._database.close()
+
+    async def _read(self, agent: Agent) -> None:
+        wakeup = self._database.wakeup(robot_channel(self._robot))
         try:
             while True:
                 try:
-                    await self._turn(agent)
-                    await asyncio.sleep(POLL_INTERVAL)
+                    await wakeup.wait(found=await self._turn(agent))
                 except StoreError as error:
-                    log.warning("%s; trying again in %g s", error, RETRY_AFTER)
-                    await asyncio.sleep(RETRY_AFTER)
+                    await self._wait_for_the_database(error)
         finally:
-            await self._flush([], [])
-            await self._database.close()
+            await wakeup.close()
 
-    async def _turn(self, agent: Agent) -> None:
+    async def _write(self) -> None:
+        while True:
+            await asyncio.sleep(WRITE_INTERVAL)
+            try:
+                await self._flush([], [])
+            except StoreError as error:
+                await self._wait_for_the_database(error)
+
+    async def _wait_for_the_database(self, error: StoreError) -> None:
+        log.warning("%s; trying again in %g s", error, RETRY_AFTER)
+        await asyncio.sleep(RETRY_AFTER)
+
+    async def _turn(self, agent: Agent) -> bool:
         rows = await self._database.run(answers.read, self._robot)
         acks = [ack for row in rows if (ack := self._receive(agent, row)) is not None]
         await self._flush([row.id for row in rows], acks)
+        return bool(rows)
 
     def _receive(self, agent: Agent, row: AnswerRow) -> OpAck | None:
         try:
@@ -71,11 +93,11 @@ class SqlLink:
         try:
             await self._database.run(_exchange, self._robot, read, outgoing)
         except StoreError:
-            self._outgoing = outgoing[-100:]
+            self._outgoing = [*outgoing, *self._outgoing][-100:]
             raise
 
 
 def _exchange(connection: Connection, robot: str, read: list[int], outgoing: list[Request]) -> None:
     answers.remove(connection, read)
-    for request in outgoing:
-        requests.add(connection, robot, type(request).__name__, json.dumps(to_json(request)))
+    rows = [(robot, type(request).__name__, json.dumps(to_json(request))) for request in outgoing]
+    requests.add_all(connection, rows)

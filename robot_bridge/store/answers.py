@@ -23,15 +23,24 @@ class AnswerRow(NamedTuple):
 
 def add(connection: Connection, robot: str, answer: Answer) -> int:
     """Write an answer for ``robot``; return its id."""
-    row = {
+    key = connection.execute(insert(sa), _row(robot, answer)).inserted_primary_key
+    assert key is not None
+    return int(key[0])
+
+
+def add_all(connection: Connection, rows: Sequence[tuple[str, Answer]]) -> None:
+    """Write many answers, each with its robot."""
+    if rows:
+        connection.execute(insert(sa).inline(), [_row(robot, answer) for robot, answer in rows])
+
+
+def _row(robot: str, answer: Answer) -> dict[str, object]:
+    return {
         "robot": robot,
         "op": type(answer).__name__,
         "params": json.dumps(to_json(answer)),
         "payload": answer.map if isinstance(answer, SetMap) else None,
     }
-    key = connection.execute(insert(sa).values(row)).inserted_primary_key
-    assert key is not None
-    return int(key[0])
 
 
 def read(connection: Connection, robot: str, after: int = 0) -> list[AnswerRow]:
@@ -43,7 +52,8 @@ def read(connection: Connection, robot: str, after: int = 0) -> list[AnswerRow]:
 
 def remove(connection: Connection, ids: Sequence[int]) -> None:
     """Delete answers that were delivered, or that are void."""
-    connection.execute(delete(sa).where(sa.c.id.in_(ids)))
+    if ids:
+        connection.execute(delete(sa).where(sa.c.id.in_(ids)))
 
 
 def remove_own(connection: Connection, robot: str, id: int) -> None:
@@ -58,4 +68,6 @@ def remove_kinds(connection: Connection, robot: str, ops: Sequence[str]) -> None
 
 def waiting(connection: Connection, ids: Sequence[int]) -> set[int]:
     """Return those of ``ids`` that still wait to be read."""
+    if not ids:
+        return set()
     return set(connection.scalars(select(sa.c.id).where(sa.c.id.in_(ids))))

@@ -3,104 +3,101 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from typing import Any, TypeVar
 
-import sqlalchemy
-from sqlalchemy import Connection, Engine, event
-from sqlalchemy.exc import ArgumentError, SQLAlchemyError
+from sqlalchemy import URL
 
-from ..errors import StoreError
-from .schema import metadata
+from . import revisions
+from .address import open_engine, read_address, shown
+from .engines.dialect import PATIENCE_S
+from .wakeups import Listening, Polling, Wakeup
+from .worker import Job, Worker
 
 T = TypeVar("T")
+WATCH_INTERVAL_S = 1.0
 
 
 class Database:
     """Runs pieces of work, each in a transaction: ``await database.run(work, *arguments)``.
 
     ``work`` is called as ``work(connection, *arguments)`` in the database's thread. Its transaction is
-    committed when ``run`` returns and rolled back when it raises.
+    committed when ``run`` returns and rolled back when it raises. It must do nothing but use the database:
+    where a transaction has to be done again, it is called again; work that waits together shares one.
+
+    ``patience`` is how many seconds a statement may take; None is for work that takes long.
     """
 
-    def __init__(self, url: str) -> None:
-        self.url = url
-        self._engine = open_engine(url)
-        self._executor = ThreadPoolExecutor(max_workers=1, thread_name_prefix="database")
+    def __init__(self, address: str | URL, patience: float | None = PATIENCE_S) -> None:
+        self.url = read_address(address) if isinstance(address, str) else address
+        self._engine, self.dialect = open_engine(self.url, patience)
+        self._worker = Worker(self._engine, self.dialect, shown(self.url), patience)
+        self._watch: asyncio.Task[None] | None = None
+
+    @property
+    def where(self) -> str:
+        """The database's URL without its password."""
+        return shown(self.url)
 
     async def open(self) -> None:
-        """Create the tables that are missing; raises StoreError when the database cannot be used."""
-        await self._call(self._create)
+        """Check that the tables are those of this version; SQLite's are made where there are none.
+
+        :raises StoreError: when the database cannot be used, or has to be created or upgraded first.
+        """
+        create = await self.run(revisions.must_create, self.where, self.dialect.made_by_serve)
+        if create:
+            await self.run(revisions.create)
 
     async def run(self, work: Callable[..., T], *arguments: Any) -> T:
-        """Run ``work`` in a transaction of its own; raises StoreError when the database refuses."""
-        return await self._call(self._transaction, work, *arguments)
+        """Run ``work`` in a transaction.
 
-    async def changed_elsewhere(self) -> int:
-        """Return a number that differs from the last one when another connection wrote (SQLite only)."""
-        return await self._call(self._data_version)
+        :raises DataRefusedError: when the database refuses a value, whoever gave it.
+        :raises UncertainError: when the connection was lost during the commit.
+        :raises StoreError: when the database cannot be used; the transaction was not done.
+        """
+        result: T = await self._submit(work, arguments, alone=False)
+        return result
+
+    async def version(self) -> int | None:
+        """Return a number that changes when another connection wrote, or None where there is none."""
+        result: int | None = await self._submit(self.dialect.version, (), alone=True)
+        return result
+
+    def wakeup(self, channel: str) -> Wakeup:
+        """Return what tells when it is time to look for new rows; ``channel`` is one of the triggers'."""
+        if self.dialect.listens:
+            return Listening(self._engine, channel, lambda: self._worker.backend)
+        return Polling()
 
     async def close(self) -> None:
         """Close the connection and end the thread."""
-        await self._call(self._engine.dispose)
-        self._executor.shutdown(wait=True)
+        if self._watch is not None:
+            self._watch.cancel()
+        await asyncio.to_thread(self._worker.close, 2 * PATIENCE_S)
 
-    async def _call(self, work: Callable[..., T], *arguments: Any) -> T:
-        try:
-            return await asyncio.get_running_loop().run_in_executor(self._executor, work, *arguments)
-        except SQLAlchemyError as error:
-            cause = getattr(error, "orig", None) or error
-            raise StoreError(
-                f"database {self._engine.url.render_as_string()}: {cause}; check that it exists, that it may "
-                "be written and that its disk has room"
-            ) from error
+    async def _submit(self, work: Callable[..., Any], arguments: tuple[Any, ...], *, alone: bool) -> Any:
+        loop = asyncio.get_running_loop()
+        if self._watch is None:
+            self._watch = loop.create_task(self._watch_over())
+        future: asyncio.Future[Any] = loop.create_future()
+        self._worker.submit(Job(work, arguments, loop, future, alone))
+        return await future
 
-    def _create(self) -> None:
-        metadata.create_all(self._engine)
-
-    def _transaction(self, work: Callable[..., T], *arguments: Any) -> T:
-        with self._engine.begin() as connection:
-            return work(connection, *arguments)
-
-    def _data_version(self) -> int:
-        with self._engine.connect() as connection:
-            return int(connection.exec_driver_sql("PRAGMA data_version").scalar_one())
+    async def _watch_over(self) -> None:
+        """Cut the connection to a server that does not answer: a frozen one keeps no limits of its own."""
+        while True:
+            await asyncio.sleep(WATCH_INTERVAL_S)
+            self._worker.interrupt_if_stuck()
 
 
-def open_engine(url: str) -> Engine:
-    """Return an engine on ``url`` with what the bridge needs of SQLite; raises StoreError for another URL."""
-    try:
-        parsed = sqlalchemy.make_url(url)
-    except ArgumentError:
-        raise StoreError(
-            f"database URL {url!r} cannot be read; write it like sqlite:////path/fleet.db"
-        ) from None
-    if parsed.get_backend_name() != "sqlite":
-        raise StoreError(
-            f"database {parsed.render_as_string()}: only SQLite is supported; write sqlite:////path/fleet.db"
-        )
-    engine = sqlalchemy.create_engine(parsed, connect_args={"timeout": 10, "check_same_thread": False})
-    event.listen(engine, "connect", _prepare_sqlite)
-    event.listen(engine, "begin", _begin_immediate)
-    return engine
+def run_once(address: str | URL, work: Callable[..., T], *arguments: Any) -> T:
+    """Run ``work`` in a transaction of a connection of its own, for programs that end after it."""
 
+    async def once() -> T:
+        async with contextlib.AsyncExitStack() as stack:
+            database = Database(address, patience=None)
+            stack.push_async_callback(database.close)
+            return await database.run(work, *arguments)
 
-def _prepare_sqlite(connection: Any, _record: Any) -> None:
-    # The driver would begin transactions late, when a reader can no longer become a writer.
-    connection.isolation_level = None
-    # Anyone may write anything into RR: text that is no UTF-8 is to be refused row by row, not by the driver.
-    connection.text_factory = _decode_leniently
-    cursor = connection.cursor()
-    cursor.execute("PRAGMA journal_mode = WAL")
-    # A command that an operator was told is queued must outlive a power cut, not only a crash.
-    cursor.execute("PRAGMA synchronous = FULL")
-    cursor.close()
-
-
-def _decode_leniently(text: bytes) -> str:
-    return text.decode(errors="replace")
-
-
-def _begin_immediate(connection: Connection) -> None:
-    connection.exec_driver_sql("BEGIN IMMEDIATE")
+    return asyncio.run(once())

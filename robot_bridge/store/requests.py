@@ -29,11 +29,12 @@ def read(connection: Connection, limit: int = 500) -> list[RequestRow]:
 
 def remove(connection: Connection, ids: Sequence[int]) -> None:
     """Delete requests that have been dealt with."""
-    connection.execute(delete(rr).where(rr.c.id.in_(ids)))
+    if ids:
+        connection.execute(delete(rr).where(rr.c.id.in_(ids)))
 
 
-def add(connection: Connection, robot: str, op: str, params: str) -> int:
-    """Write a request, as a robot does; return its id."""
-    key = connection.execute(insert(rr).values(robot=robot, op=op, params=params)).inserted_primary_key
-    assert key is not None
-    return int(key[0])
+def add_all(connection: Connection, rows: Sequence[tuple[str, str, str]]) -> None:
+    """Write requests (robot, op, params), as a robot does: it may insert and not read what it inserted."""
+    if rows:
+        values = [{"robot": robot, "op": op, "params": params} for robot, op, params in rows]
+        connection.execute(insert(rr).inline(), values)

@@ -90,3 +90,12 @@ def postgresql_url(postgresql_server) -> str:
 def mariadb_url(mariadb_server) -> str:
     """A new, empty MariaDB database: the URL of the account that has all rights on it and none elsewhere."""
     return mariadb_server.new_database()
+
+
+@pytest.fixture(scope="session")
+def new_database(request, tmp_path_factory):
+    """Make a database with the tables and nothing in them: ``new_database("postgresql")`` returns its URL."""
+    from database_maker import DatabaseMaker
+
+    folder = tmp_path_factory.mktemp("databases")
+    return DatabaseMaker(folder, lambda kind: request.getfixturevalue(f"{kind}_server"))

@@ -1,13 +1,11 @@
-"""A fleet on a real SQLite file and the real sample site, with a clock that the test turns."""
+"""A fleet on a real database of each kind and the real sample site, with a clock that the test turns."""
 
 from __future__ import annotations
 
-import contextlib
 import json
-import sqlite3
-from pathlib import Path
 
 import pytest
+from database_client import DatabaseClient
 
 from robot_bridge.fleet import Fleet
 from robot_bridge.links.sql import SqlLink
@@ -18,15 +16,17 @@ from robot_bridge.store.database import Database
 
 
 class Yard:
-    """One gateway's fleet without its sockets; ``restart`` puts another in its place on the same file."""
+    """One gateway's fleet without its sockets; ``restart`` puts another in its place on the same database."""
 
-    def __init__(self, site: SiteMaps, file: Path):
-        self.site, self.file, self.now = site, file, 1000.0
+    def __init__(self, site: SiteMaps, url: str):
+        self.site, self.url, self.now = site, url, 1000.0
+        self.client = DatabaseClient(url)
+        self.sql = self.client.sql
         self.told = []
         self.database = self.fleet = self.link = None
 
     async def start(self):
-        self.database = Database(f"sqlite:///{self.file}")
+        self.database = Database(self.url)
         await self.database.open()
         self.fleet = Fleet(self.site, self.database, clock=lambda: self.now)
         self.fleet.listen(self)
@@ -91,10 +91,6 @@ class Yard:
 
     # --- the database as any other program sees it ---------------------------------------------------------
 
-    def sql(self, text, *values):
-        with contextlib.closing(sqlite3.connect(self.file, isolation_level=None)) as connection:
-            return connection.execute(text, values).fetchall()
-
     def ask(self, robot, request):
         """Write a request as a robot does."""
         values = robot, type(request).__name__, json.dumps(to_json(request))
@@ -109,9 +105,16 @@ def site_maps(sample_site) -> SiteMaps:
     return SiteMaps(read_site(sample_site))
 
 
+@pytest.fixture(params=["sqlite", "postgresql", "mariadb"])
+def database_url(request, new_database) -> str:
+    """An empty database of each kind, with the tables."""
+    return new_database(request.param)
+
+
 @pytest.fixture
-async def yard(site_maps, tmp_path):
-    yard = Yard(site_maps, tmp_path / "fleet.db")
+async def yard(site_maps, database_url):
+    yard = Yard(site_maps, database_url)
     await yard.start()
     yield yard
     await yard.database.close()
+    yard.client.close()

@@ -1,0 +1,109 @@
+"""How a reader learns that there are new rows: the database says so, or it looks again and again."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import logging
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, Protocol
+
+from sqlalchemy import Engine
+
+if TYPE_CHECKING:
+    from psycopg import AsyncConnection
+
+log = logging.getLogger(__name__)
+
+GATEWAY_CHANNEL = "rr"
+"""Robots inserted requests, or deleted answers."""
+
+SHORTEST_S = 0.001
+LONGEST_S = 0.02
+FALLBACK_S = 1.0
+"""How long a reader that is told of new rows trusts that it would have been."""
+RETRY_AFTER_S = 1.0
+
+
+def robot_channel(robot: str) -> str:
+    """Return the channel on which ``robot`` is told of its answers."""
+    return f"sa_{robot}"[:63]
+
+
+class Wakeup(Protocol):
+    """Tells when to look for new rows."""
+
+    async def wait(self, *, found: bool) -> None:
+        """Return when it is time to look again; ``found``: there was something the last time."""
+
+    async def close(self) -> None:
+        """Stop."""
+
+
+class Polling:
+    """Looks again at once where there was something, else less and less often, down to every 20 ms."""
+
+    def __init__(self) -> None:
+        self._pause = SHORTEST_S
+
+    async def wait(self, *, found: bool) -> None:
+        """Return after a pause."""
+        self._pause = SHORTEST_S if found else min(2 * self._pause, LONGEST_S)
+        await asyncio.sleep(self._pause)
+
+    async def close(self) -> None:
+        """Do nothing."""
+
+
+class Listening:
+    """LISTEN on a channel of PostgreSQL. What a notification carries is never looked at: anyone may send one.
+
+    Those of the backend ``own`` are passed over: what this program wrote itself is no news to it.
+    """
+
+    def __init__(self, engine: Engine, channel: str, own: Callable[[], int | None]) -> None:
+        self._engine = engine
+        self._channel = channel
+        self._own = own
+        self._news = asyncio.Event()
+        self._task: asyncio.Task[None] | None = None
+
+    async def wait(self, *, found: bool) -> None:
+        """Return when something was written, or after a second."""
+        if self._task is None:
+            self._task = asyncio.create_task(self._listen())
+        with contextlib.suppress(TimeoutError):
+            await asyncio.wait_for(self._news.wait(), FALLBACK_S)
+        self._news.clear()
+
+    async def close(self) -> None:
+        """End the connection."""
+        if self._task is not None:
+            self._task.cancel()
+            await asyncio.gather(self._task, return_exceptions=True)
+
+    async def _listen(self) -> None:
+        import psycopg
+        from psycopg import sql
+
+        command = sql.SQL("listen {}").format(sql.Identifier(self._channel))
+        while True:
+            try:
+                async with await self._connect() as connection:
+                    await connection.execute(command)
+                    # Something may have been written while nobody listened.
+                    self._news.set()
+                    async for notice in connection.notifies():
+                        if notice.pid != self._own():
+                            self._news.set()
+            except psycopg.Error as error:
+                log.debug("channel %s: %s", self._channel, error)
+            await asyncio.sleep(RETRY_AFTER_S)
+
+    async def _connect(self) -> AsyncConnection[Any]:
+        from psycopg import AsyncConnection
+
+        from .engines.postgresql import CONNECT_ARGUMENTS
+
+        arguments, options = self._engine.dialect.create_connect_args(self._engine.url)
+        return await AsyncConnection.connect(*arguments, **{**options, **CONNECT_ARGUMENTS}, autocommit=True)

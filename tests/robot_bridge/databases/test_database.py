@@ -1,0 +1,182 @@
+"""Work on a database: all or none, together where it can be, said in one line what is wrong."""
+
+from __future__ import annotations
+
+import asyncio
+import sqlite3
+
+import pytest
+from sqlalchemy import insert, select, text
+
+from robot_bridge.errors import DataRefusedError, StoreError
+from robot_bridge.store.database import Database
+from robot_bridge.store.schema import robots, rr, sa
+
+
+@pytest.fixture
+async def database(url):
+    database = Database(url)
+    await database.open()
+    yield database
+    await database.close()
+
+
+def add(connection, robot, op="Alive"):
+    connection.execute(insert(rr).values(robot=robot, op=op))
+
+
+def names(connection):
+    return list(connection.scalars(select(rr.c.robot).order_by(rr.c.id)))
+
+
+@pytest.mark.parametrize("how", ["missing folder", "a folder", "no database", "read only"])
+async def test_a_file_that_cannot_be_used_is_named(tmp_path, how):
+    file = tmp_path / "fleet.db"
+    url = f"sqlite:///{file}"
+    if how == "missing folder":
+        url = f"sqlite:///{tmp_path}/none/fleet.db"
+    elif how == "a folder":
+        file.mkdir()
+    elif how == "no database":
+        file.write_bytes(b"this is a letter, not a database\n" * 100)
+    else:
+        sqlite3.connect(file).close()
+        url = f"sqlite:///file:{file}?mode=ro&uri=true"
+    database = Database(url)
+    with pytest.raises(StoreError, match=r"database sqlite:///.*fleet\.db.*; check that it exists"):
+        await database.open()
+    await database.close()
+
+
+@pytest.mark.parametrize("kind", ["postgresql", "mariadb"], indirect=True)
+@pytest.mark.parametrize("wrong", ["port", "password", "database"])
+async def test_a_server_that_cannot_be_used_is_named_without_the_password(kind, empty_url, wrong):
+    from sqlalchemy import make_url
+
+    url = make_url(empty_url)
+    secret = url.password if wrong != "password" else "hunter2"
+    url = {
+        "port": url.set(port=9),
+        "password": url.set(password=secret),
+        "database": url.set(database="no_such_database"),
+    }[wrong]
+    database = Database(url)
+    with pytest.raises(
+        StoreError, match=rf"database {kind}://fleet:\*\*\*@.*; check that the server"
+    ) as caught:
+        await database.open()
+    await database.close()
+    assert secret not in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+async def test_work_that_fails_is_rolled_back(database):
+    def half(connection):
+        add(connection, "r1")
+        raise RuntimeError("half way")
+
+    with pytest.raises(RuntimeError, match="half way"):
+        await database.run(half)
+    assert await database.run(names) == []
+
+
+async def test_work_that_waits_together_is_committed_together_and_fails_alone(database):
+    transactions = []
+
+    def begun(connection, robot):
+        transactions.append(connection.get_transaction())
+        add(connection, robot)
+        if robot == "r7":
+            raise RuntimeError(robot)
+
+    first = asyncio.create_task(database.run(lambda connection: names(connection)))
+    done = await asyncio.gather(
+        first, *(database.run(begun, f"r{n}") for n in range(10)), return_exceptions=True
+    )
+    assert [str(result) for result in done if isinstance(result, Exception)] == ["r7"]
+    assert await database.run(names) == [f"r{n}" for n in range(10) if n != 7]
+    transactions.clear()
+    await asyncio.gather(*(database.run(begun, f"s{n}") for n in range(10)))
+    assert len(set(map(id, transactions))) < 10
+
+
+async def test_what_is_committed_is_seen_by_others(database, url):
+    await database.run(add, "r1")
+    other = Database(url)
+    assert await other.run(names) == ["r1"]
+    await other.close()
+
+
+async def test_ids_are_never_used_twice(database):
+    def write(connection):
+        return connection.execute(insert(sa).values(robot="r1", op="Start")).inserted_primary_key[0]
+
+    first = await database.run(write)
+    await database.run(lambda connection: connection.execute(sa.delete()).rowcount)
+    assert await database.run(write) > first
+
+
+async def test_a_value_that_the_database_refuses_is_told_apart_from_a_database_out_of_order(database):
+    with pytest.raises(DataRefusedError, match="refuses a value"):
+        await database.run(add, None)
+    with pytest.raises(StoreError) as caught:
+        await database.run(lambda connection: connection.execute(text("select 1 from nowhere")).rowcount)
+    assert not isinstance(caught.value, DataRefusedError)
+    assert await database.run(names) == []
+
+
+async def test_names_that_differ_in_a_letters_case_are_two_and_every_number_and_letter_is_kept(database):
+    strange = "größer \U0001f916 'quoted' \\ %s :x"
+
+    def write(connection):
+        for name in ("r1", "R1"):
+            connection.execute(
+                insert(robots).values(
+                    name=name, magic=2**63 - 1, link="sql", received_at=1790000000.123456, pose=strange
+                )
+            )
+
+    await database.run(write)
+    found = await database.run(lambda c: [tuple(row) for row in c.execute(select(robots).order_by("name"))])
+    assert [row[0] for row in found] == ["R1", "r1"]
+    assert {row[1:3] for row in found} == {(2**63 - 1, "sql")}
+    assert all(row._asdict()["received_at"] == 1790000000.123456 for row in await _rows(database))
+    assert all(row._asdict()["pose"] == strange for row in await _rows(database))
+
+
+async def _rows(database):
+    return await database.run(lambda connection: list(connection.execute(select(robots))))
+
+
+async def test_a_map_of_some_megabytes_is_kept(database):
+    content = bytes(range(256)) * (6 << 12)
+
+    def write(connection):
+        connection.execute(insert(sa).values(robot="r1", op="SetMap", params="x" * 200_000, payload=content))
+
+    await database.run(write)
+    (row,) = await database.run(lambda connection: list(connection.execute(select(sa))))
+    assert (row.payload, len(row.params)) == (content, 200_000)
+
+
+async def test_two_transactions_that_lock_each_other_out_are_both_done(url, kind):
+    if kind == "sqlite":
+        pytest.skip("SQLite knows one writer at a time")
+    one, two = Database(url), Database(url)
+    await one.run(add, "a")
+    await one.run(add, "b")
+    met = asyncio.Event()
+    loop = asyncio.get_running_loop()
+
+    def cross(connection, first, second):
+        connection.execute(rr.update().where(rr.c.robot == first).values(op="Stopped"))
+        loop.call_soon_threadsafe(met.set)
+        import time
+
+        time.sleep(0.3)
+        connection.execute(rr.update().where(rr.c.robot == second).values(op="Stopped"))
+
+    await asyncio.gather(one.run(cross, "a", "b"), two.run(cross, "b", "a"))
+    assert met.is_set()
+    await one.close()
+    await two.close()

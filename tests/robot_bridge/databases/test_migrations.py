@@ -1,0 +1,191 @@
+"""The tables are those that the program works with, whatever version made them, with all that was in them."""
+
+from __future__ import annotations
+
+import json
+import sqlite3
+
+import pytest
+from alembic.script import ScriptDirectory
+from database_client import DatabaseClient
+
+from robot_bridge.errors import StoreError
+from robot_bridge.store import revisions
+from robot_bridge.store.database import Database, run_once
+
+# What `robot-bridge serve` of version 0.1.0 made.
+VERSION_0_1_0 = """
+CREATE TABLE rr (id INTEGER NOT NULL PRIMARY KEY AUTOINCREMENT, robot VARCHAR(63) NOT NULL,
+    op VARCHAR(32) NOT NULL, params TEXT, payload BLOB,
+    created_at DATETIME DEFAULT (CURRENT_TIMESTAMP) NOT NULL);
+CREATE INDEX ix_rr_robot ON rr (robot);
+CREATE TABLE sa (id INTEGER NOT NULL PRIMARY KEY AUTOINCREMENT, robot VARCHAR(63) NOT NULL,
+    op VARCHAR(32) NOT NULL, params TEXT, payload BLOB,
+    created_at DATETIME DEFAULT (CURRENT_TIMESTAMP) NOT NULL);
+CREATE INDEX ix_sa_robot ON sa (robot);
+CREATE TABLE robots (name VARCHAR(63) NOT NULL, magic INTEGER NOT NULL, link VARCHAR(16) NOT NULL,
+    received_at FLOAT NOT NULL, ended_in_order INTEGER NOT NULL, pose TEXT, pose_at FLOAT,
+    PRIMARY KEY (name));
+CREATE TABLE commands (id VARCHAR(64) NOT NULL, robot VARCHAR(63) NOT NULL, op VARCHAR(32) NOT NULL,
+    params TEXT NOT NULL, operator VARCHAR(128) NOT NULL, state VARCHAR(16) NOT NULL, deviation FLOAT,
+    sa_id INTEGER NOT NULL, created_at FLOAT NOT NULL, PRIMARY KEY (id));
+CREATE INDEX ix_commands_created_at ON commands (created_at);
+CREATE INDEX ix_commands_robot ON commands (robot);
+CREATE INDEX ix_commands_state ON commands (state);
+CREATE TABLE command_steps (id INTEGER NOT NULL PRIMARY KEY AUTOINCREMENT, command VARCHAR(64) NOT NULL,
+    state VARCHAR(16) NOT NULL, at FLOAT NOT NULL, "by" VARCHAR(128) NOT NULL, reason TEXT);
+CREATE INDEX ix_command_steps_command ON command_steps (command);
+CREATE TABLE trajectories (id INTEGER NOT NULL, robot VARCHAR(63) NOT NULL, received_at FLOAT NOT NULL,
+    x FLOAT NOT NULL, y FLOAT NOT NULL, theta FLOAT NOT NULL, v FLOAT NOT NULL, device_time FLOAT,
+    PRIMARY KEY (id));
+CREATE INDEX ix_trajectories_received_at ON trajectories (received_at);
+CREATE INDEX ix_trajectories_robot ON trajectories (robot);
+INSERT INTO robots VALUES ('r1', 7, 'websocket', 1000.0, 0, '{"x": 1, "y": 2, "theta": 0, "v": 0}', 1000.0);
+INSERT INTO sa (id, robot, op, params) VALUES (41, 'r1', 'SetPosEnd', '{"x": 5, "y": 6, "cone": true}');
+INSERT INTO sa (id, robot, op, params) VALUES (900, 'r1', 'Start', '{}');
+DELETE FROM sa WHERE id = 900;
+INSERT INTO commands VALUES ('command-1', 'r1', 'SetPosEnd', '{"x": 5, "y": 6, "cone": true}', 'Ada',
+    'queued', NULL, 41, 1000.0);
+INSERT INTO command_steps (command, state, at, "by") VALUES ('command-1', 'queued', 1000.0, 'Ada');
+INSERT INTO trajectories VALUES (1, 'r1', 1000.0, 1.0, 2.0, 0.0, 0.0, NULL);
+"""
+
+
+@pytest.fixture
+def old_url(tmp_path) -> str:
+    """A database of version 0.1.0 with a command under way."""
+    with sqlite3.connect(tmp_path / "fleet.db") as connection:
+        connection.executescript(VERSION_0_1_0)
+    connection.close()
+    return f"sqlite:///{tmp_path}/fleet.db"
+
+
+def opened(url):
+    async def work():
+        database = Database(url)
+        try:
+            await database.open()
+        finally:
+            await database.close()
+
+    import asyncio
+
+    asyncio.run(work())
+
+
+def test_the_migrations_make_the_tables_that_the_program_works_with(empty_url):
+    run_once(empty_url, revisions.create)
+    assert run_once(empty_url, revisions.current) == revisions.NEEDED
+    assert run_once(empty_url, revisions.differences) == []
+
+
+def test_the_newest_migration_is_the_one_that_the_program_needs():
+    assert ScriptDirectory(str(revisions.MIGRATIONS)).get_heads() == [revisions.NEEDED]
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ("drop table audit", "add table: audit"),
+        ("alter table commands drop column expires_at", "add column: commands, expires_at"),
+        ("alter table commands add column colour varchar(9)", "remove column: commands, colour"),
+        ("drop index ix_commands_state", "add index: ix_commands_state"),
+    ],
+)
+def test_a_table_that_differs_is_named(url, kind, change, said):
+    client = DatabaseClient(url)
+    client.sql(f"{change} on commands" if kind == "mariadb" and "drop index" in change else change)
+    client.close()
+    assert any(said in difference for difference in run_once(url, revisions.differences))
+    if kind == "mariadb":
+        DatabaseClient(url).sql("drop table alembic_version")  # so that the next test makes another
+
+
+def test_tables_of_others_in_the_same_database_are_no_difference(url, kind):
+    client = DatabaseClient(url)
+    client.sql("create table cafeteria (dish varchar(9))")
+    client.close()
+    assert run_once(url, revisions.differences) == []
+
+
+def test_tables_are_not_made_twice(url):
+    with pytest.raises(StoreError, match=r"the tables are there already, at revision 0002"):
+        run_once(url, revisions.create)
+
+
+def test_a_gateway_makes_only_a_missing_sqlite_database(empty_url, kind):
+    if kind == "sqlite":
+        opened(empty_url)
+        assert run_once(empty_url, revisions.differences) == []
+    else:
+        with pytest.raises(StoreError, match=r"no tables of the bridge; make them with: robot-bridge"):
+            opened(empty_url)
+        assert run_once(empty_url, revisions.current) is None
+
+
+def test_a_database_of_version_0_1_0_is_refused_with_the_command_that_upgrades_it(old_url):
+    with pytest.raises(StoreError, match=r"revision 0001, .* needs 0002; back it up, then run: robot-bridge"):
+        opened(old_url)
+    assert run_once(old_url, revisions.current) == "0001"
+
+
+def test_a_database_of_version_0_1_0_is_upgraded_with_all_that_is_in_it(old_url):
+    before = {table: rows(old_url, table) for table in ("robots", "sa", "commands", "command_steps")}
+    assert run_once(old_url, revisions.upgrade) == "0001"
+    assert run_once(old_url, revisions.differences) == []
+    for table, old in before.items():
+        new = rows(old_url, table)
+        assert [row[: len(old[0])] for row in new] == old, table
+    opened(old_url)
+
+
+def test_ids_go_on_after_an_upgrade_where_they_were(old_url):
+    run_once(old_url, revisions.upgrade)
+    client = DatabaseClient(old_url)
+    client.sql("insert into sa (robot, op) values ('r1', 'Start')")
+    assert client.sql("select max(id) from sa") == [(901,)]
+
+
+async def test_a_gateway_goes_on_with_the_commands_of_version_0_1_0(old_url, sample_site):
+    import asyncio
+
+    from robot_bridge.fleet import Fleet
+    from robot_bridge.messages import Ready
+    from robot_bridge.site_maps import SiteMaps
+    from robot_bridge.sites.publication import read_site
+
+    await asyncio.to_thread(run_once, old_url, revisions.upgrade)
+    database = Database(old_url)
+    await database.open()
+    fleet = Fleet(SiteMaps(read_site(sample_site)), database, clock=lambda: 1001.0)
+    await fleet.start()
+    await fleet.finish([await fleet.receive("r1", "websocket", Ready(7), 1)], [], acks=False)
+    told = {row.op: row for row in await fleet.outbox("r1", 0)}
+    await database.close()
+    assert told["SetPosEnd"].id == 41
+    assert json.loads(told["SetPosEnd"].params)["x"] == 5
+
+
+def test_a_database_of_a_newer_version_is_refused_and_left_alone(url):
+    client = DatabaseClient(url)
+    client.sql("update alembic_version set version_num = '9999'")
+    try:
+        for work in (opened, lambda url: run_once(url, revisions.upgrade)):
+            with pytest.raises(StoreError, match=r"revision 9999.* belongs to a newer robot-bridge"):
+                work(url)
+        assert run_once(url, revisions.current) == "9999"
+    finally:
+        client.sql("update alembic_version set version_num = '0002'")
+
+
+def test_an_empty_database_has_nothing_to_upgrade(empty_url):
+    with pytest.raises(StoreError, match="no tables to upgrade; make them with: robot-bridge"):
+        run_once(empty_url, revisions.upgrade)
+
+
+def rows(url, table):
+    client = DatabaseClient(url)
+    try:
+        return client.sql(f"select * from {table} order by 1")
+    finally:
+        client.close()
