@@ -8,6 +8,7 @@ from typing import Any
 from qgis.core import (
     QgsProcessingAlgorithm,
     QgsProcessingContext,
+    QgsProcessingFeatureSourceDefinition,
     QgsProcessingParameterDefinition,
     QgsProcessingParameterFile,
 )
@@ -48,11 +49,14 @@ def filter_in(
 ) -> FeatureFilter | None:
     """Return which features count of the layer that the parameter ``name`` takes its features from.
 
-    None where that is no layer of the project's kind, which then keeps no filter.
+    None where that is no layer.
 
     :raises ExpressionError: when the layer's filter is no expression.
     """
-    layer = algorithm.parameterAsVectorLayer(parameters, name, context)
+    value = parameters.get(name)
+    # What is given with "selected features only" is no layer to parameterAsVectorLayer.
+    chosen = value.source.staticValue() if isinstance(value, QgsProcessingFeatureSourceDefinition) else value
+    layer = algorithm.parameterAsVectorLayer({**parameters, name: chosen}, name, context)
     if layer is None:
         return None
     return FeatureFilter.of_layer(layer, algorithm.createExpressionContext(parameters, context))

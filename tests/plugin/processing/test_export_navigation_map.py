@@ -18,7 +18,12 @@ from fleet_supervisor.robot_bridge.robotmap.text import read_text
 from fleet_supervisor.robot_bridge.sites.map_frame import frame_of_map
 from PIL import Image
 from pyproj import Transformer
-from qgis.core import QgsProcessingContext, QgsProcessingException, QgsProject
+from qgis.core import (
+    QgsProcessingContext,
+    QgsProcessingException,
+    QgsProcessingFeatureSourceDefinition,
+    QgsProject,
+)
 from qgis.PyQt.QtGui import QColor, QImage
 
 MAP = """\
@@ -96,6 +101,17 @@ def test_masks_are_of_the_features_that_count(masked):
     assert inside_is_as_outside('"limit" < 1') == [True, True]
 
 
+def test_of_selected_features_those_count_that_the_filter_keeps(masked, areas):
+    project = QgsProject()
+    project.addMapLayer(areas)
+    areas.selectAll()
+    chosen = QgsProcessingFeatureSourceDefinition(areas.id(), selectedFeaturesOnly=True)
+    for text, everywhere_alike in (('"limit" > 1', False), ('"limit" < 1', True)):
+        results, _, _ = masked(text, FORMATS=["keepout"], KEEPOUTS=chosen, project=project)
+        file = results["KEEPOUT"]
+        assert (value_at(file, 25, 12) == value_at(file, 35, 17)) is everywhere_alike
+
+
 def test_a_mask_by_a_filter_that_fails_names_the_feature(masked):
     _, _, warnings = masked("to_int('a')", FORMATS=["keepout"])
     assert len(warnings) == 2
@@ -115,10 +131,10 @@ def export(provider, tmp_path):
 
     from .conftest import Listener
 
-    def run(source, feedback=None, **parameters):
+    def run(source, feedback=None, project=None, **parameters):
         listener = feedback or Listener()
         context = QgsProcessingContext()
-        context.setProject(QgsProject())
+        context.setProject(project or QgsProject())
         everything = {"MAP": str(source), "OUTPUT": str(tmp_path / "out"), **parameters}
         results = processing.run(
             "fleet:exportnavigationmap",
