@@ -34,7 +34,7 @@ def read_address(text: str, password_file: Path | None = None) -> URL:
             f"database {shown(url)}: {secret[0]} does not belong into the URL; write the password into a "
             "file and name it with --database-password-file"
         )
-    return url if password_file is None else url.set(password=_password(password_file))
+    return url if password_file is None else url.set(password=read_password(password_file))
 
 
 def shown(url: URL) -> str:
@@ -65,7 +65,8 @@ def _dialect(url: URL) -> Dialect:
     raise StoreError(f"database {shown(url)}: {url.drivername} is not supported; write {FORMS}")
 
 
-def _password(file: Path) -> str:
+def read_password(file: Path) -> str:
+    """Return the first line of a file that is closed to others; raises StoreError."""
     try:
         open_to_others = file.stat().st_mode & _OTHERS
         lines = file.read_text(encoding="utf-8").splitlines()
