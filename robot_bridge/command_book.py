@@ -3,64 +3,45 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import dataclasses
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from collections.abc import AsyncIterator, Callable, Coroutine, Iterable
+from typing import Any, TypeVar
 
-from sqlalchemy import Connection
-
-from .arrival import Arrival, judge
-from .command_life import advance, is_open, may_become, note
-from .messages import (
-    Abort,
-    CommandReport,
-    CommandState,
-    CommandStep,
-    OpAck,
-    SendPos,
-    SetPath,
-    SetPosEnd,
-    to_json,
+from .arrival import judge
+from .command_life import is_open, may_become
+from .command_writing import (
+    Also,
+    Draft,
+    opened,
+    write_acknowledged,
+    write_again,
+    write_all,
+    write_drafts,
+    write_driven,
 )
-from .store import answers, commands
+from .errors import RefusedError, UncertainError
+from .messages import Command, CommandReport, CommandState, OpAck, SendPos, SetPath, SetPosEnd
+from .open_command import GATEWAY, OpenCommand, Order, drafted, ended_by, voided
+from .open_commands import OpenCommands
+from .store import commands
+from .store.commands import StoredCommand
 from .store.database import Database
-from .wire import decode_answer
 
-GATEWAY = "gateway"
+__all__ = ["GATEWAY", "CommandBook", "OpenCommand", "Order"]
 
-Command = SetPosEnd | SetPath | Abort
-
-
-@dataclass(frozen=True)
-class Order:
-    """A command to be issued: who asks which robot for what, under which id."""
-
-    command: str
-    robot: str
-    message: Command
-    operator: str
-
-
-@dataclass
-class OpenCommand:
-    """A command with a step to come; ``sa_id`` is its message's row in SA."""
-
-    report: CommandReport
-    sa_id: int
-    message: Command
-    arrival: Arrival | None = None
-
-    @property
-    def is_motion(self) -> bool:
-        """Tell whether it makes the robot drive."""
-        return not isinstance(self.message, Abort)
+T = TypeVar("T")
+DRIVEN_STEP = 0.5
+"""metres along a path between two that are stored."""
 
 
 class CommandBook:
     """Holds the open commands and takes them through their lives.
 
     Every change is committed before it is shown: ``changed`` is called with each command's new report, and
-    ``outbox_changed`` with the robot for which SA holds something new.
+    ``outbox_changed`` with the robot for which SA holds something new. ``check`` raises RefusedError for a
+    message that must not be sent to a robot now. What concerns one robot waits only for what concerns the
+    same robot.
     """
 
     def __init__(
@@ -70,252 +51,253 @@ class CommandBook:
         clock: Callable[[], float],
         changed: Callable[[CommandReport], None],
         outbox_changed: Callable[[str], None],
+        check: Callable[[Command], None],
     ) -> None:
         self._database = database
         self._tolerance = tolerance
         self._clock = clock
         self._changed = changed
         self._outbox_changed = outbox_changed
-        self._open: dict[str, OpenCommand] = {}
-        self._lock = asyncio.Lock()
+        self._check = check
+        self._open = OpenCommands()
+        self._locks: dict[str, asyncio.Lock] = {}
+        self._doubtful = False
 
     async def restore(self) -> None:
         """Take up the commands that an earlier gateway left open."""
-        for report, sa_id in await self._database.run(commands.still_open):
-            message = _message(report)
-            command = OpenCommand(report, sa_id, message)
-            if report.state is CommandState.ACKNOWLEDGED:
-                command.arrival = judge(message, self._tolerance, under_way=True)
-            self._open[report.command] = command
+        for stored in await self._database.run(commands.still_open):
+            self._open.put(self._restored(stored))
 
     def busy_with(self, robot: str) -> str | None:
         """Return the id of the command that makes the robot drive, if any."""
-        moving = [c.report.command for c in self._of(robot) if c.is_motion]
+        moving = [c.report.command for c in self._open.of(robot) if c.is_motion]
         return moving[-1] if moving else None
+
+    def task(self, robot: str) -> tuple[SetPosEnd | SetPath, float] | None:
+        """Return what the robot is to drive, and how many metres of it (of a path) it has driven."""
+        for command in reversed(self._open.of(robot)):
+            if isinstance(command.message, (SetPosEnd, SetPath)):
+                return command.message, command.driven or 0.0
+        return None
+
+    def robot_of(self, command: str) -> str | None:
+        """Return the robot of an open command."""
+        known = self._open.get(command)
+        return None if known is None else known.report.robot
+
+    def awaits_stop(self, robot: str) -> bool:
+        """Tell whether the Abort of an emergency stop is on its way to the robot."""
+        return any(c.is_emergency and c.is_on_its_way for c in self._open.of(robot))
 
     def undelivered(self) -> dict[int, str]:
         """Return the robot of every message that waits in SA, by the message's id."""
-        return {c.sa_id: c.report.robot for c in self._open.values() if c.report.state is CommandState.QUEUED}
+        return {sa_id: command.report.robot for sa_id, command in self._open.queued.items()}
 
-    async def issue(self, orders: list[Order]) -> list[CommandReport]:
-        """Store new commands with their messages, all or none; return them as stored.
+    async def issue(self, orders: list[Order], also: Also | None = None) -> list[CommandReport]:
+        """Store new commands with their messages, all or none, and ``also`` more; return them as stored.
 
         A command whose id is known already is returned as it stands and changes nothing.
         """
-        async with self._lock:
-            issued, ended = await self._database.run(self._write_orders, orders)
+        return await _to_its_end(self._issue(orders, also))
+
+    async def delivered(self, sa_ids: Iterable[int]) -> None:
+        """Note that the messages ``sa_ids`` have reached their robots."""
+        wanted = [id for id in sa_ids if id in self._open.queued]
+        if wanted:
+            await _to_its_end(self._delivered(wanted))
+
+    async def acknowledged(self, robot: str, ack: OpAck) -> float | None:
+        """Note a robot's OpAck: it took the message on, or (``ok`` false) will not do it, or gave it up.
+
+        Return when the message was written into SA, if it was a command's and is acknowledged at first.
+        """
+        return await _to_its_end(self._acknowledged(robot, ack))
+
+    async def observe(self, robot: str, pose: SendPos) -> None:
+        """Judge the robot's acknowledged commands by where it is now."""
+        for command in self._open.of(robot):
+            deviation = command.arrival.deviation(pose) if command.arrival else None
+            if deviation is not None:
+                await _to_its_end(self._reached(command, deviation))
+
+    async def deliver_again(self, robot: str, reason: str, expire_after: float) -> None:
+        """Send once more what a robot that started anew may have forgotten, unless it is too old."""
+        await _to_its_end(self._deliver_again(robot, reason, expire_after))
+
+    async def expire(self, expire_after: float) -> None:
+        """End the commands that were not fetched in time: ``expire_after`` seconds, or as they say."""
+        now = self._clock()
+        late = [c for c in self._open.queued.values() if c.expired(now, expire_after)]
+        if late:
+            await _to_its_end(self._expire([c.report.command for c in late]))
+
+    async def save_progress(self) -> None:
+        """Store how far robots have come along their paths, where that has changed."""
+        driven = self._open.progress(DRIVEN_STEP)
+        if driven:
+            await self._database.run(write_driven, driven)
+            self._open.note_progress(driven)
+
+    # --- what has to be done to its end, with the robots' locks held --------------------------------------
+
+    async def _issue(self, orders: list[Order], also: Also | None) -> list[CommandReport]:
+        async with self._holding(order.robot for order in orders):
+            now = self._clock()
+            drafts = [self._draft(order, now) for order in orders]
+            issued, ended = await self._run(write_drafts, drafts, also)
             for command in ended:
                 self._apply(command)
             for command in issued:
-                if command.report.state is CommandState.QUEUED and command.report.command not in self._open:
+                id = command.report.command
+                if command.report.state is CommandState.QUEUED and self._open.get(id) is None:
                     self._apply(command)
                     self._outbox_changed(command.report.robot)
             return [command.report for command in issued]
 
-    async def delivered(self, sa_ids: Iterable[int]) -> None:
-        """Note that the messages ``sa_ids`` have reached their robots."""
-        wanted = set(sa_ids)
-        async with self._lock:
-            steps = [
-                self._step(command, CommandState.DELIVERED, GATEWAY)
-                for command in self._open.values()
-                if command.sa_id in wanted and command.report.state is CommandState.QUEUED
-            ]
-            await self._save(steps)
+    def _draft(self, order: Order, now: float) -> Draft:
+        refusal = None
+        try:
+            self._check(order.message)
+            self._check_task(order)
+        except RefusedError as error:
+            refusal = error
+        mine = self._open.of(order.robot)
+        return Draft(order, drafted(order, now), voided(order, mine, now), refusal)
 
-    async def acknowledged(self, robot: str, ack: OpAck) -> None:
-        """Note a robot's OpAck: it took the message on, or (``ok`` false) will not do it, or gave it up."""
-        async with self._lock:
-            command = next((c for c in self._of(robot) if c.sa_id == ack.id), None)
+    def _check_task(self, order: Order) -> None:
+        if order.aborts is not None and order.aborts != self.busy_with(order.robot):
+            raise RefusedError(
+                f"command {order.aborts} is no longer what robot {order.robot!r} is doing; look at the log, "
+                "and abort the robot if it is to stop all the same"
+            )
+
+    async def _delivered(self, sa_ids: list[int]) -> None:
+        robots = {self._open.queued[id].report.robot for id in sa_ids}
+        async with self._holding(robots):
+            queued = [self._open.queued[id] for id in sa_ids if id in self._open.queued]
+            now = self._clock()
+            await self._save([command.step(CommandState.DELIVERED, now, GATEWAY) for command in queued])
+
+    async def _acknowledged(self, robot: str, ack: OpAck) -> float | None:
+        async with self._holding([robot]):
+            command = next((c for c in self._open.of(robot) if c.sa_id == ack.id), None)
             steps = [] if command is None else self._taken(command, robot, ack)
             # One transaction: a message that is gone from SA with its step unsaved would be lost.
-            await self._database.run(_write_acknowledged, robot, ack.id, steps)
+            await self._run(write_acknowledged, robot, ack.id, steps)
             for step in steps:
                 self._apply(step)
+            return command.written_at if command is not None and command.is_on_its_way else None
 
-    async def observe(self, robot: str, pose: SendPos) -> None:
-        """Judge the robot's acknowledged commands by where it is now."""
-        for command in self._of(robot):
-            deviation = command.arrival.deviation(pose) if command.arrival else None
-            if deviation is None:
-                continue
-            # An Abort has no place that it could be off.
-            off = deviation if command.is_motion else None
-            async with self._lock:
-                if self._open.get(command.report.command) is command:
-                    step = self._step(command, CommandState.REACHED, GATEWAY, deviation=off)
-                    await self._save([step])
+    async def _reached(self, command: OpenCommand, deviation: float) -> None:
+        async with self._holding([command.report.robot]):
+            if self._open.get(command.report.command) is command:
+                # An Abort has no place that it could be off.
+                off = None if command.is_abort else deviation
+                now = self._clock()
+                await self._save([command.step(CommandState.REACHED, now, GATEWAY, deviation=off)])
 
-    async def deliver_again(self, robot: str, reason: str) -> None:
-        """Send once more what a robot that started anew may have forgotten."""
-        async with self._lock:
-            forgotten = [c for c in self._of(robot) if c.report.state is not CommandState.QUEUED]
+    async def _deliver_again(self, robot: str, reason: str, expire_after: float) -> None:
+        async with self._holding([robot]):
+            mine, now = self._open.of(robot), self._clock()
+            forgotten = [c for c in mine if c.report.state is not CommandState.QUEUED]
             if not forgotten:
                 return
-            aborted = self._forgotten_and_aborted(robot)
-            gone = {command.report.command for command in aborted}
-            again = [
-                self._anew(c, reason)
-                for c in self._of(robot)
-                if c.report.command not in gone and c.sa_id >= min(c.sa_id for c in forgotten)
+            ended = [end for c in mine for end in ended_by(c, mine, now, "the robot started anew")]
+            ended += [
+                c.step(CommandState.EXPIRED, now, GATEWAY, "the robot started anew, and it was too old then")
+                for c in mine
+                if c.is_on_its_way and c.expired(now, expire_after)
             ]
-            for command in await self._database.run(_write_again, again, aborted):
+            ended = list({c.report.command: c for c in reversed(ended)}.values())
+            gone = {command.report.command for command in ended}
+            first = min(c.sa_id for c in forgotten)
+            again = [
+                self._anew(c, reason, now) for c in mine if c.report.command not in gone and c.sa_id >= first
+            ]
+            for command in await self._run(write_again, again, ended):
                 self._apply(command)
             self._outbox_changed(robot)
 
-    async def expire(self, older_than: float) -> None:
-        """End the commands that were queued before ``older_than`` and never fetched."""
-        async with self._lock:
-            steps = [
-                self._step(command, CommandState.EXPIRED, GATEWAY, "the robot did not fetch it in time")
-                for command in self._open.values()
-                if command.report.state is CommandState.QUEUED and command.report.steps[0].at < older_than
-            ]
-            await self._save(steps)
+    async def _expire(self, ids: list[str]) -> None:
+        async with self._holding({robot for id in ids if (robot := self.robot_of(id))}):
+            found = [command for id in ids if (command := self._open.get(id))]
+            late = [command for command in found if command.report.state is CommandState.QUEUED]
+            now, reason = self._clock(), "the robot did not fetch it in time"
+            await self._save([c.step(CommandState.EXPIRED, now, GATEWAY, reason) for c in late])
 
-    def _of(self, robot: str) -> list[OpenCommand]:
-        return [command for command in self._open.values() if command.report.robot == robot]
-
-    def _step(
-        self,
-        command: OpenCommand,
-        state: CommandState,
-        by: str,
-        reason: str | None = None,
-        deviation: float | None = None,
-    ) -> OpenCommand:
-        report = advance(command.report, state, self._clock(), by, reason, deviation)
-        if state is not CommandState.ACKNOWLEDGED:
-            return dataclasses.replace(command, report=report)
-        arrival = judge(command.message, self._tolerance)
-        return dataclasses.replace(command, report=report, arrival=arrival)
+    # -------------------------------------------------------------------------------------------------------
 
     def _taken(self, command: OpenCommand, robot: str, ack: OpAck) -> list[OpenCommand]:
         """Return what a robot's OpAck of ``command`` changes."""
+        now = self._clock()
         if not ack.ok:
-            return [self._step(command, CommandState.FAILED, robot, ack.reason)]
+            return [command.step(CommandState.FAILED, now, robot, ack.reason)]
         if may_become(command.report.state, CommandState.ACKNOWLEDGED):
-            return [self._step(command, CommandState.ACKNOWLEDGED, robot), *self._ended_by(command)]
+            taken = command.step(CommandState.ACKNOWLEDGED, now, robot).judged(self._tolerance)
+            mine = self._open.of(robot)
+            return [taken, *ended_by(command, mine, now, "the robot acknowledged the Abort")]
         if command.arrival is None:
-            report = note(command.report, self._clock(), robot, "acknowledged again")
             arrival = judge(command.message, self._tolerance)
-            return [dataclasses.replace(command, report=report, arrival=arrival)]
+            return [command.noted(now, robot, "acknowledged again", arrival)]
         return []
 
-    def _anew(self, command: OpenCommand, reason: str) -> OpenCommand:
+    def _anew(self, command: OpenCommand, reason: str, now: float) -> OpenCommand:
         """Return a command to be sent once more; one that was never fetched keeps its place behind."""
         if command.report.state is CommandState.QUEUED:
             reason = "behind what the robot is told once more"
-        report = note(command.report, self._clock(), GATEWAY, reason)
-        return dataclasses.replace(command, report=report, arrival=None)
+        return dataclasses.replace(command.noted(now, GATEWAY, reason), written_at=now)
 
-    def _forgotten_and_aborted(self, robot: str) -> list[OpenCommand]:
-        """Return the ends of what a robot that started anew forgot and an Abort of an operator gave up."""
-        mine = self._of(robot)
-        return [
-            self._step(c, CommandState.ABORTED, abort.report.operator, "the robot started anew")
-            for abort in mine
-            for c in mine
-            if not abort.is_motion and c.is_motion and c.sa_id < abort.sa_id
-        ]
-
-    def _ended_by(self, abort: OpenCommand) -> list[OpenCommand]:
-        """Return the commands that an acknowledged Abort ends: those that came before it."""
-        if abort.is_motion:
-            return []
-        return [
-            self._step(c, CommandState.ABORTED, abort.report.operator, "the robot acknowledged the Abort")
-            for c in self._of(abort.report.robot)
-            if c.is_motion and c.sa_id < abort.sa_id
-        ]
-
-    def _void(self, order: Order) -> list[OpenCommand]:
-        """Return the open commands of the robot that ``order`` ends at once."""
-        ended = []
-        for command in self._of(order.robot):
-            if isinstance(order.message, Abort) and command.is_motion:
-                if command.report.state is CommandState.QUEUED:
-                    reason = "before the robot fetched it"
-                    ended.append(self._step(command, CommandState.ABORTED, order.operator, reason))
-            elif command.is_motion is not isinstance(order.message, Abort):
-                reason = f"by command {order.command}"
-                ended.append(self._step(command, CommandState.SUPERSEDED, order.operator, reason))
-        return ended
-
-    def _write_orders(
-        self, connection: Connection, orders: list[Order]
-    ) -> tuple[list[OpenCommand], list[OpenCommand]]:
-        issued, ended = [], []
-        for order in orders:
-            known = commands.find(connection, order.command)
-            if known is not None:
-                issued.append(OpenCommand(known, 0, order.message))
-                continue
-            for command in self._void(order):
-                _write(connection, command)
-                ended.append(command)
-            report = CommandReport(
-                command=order.command,
-                robot=order.robot,
-                op=type(order.message).__name__,
-                params=to_json(order.message),
-                operator=order.operator,
-                state=CommandState.QUEUED,
-                steps=[CommandStep(CommandState.QUEUED, self._clock(), order.operator)],
-            )
-            sa_id = answers.add(connection, order.robot, order.message)
-            commands.add(connection, report, sa_id)
-            issued.append(OpenCommand(report, sa_id, order.message))
-        return issued, ended
+    def _restored(self, stored: StoredCommand) -> OpenCommand:
+        command = opened(stored)
+        if stored.report.state is CommandState.ACKNOWLEDGED:
+            command.arrival = judge(command.message, self._tolerance, driven=stored.driven, under_way=True)
+        return command
 
     async def _save(self, steps: list[OpenCommand]) -> None:
         if steps:
-            await self._database.run(_write_all, steps)
+            await self._run(write_all, steps)
             for command in steps:
                 self._apply(command)
 
     def _apply(self, command: OpenCommand) -> None:
         if is_open(command.report.state):
-            self._open[command.report.command] = command
+            self._open.put(command)
         else:
-            self._open.pop(command.report.command, None)
+            self._open.remove(command.report.command)
         self._changed(command.report)
 
+    async def _run(self, work: Callable[..., T], *arguments: Any) -> T:
+        try:
+            return await self._database.run(work, *arguments)
+        except UncertainError:
+            self._doubtful = True
+            raise
 
-def _message(report: CommandReport) -> Command:
-    message = decode_answer(report.op, report.params)
-    assert isinstance(message, (SetPosEnd, SetPath, Abort))
-    return message
+    @contextlib.asynccontextmanager
+    async def _holding(self, robots: Iterable[str]) -> AsyncIterator[None]:
+        """Hold the locks of some robots, taken in one order by everybody."""
+        async with contextlib.AsyncExitStack() as stack:
+            for robot in sorted(set(robots)):
+                await stack.enter_async_context(self._locks.setdefault(robot, asyncio.Lock()))
+            if self._doubtful:
+                await self._look_up()
+            yield
+
+    async def _look_up(self) -> None:
+        """Take over what the database holds, after a transaction that may have been done or not."""
+        stored = {s.report.command: s for s in await self._database.run(commands.still_open)}
+        here = {command.report.command: command for command in self._open}
+        ended = await self._database.run(commands.find_all, sorted(here.keys() - stored.keys()))
+        self._doubtful = False
+        for found in [*ended.values(), *stored.values()]:
+            known = here.get(found.report.command)
+            if known is None or (known.report, known.sa_id) != (found.report, found.sa_id):
+                self._apply(self._restored(found))
+                self._outbox_changed(found.report.robot)
 
 
-def _write(connection: Connection, command: OpenCommand) -> None:
-    commands.save(connection, command.report, command.sa_id)
-    if not is_open(command.report.state):
-        answers.remove(connection, [command.sa_id])
-
-
-def _write_all(connection: Connection, steps: list[OpenCommand]) -> None:
-    for command in steps:
-        _write(connection, command)
-
-
-def _write_acknowledged(
-    connection: Connection, robot: str, sa_id: int | None, steps: list[OpenCommand]
-) -> None:
-    if sa_id is not None:
-        answers.remove_own(connection, robot, sa_id)
-    _write_all(connection, steps)
-
-
-def _write_again(
-    connection: Connection, again: list[OpenCommand], ended: list[OpenCommand]
-) -> list[OpenCommand]:
-    _write_all(connection, ended)
-    written = list(ended)
-    for command in sorted(again, key=lambda c: c.sa_id):
-        answers.remove(connection, [command.sa_id])
-        sa_id = answers.add(connection, command.report.robot, command.message)
-        renewed = dataclasses.replace(command, sa_id=sa_id)
-        commands.save(connection, renewed.report, sa_id)
-        written.append(renewed)
-    return written
+async def _to_its_end(work: Coroutine[Any, Any, T]) -> T:
+    """Await ``work``, which goes on when the waiting is cancelled: what is stored must be known here, too."""
+    task = asyncio.ensure_future(work)
+    task.add_done_callback(lambda done: done.cancelled() or done.exception())
+    return await asyncio.shield(task)

@@ -11,30 +11,36 @@ import logging
 import time
 import uuid
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
 from sqlalchemy import Connection
 
+from .answering import Answering
 from .command_book import CommandBook, Order
+from .emergency import HELD_BACK, EmergencyStops
 from .errors import RefusedError
+from .ground_track import GroundTracks
+from .handshake import Holds, refusal
 from .messages import (
     COMMANDS,
     Abort,
-    Alive,
+    AbortTask,
     Answer,
+    Command,
     CommandReport,
-    GetMap,
     MessageError,
+    ObservationReport,
+    Observed,
     OpAck,
+    Question,
     Ready,
     Request,
     RobotReport,
     Send,
+    SendGPS,
     SendPos,
     SetMap,
-    SetPath,
-    SetPosEnd,
     SiteReport,
     Start,
     Stopped,
@@ -42,10 +48,13 @@ from .messages import (
     check_robot_name,
     to_json,
 )
+from .observation_book import ObservationBook
+from .places import check_places, places_of
+from .planning import Planner, StraightPlanner
 from .robots import Robot, Robots
 from .sites.settings import SiteSettings
 from .snapshots import Snapshots
-from .store import answers, commands, requests, trajectories
+from .store import answers, commands, facts, requests, trajectories
 from .store import robots as stored_robots
 from .store.answers import AnswerRow
 from .store.database import Database
@@ -62,13 +71,23 @@ class Outcome:
 
     robot: str
     ack: OpAck | None = None
-    answer: SetMap | Start | None = None
+    answer: Answer | None = None
     void: tuple[str, ...] = ()
+
+    @property
+    def admitted(self) -> bool:
+        """Tell whether the request, a Ready, was taken."""
+        return self.ack is not None and self.ack.ok
 
     def rows(self, *, acks: bool) -> list[tuple[str, Answer]]:
         """Return what is to be written into SA, the OpAck first."""
         messages: list[Answer | None] = [self.ack if acks else None, self.answer]
         return [(self.robot, message) for message in messages if message is not None]
+
+    def voided(self) -> tuple[str, ...]:
+        """Return the kinds of older answers that are void; a map or a Start is, when there is a newer one."""
+        renewed = isinstance(self.answer, (SetMap, Start))
+        return (*self.void, type(self.answer).__name__) if renewed else self.void
 
 
 class MapSource(Protocol):
@@ -91,6 +110,14 @@ class MapSource(Protocol):
     def map_around(self, x: float, y: float, area: float) -> bytes:
         """Return the map of a square of ``area`` square metres centred on (x, y)."""
 
+    def place_on_earth(
+        self, lat: float, lon: float, heading: float | None
+    ) -> tuple[tuple[float, float], float | None]:
+        """Return (x, y) and theta of a GPS position; raises RefusedError where the site has none."""
+
+    def show(self, objects: Sequence[ObservationReport]) -> None:
+        """Draw accepted objects, and no others, on the maps from now on."""
+
 
 class Listener(Protocol):
     """An operator's session, told what happens."""
@@ -107,6 +134,7 @@ class Fleet:
         site: MapSource,
         database: Database,
         clock: Callable[[], float] = time.time,
+        planner: Planner | None = None,
     ) -> None:
         self.site = site
         self._database = database
@@ -114,45 +142,76 @@ class Fleet:
         self.robots = Robots(site.report.stale_after, site.report.lost_after)
         self.snapshots = Snapshots(self.robots, self.reports)
         self._book = CommandBook(
-            database, site.report.reached_tolerance, clock, self._command_changed, self._outbox_changed
+            database,
+            site.report.reached_tolerance,
+            clock,
+            self._command_changed,
+            self._outbox_changed,
+            lambda message: self.emergency.check(message),
         )
+        self.emergency = EmergencyStops(self._book, database, clock, self.robots.names, self.announce)
         self.recorder = Recorder(lambda: self.site.settings.trajectories)
+        self.observations = ObservationBook(site, database, clock, self._observation_changed)
+        self._answering = Answering(site, database, self.robots, self._book, planner or StraightPlanner())
+        self._tracks = GroundTracks()
+        self.holds = Holds()
+        self._database_id = ""
         self._unsaved: set[str] = set()
         self._outboxes: dict[str, asyncio.Event] = {}
         self._listeners: set[Listener] = set()
 
+    @property
+    def database(self) -> Database:
+        """The database that everything is kept in."""
+        return self._database
+
     async def start(self) -> None:
         """Go on where the last gateway on this database stopped, and tell its robots Start."""
+        self._database_id = await self._database.run(facts.database_id)
         known = await self._database.run(stored_robots.load)
         for robot in known:
             self.robots.restore(robot, self._clock())
         await self._book.restore()
         for robot in known:
             self.robots.assign(robot.name, self._book.busy_with(robot.name))
-        greetings = [Outcome(robot.name, answer=Start()) for robot in known if robot.link == "sql"]
+        await self.emergency.restore()
+        await self.observations.restore()
+        greetings = [Outcome(robot.name, answer=self.greeting()) for robot in known if robot.link == "sql"]
         await self.finish(greetings, [], acks=False)
 
     # --- robots ---------------------------------------------------------------------------------------
 
+    def greeting(self) -> Start:
+        """Return what robots are told when the gateway begins to listen to them."""
+        return Start(self._database_id)
+
     async def receive(self, robot: str, link: str, request: Request, id: int | None) -> Outcome:
         """Deal with request ``id`` of a robot; its link sends what comes of it, through :meth:`finish`.
 
-        :raises NotReadyError: from a robot that never said Ready.
+        :raises NotReadyError: from a robot that never said Ready; RefusedError for what is not done, saying
+            why; MessageError for what is wrong in itself.
         """
         now = self._clock()
         if isinstance(request, Ready):
             return await self._receive_ready(robot, link, request, id)
+        if isinstance(request, SendGPS):
+            request = self._pose_of(robot, request, now)
         if isinstance(request, SendPos):
             await self._receive_pose(robot, link, request, now)
             return Outcome(robot)
-        known = self.robots.heard(robot, link, now, stopped=self._stops(robot, request))
+        # Only driving sets a robot that said Stopped in motion.
+        stopped = isinstance(request, Stopped) or self.robots.get(robot).ended_in_order
+        known = self.robots.heard(robot, link, now, stopped=stopped)
         self._unsaved.add(known.name)
+        answer = None
         if isinstance(request, OpAck):
-            await self._book.acknowledged(robot, request)
-        elif isinstance(request, GetMap):
-            content = await asyncio.to_thread(self.site.map_around, request.x, request.y, request.area)
-            return Outcome(robot, OpAck(id=id), SetMap(content))
-        return Outcome(robot, OpAck(id=id) if request.acknowledged else None)
+            self._measure(known, await self._book.acknowledged(robot, request))
+        elif isinstance(request, Observed):
+            await self.observations.add(known, link, request, id)
+        elif isinstance(request, Question):
+            answer = await self._answering.answer(robot, request)
+            self.emergency.check(answer)
+        return Outcome(robot, OpAck(id=id) if request.acknowledged else None, answer)
 
     async def finish(self, outcomes: list[Outcome], request_ids: list[int], *, acks: bool) -> None:
         """Write the answers of requests into SA, with their OpAcks if ``acks``, and delete them from RR.
@@ -171,9 +230,10 @@ class Fleet:
         self.robots.closed(robot)
         self._unsaved.add(robot)
 
-    async def outbox(self, robot: str, after: int) -> list[AnswerRow]:
-        """Return the robot's messages with an id above ``after``, oldest first."""
-        return await self._database.run(answers.read, robot, after)
+    async def outbox(self, robot: str, after: int, after_urgent: int = 0) -> list[AnswerRow]:
+        """Return the robot's messages as :func:`.answers.read`, without those that must not be sent now."""
+        rows = await self._database.run(answers.read, robot, after, after_urgent)
+        return [row for row in rows if row.op not in HELD_BACK] if self.emergency.in_force else rows
 
     def outbox_event(self, robot: str) -> asyncio.Event:
         """Return the event that is set whenever the robot's outbox holds something new."""
@@ -213,6 +273,7 @@ class Fleet:
     async def send(self, send: Send, operator: str) -> CommandReport:
         """Issue one command; returns when it is stored. Raises RefusedError, MessageError, StoreError."""
         order = self._order(send.command, send.robot, send.op, send.params, operator)
+        order = replace(order, reason=send.reason, expires_in=send.expires_in)
         return (await self._book.issue([order]))[0]
 
     async def set_positions(self, positions: list[TargetPosition], operator: str) -> list[CommandReport]:
@@ -229,14 +290,29 @@ class Fleet:
             orders.append(self._order(str(uuid.uuid4()), position.robot, "SetPosEnd", target, operator))
         return await self._book.issue(orders)
 
-    async def abort_all(self, operator: str, command: str | None = None) -> list[CommandReport]:
+    async def abort(self, request: AbortTask, operator: str) -> CommandReport:
+        """Tell a robot to abort its task, or to abort one command if that still is its task."""
+        robot = request.robot or self._book.robot_of(request.aborts or "")
+        if robot is None:
+            # Asked again, after what it aborts has ended: answered as it was.
+            known = await self._database.run(commands.find, request.command)
+            if known is not None:
+                return known
+            raise RefusedError(
+                f"command {request.aborts} has ended or was never issued, so there is nothing to abort"
+            )
+        order = self._order(request.command, robot, Abort.__name__, {}, operator)
+        order = replace(order, reason=request.reason, aborts=request.aborts)
+        return (await self._book.issue([order]))[0]
+
+    async def abort_all(
+        self, operator: str, command: str | None = None, reason: str | None = None
+    ) -> list[CommandReport]:
         """Tell every robot to abort its task; asked again with the same ``command`` id it changes nothing."""
         command = command or str(uuid.uuid4())
+        ids = {name: uuid.uuid5(uuid.NAMESPACE_OID, f"{command} {name}") for name in self.robots.names()}
         return await self._book.issue(
-            [
-                Order(str(uuid.uuid5(uuid.NAMESPACE_OID, f"{command} {name}")), name, Abort(), operator)
-                for name in self.robots.names()
-            ]
+            [Order(str(id), name, Abort(), operator, reason) for name, id in ids.items()]
         )
 
     async def commands(self, robot: str | None, limit: int) -> list[CommandReport]:
@@ -267,7 +343,9 @@ class Fleet:
         await self._save()
         while self.recorder.waiting:
             await self._save()
-        await self._book.expire(self._clock() - self.site.settings.commands.expire_after_s)
+        await self.emergency.store()
+        await self._book.save_progress()
+        await self._book.expire(self.site.settings.commands.expire_after_s)
 
     async def finish_trajectories(self) -> None:
         """Store where robots are and have been, up to the last position of each: the gateway ends."""
@@ -291,14 +369,31 @@ class Fleet:
     # ---------------------------------------------------------------------------------------------------
 
     async def _receive_ready(self, robot: str, link: str, request: Ready, id: int | None) -> Outcome:
+        reason = await self._refusal(robot, request.magic)
+        if reason is not None:
+            log.warning("link %s: a second robot said Ready: %s", link, reason)
+            return Outcome(robot, OpAck(id=id, ok=False, reason=reason, magic=request.magic))
         started = self.robots.ready(robot, request.magic, link, self._clock())
         await self._database.run(stored_robots.save, [self.robots.get(robot)])
         if started:
             await self.delivered_by_deletion(link)
-            await self._book.deliver_again(robot, f"robot {robot} started anew; sent once more")
+            reason = f"robot {robot} started anew; sent once more"
+            await self._book.deliver_again(robot, reason, self.site.settings.commands.expire_after_s)
+        await self.emergency.ready(robot)
         content = await asyncio.to_thread(self.site.whole_map)
-        ack = OpAck(id=id, magic=request.magic, robot=robot)
+        ack = OpAck(id=id, magic=request.magic, robot=robot, database=self._database_id)
         return Outcome(robot, ack, SetMap(content), void=("Start", "OpAck"))
+
+    def _pose_of(self, robot: str, fix: SendGPS, now: float) -> SendPos:
+        last = self.robots.get(robot).pose
+        place, theta = self.site.place_on_earth(fix.lat, fix.lon, fix.heading)
+        return self._tracks.pose(robot, fix, place, theta, last, now)
+
+    async def _refusal(self, robot: str, magic: int) -> str | None:
+        if robot not in self.robots:
+            return None
+        known, limit = self.robots.get(robot), self.site.report.stale_after
+        return await refusal(known, magic, self._clock() - known.received_at, limit, self.holds)
 
     async def _receive_pose(self, robot: str, link: str, pose: SendPos, now: float) -> None:
         if not self.robots.observe(robot, pose, link, now):
@@ -306,12 +401,6 @@ class Fleet:
         self._unsaved.add(robot)
         self.recorder.observe(Fix(robot, now, pose))
         await self._book.observe(robot, pose)
-
-    def _stops(self, robot: str, request: Request) -> bool:
-        if isinstance(request, Stopped):
-            return True
-        # Alive and acknowledgements of a standing robot do not set it in motion.
-        return isinstance(request, (Alive, OpAck, GetMap)) and self.robots.get(robot).ended_in_order
 
     def _order(self, id: str, robot: str, op: str, params: dict[str, object], operator: str) -> Order:
         check_robot_name(robot)
@@ -321,26 +410,27 @@ class Fleet:
         if op not in COMMANDS:
             raise MessageError(f"op {op!r} cannot be sent to a robot; choose one of {', '.join(COMMANDS)}")
         message = decode_answer(op, params)
-        assert isinstance(message, (SetPosEnd, SetPath, Abort))
-        self._check_on_site(message)
+        assert isinstance(message, Command)
+        if isinstance(message, Abort) and message.emergency:
+            raise MessageError("Abort: emergency is for every robot; ask for emergency_stop")
+        check_places(self.site, places_of(message))
         return Order(id, robot, message, operator)
 
-    def _check_on_site(self, message: SetPosEnd | SetPath | Abort) -> None:
-        if isinstance(message, SetPosEnd):
-            points = [(message.x, message.y)]
-        else:
-            points = message.points if isinstance(message, SetPath) else []
-        for x, y in points:
-            if not self.site.contains(x, y):
-                x_min, y_min, x_max, y_max = self.site.report.bounds
-                raise RefusedError(
-                    f"({x:.2f}, {y:.2f}) lies outside site {self.site.report.name!r}, which reaches from "
-                    f"({x_min:.2f}, {y_min:.2f}) to ({x_max:.2f}, {y_max:.2f}); choose a place inside"
-                )
+    def _measure(self, robot: Robot, written_at: float | None) -> None:
+        """Take the time from a message's writing to its OpAck for the latency of a link that has no pings."""
+        if robot.link == "sql" and written_at is not None:
+            took = self._clock() - written_at
+            # A robot that was away in between says nothing about its link.
+            if 0 <= took < self.site.report.lost_after:
+                self.robots.measured(robot.name, took)
 
     def _command_changed(self, command: CommandReport) -> None:
         self.robots.assign(command.robot, self._book.busy_with(command.robot))
+        self.emergency.take(command)
         self.announce("command", command.command, to_json(command))
+
+    def _observation_changed(self, observation: ObservationReport) -> None:
+        self.announce("observation", str(observation.observation), to_json(observation))
 
     def _outbox_changed(self, robot: str) -> None:
         self.outbox_event(robot).set()
@@ -353,7 +443,7 @@ def _finish(
     request_ids: Sequence[int],
 ) -> None:
     for outcome in outcomes:
-        kinds = outcome.void if outcome.answer is None else (*outcome.void, type(outcome.answer).__name__)
+        kinds = outcome.voided()
         if kinds:
             answers.remove_kinds(connection, outcome.robot, kinds)
     answers.add_all(connection, rows)

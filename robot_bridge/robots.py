@@ -1,18 +1,26 @@
-"""The robots as known now: poses, clocks and liveness; no I/O."""
+"""The robots as known now: poses, clocks, liveness and link latency; no I/O.
+
+Three clocks are kept apart: the robot's (``t`` of a pose), that of the fix (``fix_t``), and the gateway's, by
+which alone a robot is fresh, stale or lost.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from .arrival import standing
 from .errors import NotReadyError
 from .liveness import liveness
 from .messages import RobotReport, RobotState, SendPos
+from .pose_order import PoseOrder
 
 
 @dataclass
 class Robot:
-    """One robot. ``received_at`` is the gateway's time of its last message, ``pose_at`` that of its pose."""
+    """One robot. ``received_at`` is the gateway's time of its last message, ``pose_at`` that of its pose.
+
+    ``latency`` is the seconds that its link took there and back when that was last measured.
+    """
 
     name: str
     magic: int
@@ -23,7 +31,9 @@ class Robot:
     pose_at: float | None = None
     state: RobotState = RobotState.FRESH
     command: str | None = None
+    latency: float | None = None
     revision: int = 0
+    order: PoseOrder = field(default_factory=PoseOrder)
 
 
 class Robots:
@@ -52,6 +62,8 @@ class Robots:
     def restore(self, robot: Robot, now: float) -> None:
         """Take in a robot that an earlier gateway knew."""
         self._robots[robot.name] = robot
+        if robot.pose is not None:
+            robot.order = PoseOrder(robot.pose.fix_t, robot.pose.t, robot.link)
         robot.state = self._judge(robot, now)
         self._touch(robot)
 
@@ -64,6 +76,7 @@ class Robots:
         if started and robot.pose is not None:
             # A robot that started anew may have a clock that did so too.
             robot.pose = replace(robot.pose, t=None)
+            robot.order.restarted()
         robot.magic, robot.link = magic, link
         self.heard(name, link, now)
         return started
@@ -77,12 +90,11 @@ class Robots:
         return robot
 
     def observe(self, name: str, pose: SendPos, link: str, now: float) -> bool:
-        """Take in a pose; return false for one that is older, by the robot's own clock, than the last."""
+        """Take in a pose; return false for a late one (see :mod:`.pose_order`), which moves nothing."""
         robot = self.get(name)
         standing_still = robot.ended_in_order and standing(pose)
         self.heard(name, link, now, stopped=standing_still)
-        last = robot.pose
-        if last is not None and last.t is not None and pose.t is not None and pose.t < last.t:
+        if not robot.order.admit(pose.fix_t, pose.t, link, now):
             return False
         robot.pose, robot.pose_at = pose, now
         return True
@@ -94,6 +106,12 @@ class Robots:
             robot.ended_in_order = True
             self._touch(robot)
 
+    def measured(self, name: str, latency: float) -> None:
+        """Note how many seconds the robot's link took there and back; told with the robot's next change."""
+        robot = self._robots.get(name)
+        if robot is not None:
+            robot.latency = latency
+
     def assign(self, name: str, command: str | None) -> None:
         """Set the command that the robot is busy with."""
         robot = self._robots.get(name)
@@ -104,6 +122,8 @@ class Robots:
     def age(self, now: float) -> None:
         """Bring the state of every robot up to ``now``; what changed gets a new revision."""
         for robot in self._robots.values():
+            # Were the gateway's clock set back, a silent robot would stay fresh until it has caught up.
+            robot.received_at = min(robot.received_at, now)
             state = self._judge(robot, now)
             if state is not robot.state:
                 robot.state = state
@@ -127,25 +147,35 @@ class Robots:
 
     def _report(self, robot: Robot, now: float) -> RobotReport:
         pose = robot.pose
-        known = RobotReport(
+        age, latency = max(0.0, now - robot.received_at), robot.latency
+        if pose is None or robot.pose_at is None:
+            return RobotReport(
+                robot=robot.name,
+                state=robot.state,
+                age=round(age, 3),
+                link=robot.link,
+                stopped=robot.ended_in_order,
+                command=robot.command,
+                latency=None if latency is None else round(latency, 4),
+            )
+        return RobotReport(
             robot=robot.name,
             state=robot.state,
-            age=round(max(0.0, now - robot.received_at), 3),
+            age=round(age, 3),
             link=robot.link,
             stopped=robot.ended_in_order,
+            x=pose.x,
+            y=pose.y,
+            theta=pose.theta,
+            accuracy=pose.accuracy,
+            altitude=pose.altitude,
+            theta_from=pose.theta_from,
+            v=pose.v,
+            device_time=pose.t,
+            fix_time=pose.fix_t,
+            pose_age=round(max(0.0, now - robot.pose_at), 3),
+            battery=pose.battery,
+            status=pose.status,
             command=robot.command,
-        )
-        if pose is None:
-            return known
-        return RobotReport(
-            **{
-                **known.__dict__,
-                "x": pose.x,
-                "y": pose.y,
-                "theta": pose.theta,
-                "v": pose.v,
-                "device_time": pose.t,
-                "battery": pose.battery,
-                "status": pose.status,
-            }
+            latency=None if latency is None else round(latency, 4),
         )

@@ -6,9 +6,9 @@ import json
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from sqlalchemy import Connection, delete, insert, select
+from sqlalchemy import Connection, and_, delete, insert, or_, select
 
-from ..messages import Answer, SetMap, to_json
+from ..messages import Abort, Answer, SetMap, to_json
 from .schema import sa
 
 
@@ -19,6 +19,7 @@ class AnswerRow(NamedTuple):
     op: str
     params: str | None
     payload: bytes | None
+    urgent: bool = False
 
 
 def add(connection: Connection, robot: str, answer: Answer) -> int:
@@ -34,20 +35,34 @@ def add_all(connection: Connection, rows: Sequence[tuple[str, Answer]]) -> None:
         connection.execute(insert(sa).inline(), [_row(robot, answer) for robot, answer in rows])
 
 
+def add_numbered(connection: Connection, rows: Sequence[tuple[str, Answer]]) -> list[int]:
+    """Write many answers, each with its robot; return their ids in the same order."""
+    if not rows:
+        return []
+    ids = insert(sa).returning(sa.c.id, sort_by_parameter_order=True)
+    return list(connection.scalars(ids, [_row(robot, answer) for robot, answer in rows]))
+
+
 def _row(robot: str, answer: Answer) -> dict[str, object]:
     return {
         "robot": robot,
         "op": type(answer).__name__,
         "params": json.dumps(to_json(answer)),
         "payload": answer.map if isinstance(answer, SetMap) else None,
+        "urgent": int(isinstance(answer, Abort) and answer.emergency),
     }
 
 
-def read(connection: Connection, robot: str, after: int = 0) -> list[AnswerRow]:
-    """Return the robot's answers with an id above ``after``, oldest first."""
-    query = select(sa.c.id, sa.c.op, sa.c.params, sa.c.payload)
-    query = query.where(sa.c.robot == robot, sa.c.id > after).order_by(sa.c.id)
-    return [AnswerRow(*row) for row in connection.execute(query)]
+def read(connection: Connection, robot: str, after: int = 0, after_urgent: int = 0) -> list[AnswerRow]:
+    """Return the robot's answers, the urgent ones first, then the oldest first.
+
+    Of the urgent ones those with an id above ``after_urgent``, of the others those above ``after``: an urgent
+    one overtakes others that are older.
+    """
+    query = select(sa.c.id, sa.c.op, sa.c.params, sa.c.payload, sa.c.urgent)
+    later = or_(and_(sa.c.urgent == 0, sa.c.id > after), and_(sa.c.urgent > 0, sa.c.id > after_urgent))
+    query = query.where(sa.c.robot == robot, later).order_by(sa.c.urgent.desc(), sa.c.id)
+    return [AnswerRow(*row[:4], urgent=bool(row[4])) for row in connection.execute(query)]
 
 
 def remove(connection: Connection, ids: Sequence[int]) -> None:
@@ -64,6 +79,11 @@ def remove_own(connection: Connection, robot: str, id: int) -> None:
 def remove_kinds(connection: Connection, robot: str, ops: Sequence[str]) -> None:
     """Delete the robot's answers of the kinds ``ops``."""
     connection.execute(delete(sa).where(sa.c.robot == robot, sa.c.op.in_(ops)))
+
+
+def remove_everywhere(connection: Connection, ops: Sequence[str]) -> None:
+    """Delete the answers of the kinds ``ops``, whoever they are for."""
+    connection.execute(delete(sa).where(sa.c.op.in_(ops)))
 
 
 def waiting(connection: Connection, ids: Sequence[int]) -> set[int]:

@@ -3,46 +3,83 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
 
-from sqlalchemy import Connection, Select, insert, select, update
+from sqlalchemy import Connection, Select, bindparam, insert, select, update
 
 from ..command_life import is_open
 from ..messages import CommandReport, CommandState, CommandStep
 from .schema import command_steps, commands
 
 
-def add(connection: Connection, command: CommandReport, sa_id: int) -> None:
-    """Write a new command whose message is row ``sa_id`` of SA."""
-    connection.execute(
-        insert(commands).values(
-            id=command.command,
-            robot=command.robot,
-            op=command.op,
-            params=json.dumps(command.params),
-            operator=command.operator,
-            state=command.state.value,
-            sa_id=sa_id,
-            created_at=command.steps[0].at,
+class StoredCommand(NamedTuple):
+    """A command with what only the gateway needs of it.
+
+    ``sa_id`` is the row of SA that holds its message, ``driven`` the metres of its path that were driven,
+    ``expires_at`` when it is given up if nobody has fetched it (None: by the site's settings).
+    """
+
+    report: CommandReport
+    sa_id: int
+    driven: float | None = None
+    expires_at: float | None = None
+
+
+def add_all(connection: Connection, new: Sequence[StoredCommand]) -> None:
+    """Write new commands with their steps."""
+    if not new:
+        return
+    connection.execute(insert(commands), [_row(command) for command in new])
+    _add_steps(connection, [(c.report.command, step) for c in new for step in c.report.steps])
+
+
+def save_all(connection: Connection, changed: Sequence[StoredCommand]) -> None:
+    """Write the newest step of each of some commands that are stored already."""
+    if not changed:
+        return
+    statement = (
+        update(commands)
+        .where(commands.c.id == bindparam("key"))
+        .values(
+            state=bindparam("new_state"),
+            deviation=bindparam("new_deviation"),
+            driven=bindparam("new_driven"),
+            sa_id=bindparam("new_sa_id"),
         )
     )
-    _add_steps(connection, command, command.steps)
+    rows = [
+        {
+            "key": c.report.command,
+            "new_state": c.report.state.value,
+            "new_deviation": c.report.deviation,
+            "new_driven": c.driven,
+            "new_sa_id": c.sa_id,
+        }
+        for c in changed
+    ]
+    connection.execute(statement, rows)
+    _add_steps(connection, [(c.report.command, c.report.steps[-1]) for c in changed])
 
 
-def save(connection: Connection, command: CommandReport, sa_id: int) -> None:
-    """Write the newest step of a command that is stored already."""
-    connection.execute(
-        update(commands)
-        .where(commands.c.id == command.command)
-        .values(state=command.state.value, deviation=command.deviation, sa_id=sa_id)
-    )
-    _add_steps(connection, command, command.steps[-1:])
+def save_driven(connection: Connection, driven: Mapping[str, float]) -> None:
+    """Write how many metres of its path each of some commands has been driven."""
+    if driven:
+        statement = update(commands).where(commands.c.id == bindparam("key"))
+        rows = [{"key": id, "metres": metres} for id, metres in driven.items()]
+        connection.execute(statement.values(driven=bindparam("metres")), rows)
+
+
+def find_all(connection: Connection, ids: Sequence[str]) -> dict[str, StoredCommand]:
+    """Return those of some commands that are stored, by their ids."""
+    found = _load(connection, select(commands).where(commands.c.id.in_(ids))) if ids else []
+    return {command.report.command: command for command in found}
 
 
 def find(connection: Connection, command: str) -> CommandReport | None:
     """Return a command by its id."""
-    found = _load(connection, select(commands).where(commands.c.id == command))
-    return found[0][0] if found else None
+    found = find_all(connection, [command]).get(command)
+    return None if found is None else found.report
 
 
 def newest(connection: Connection, robot: str | None, limit: int) -> list[CommandReport]:
@@ -50,26 +87,48 @@ def newest(connection: Connection, robot: str | None, limit: int) -> list[Comman
     query = select(commands).order_by(commands.c.created_at.desc(), commands.c.sa_id.desc()).limit(limit)
     if robot is not None:
         query = query.where(commands.c.robot == robot)
-    return [command for command, _ in _load(connection, query)]
+    return [command.report for command in _load(connection, query)]
 
 
-def still_open(connection: Connection) -> list[tuple[CommandReport, int]]:
-    """Return the commands that have a step to come, oldest first, each with the id of its row in SA."""
+def still_open(connection: Connection) -> list[StoredCommand]:
+    """Return the commands that have a step to come, oldest first."""
     states = [state.value for state in CommandState if is_open(state)]
     query = select(commands).where(commands.c.state.in_(states)).order_by(commands.c.sa_id)
     return _load(connection, query)
 
 
-def _load(connection: Connection, query: Select[tuple[object, ...]]) -> list[tuple[CommandReport, int]]:
+def of_kind_since(connection: Connection, op: str, since: float) -> list[CommandReport]:
+    """Return the commands of one kind that were issued at ``since`` or later, oldest first."""
+    query = select(commands).where(commands.c.op == op, commands.c.created_at >= since)
+    return [command.report for command in _load(connection, query.order_by(commands.c.sa_id))]
+
+
+def _row(command: StoredCommand) -> dict[str, object]:
+    report = command.report
+    return {
+        "id": report.command,
+        "robot": report.robot,
+        "op": report.op,
+        "params": json.dumps(report.params),
+        "operator": report.operator,
+        "state": report.state.value,
+        "driven": command.driven,
+        "sa_id": command.sa_id,
+        "created_at": report.steps[0].at,
+        "expires_at": command.expires_at,
+    }
+
+
+def _load(connection: Connection, query: Select[tuple[object, ...]]) -> list[StoredCommand]:
     rows = connection.execute(query).mappings().all()
     steps: dict[str, list[CommandStep]] = {row["id"]: [] for row in rows}
     wanted = select(command_steps).where(command_steps.c.command.in_(steps)).order_by(command_steps.c.id)
-    for step in connection.execute(wanted).mappings():
+    for step in connection.execute(wanted).mappings() if rows else ():
         steps[step["command"]].append(
             CommandStep(CommandState(step["state"]), step["at"], step["by"], step["reason"])
         )
     return [
-        (
+        StoredCommand(
             CommandReport(
                 command=row["id"],
                 robot=row["robot"],
@@ -80,23 +139,25 @@ def _load(connection: Connection, query: Select[tuple[object, ...]]) -> list[tup
                 steps=steps[row["id"]],
                 deviation=row["deviation"],
             ),
-            row["sa_id"],
+            sa_id=row["sa_id"],
+            driven=row["driven"],
+            expires_at=row["expires_at"],
         )
         for row in rows
     ]
 
 
-def _add_steps(connection: Connection, command: CommandReport, steps: Iterable[CommandStep]) -> None:
+def _add_steps(connection: Connection, steps: Sequence[tuple[str, CommandStep]]) -> None:
     connection.execute(
         insert(command_steps),
         [
             {
-                "command": command.command,
+                "command": command,
                 "state": step.state.value,
                 "at": step.at,
                 "by": step.by,
                 "reason": step.reason,
             }
-            for step in steps
+            for command, step in steps
         ],
     )

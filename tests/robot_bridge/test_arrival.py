@@ -122,14 +122,50 @@ def test_a_robot_whose_poses_were_missed_is_found_again_further_along():
     assert walk(arrival, [(70.0, 0.0), (100.0, 0.0)])[1] is not None
 
 
-@pytest.mark.parametrize("noise", [(0.05, 0.0), (0.0, 0.05), (-0.05, 0.0), (0.0, -0.05), (0.0, 0.0)])
+NOISE = pytest.mark.parametrize("noise", [(0.05, 0.0), (0.0, 0.05), (-0.05, 0.0), (0.0, -0.05), (0.0, 0.0)])
+
+
+@NOISE
 def test_a_robot_that_came_to_the_end_of_a_loop_unseen_has_reached_it(noise):
-    arrival = PathArrival(SetPath(LOOP), TOLERANCE, under_way=True)
-    assert arrival.deviation(pose(*noise)) is not None
+    for driven in (12.0, 25.0, 39.0, None):
+        arrival = PathArrival(SetPath(LOOP), TOLERANCE, driven=driven, under_way=True)
+        assert arrival.deviation(pose(*noise)) is not None, driven
+
+
+@NOISE
+@pytest.mark.parametrize("driven", [0.0, 0.05])
+def test_a_robot_blocked_at_the_start_of_a_loop_has_not_reached_it_when_the_gateway_starts(noise, driven):
+    arrival = PathArrival(SetPath(LOOP), TOLERANCE, driven=driven, under_way=True)
+    for _ in range(3):
+        assert arrival.deviation(pose(*noise)) is None
+    assert walk(arrival, LOOP)[1] is not None
 
 
 def test_a_robot_that_sets_off_on_a_loop_as_the_gateway_starts_has_not_reached_its_end():
-    arrival = PathArrival(SetPath(LOOP), TOLERANCE, under_way=True)
-    told, at_the_end = walk(arrival, LOOP)
-    assert told is None
-    assert at_the_end is not None
+    for driven in (0.0, None):
+        arrival = PathArrival(SetPath(LOOP), TOLERANCE, driven=driven, under_way=True)
+        told, at_the_end = walk(arrival, LOOP)
+        assert told is None
+        assert at_the_end is not None
+
+
+def test_a_robot_is_never_taken_back_along_its_path_by_a_restart():
+    there_and_back = [(0.0, 0.0), (20.0, 0.0), (0.0, 0.0)]
+    arrival = PathArrival(SetPath(there_and_back), TOLERANCE, driven=26.0, under_way=True)
+    assert arrival.deviation(pose(12.0, 0.0, v=1.0)) is None
+    assert arrival.driven == pytest.approx(28.0)
+    assert walk(arrival, [(12.0, 0.0), (0.0, 0.0)])[1] is not None
+
+
+def test_a_robot_that_creeps_to_the_end_of_its_path_has_reached_it():
+    arrival = PathArrival(SetPath([(0.0, 0.0), (1.0, 0.0)]), TOLERANCE)
+    told, at_the_end = walk(arrival, [(0.0, 0.0), (1.0, 0.0)], v=0.1, step=0.01)
+    assert (told, at_the_end) == (None, 0.0)
+
+
+def test_a_robot_that_stands_on_its_path_costs_no_search_of_it(monkeypatch):
+    arrival = PathArrival(SetPath(LOOP), TOLERANCE)
+    arrival.deviation(pose(5.0, 0.0))
+    monkeypatch.setattr(arrival._line, "feet", None)
+    for k in range(100):
+        assert arrival.deviation(pose(5.0 + 0.001 * k, 0.01)) is None

@@ -1,0 +1,111 @@
+"""How commands and their messages in SA are written, in one transaction; called in the database's thread.
+
+Nothing here changes anything but the database, so that a transaction can be done again.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable, Mapping, Sequence
+from typing import NamedTuple
+
+from sqlalchemy import Connection
+
+from .command_life import is_open
+from .errors import RefusedError
+from .messages import Command
+from .open_command import OpenCommand, Order
+from .store import answers, commands
+from .store.commands import StoredCommand
+from .wire import decode_answer
+
+
+class Draft(NamedTuple):
+    """An order with the command it makes, the ends of older ones, and why it is refused, if it is.
+
+    An order whose command is stored already is neither done again nor refused.
+    """
+
+    order: Order
+    command: OpenCommand
+    ended: list[OpenCommand]
+    refusal: RefusedError | None = None
+
+
+class Written(NamedTuple):
+    """What was written: commands as they now stand, in the order asked for, and older ones that ended."""
+
+    issued: list[OpenCommand]
+    ended: list[OpenCommand]
+
+
+Also = Callable[[Connection], None]
+"""More to be written in the same transaction."""
+
+
+def write_drafts(connection: Connection, drafts: Sequence[Draft], also: Also | None = None) -> Written:
+    """Write new commands with their messages; raises RefusedError for the first that is refused."""
+    known = commands.find_all(connection, [draft.order.command for draft in drafts])
+    new = [draft for draft in drafts if draft.order.command not in known]
+    for draft in new:
+        if draft.refusal is not None:
+            raise draft.refusal
+    ended = [command for draft in new for command in draft.ended]
+    write_all(connection, ended)
+    ids = answers.add_numbered(connection, [(d.order.robot, d.order.message) for d in new])
+    written = {
+        draft.order.command: dataclasses.replace(draft.command, sa_id=id)
+        for draft, id in zip(new, ids, strict=True)
+    }
+    commands.add_all(connection, [_stored(command) for command in written.values()])
+    if also is not None:
+        also(connection)
+    issued = [written.get(d.order.command) or opened(known[d.order.command], d.order.message) for d in drafts]
+    return Written(issued, ended)
+
+
+def write_all(connection: Connection, steps: Sequence[OpenCommand]) -> None:
+    """Write the newest step of commands; what ended takes its message out of SA."""
+    commands.save_all(connection, [_stored(command) for command in steps])
+    answers.remove(connection, [c.sa_id for c in steps if not is_open(c.report.state)])
+
+
+def write_acknowledged(
+    connection: Connection, robot: str, sa_id: int | None, steps: Sequence[OpenCommand]
+) -> None:
+    """Write what a robot's OpAck of message ``sa_id`` changes, and take that out of SA."""
+    if sa_id is not None:
+        answers.remove_own(connection, robot, sa_id)
+    write_all(connection, steps)
+
+
+def write_again(
+    connection: Connection, again: Sequence[OpenCommand], ended: Sequence[OpenCommand]
+) -> list[OpenCommand]:
+    """Write the messages of commands anew, in the order in which they stood; return all as they now stand."""
+    write_all(connection, ended)
+    again = sorted(again, key=lambda command: command.sa_id)
+    answers.remove(connection, [command.sa_id for command in again])
+    ids = answers.add_numbered(connection, [(c.report.robot, c.message) for c in again])
+    renewed = [dataclasses.replace(command, sa_id=id) for command, id in zip(again, ids, strict=True)]
+    commands.save_all(connection, [_stored(command) for command in renewed])
+    return [*ended, *renewed]
+
+
+def write_driven(connection: Connection, driven: Mapping[str, float]) -> None:
+    """Write how many metres of their paths robots have driven, by command."""
+    commands.save_driven(connection, driven)
+
+
+def opened(stored: StoredCommand, message: Command | None = None) -> OpenCommand:
+    """Return a stored command as one with a step to come, not judged yet."""
+    report = stored.report
+    if message is None:
+        decoded = decode_answer(report.op, report.params)
+        assert isinstance(decoded, Command)
+        message = decoded
+    return OpenCommand(report, stored.sa_id, message, expires_at=stored.expires_at)
+
+
+def _stored(command: OpenCommand) -> StoredCommand:
+    return StoredCommand(command.report, command.sa_id, command.driven, command.expires_at)
