@@ -10,6 +10,7 @@ from collections.abc import Awaitable, Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from .access import supervision
 from .errors import ForbiddenError
 from .fleet import Fleet
 from .messages import (
@@ -19,10 +20,13 @@ from .messages import (
     CommandReport,
     DeskRequest,
     EmergencyStop,
+    EndSession,
+    GetAudit,
     GetCommands,
     GetImage,
     GetObservations,
     GetPositions,
+    GetSessions,
     ReviewObservation,
     Role,
     Send,
@@ -115,6 +119,18 @@ async def _review_observation(fleet: Fleet, request: ReviewObservation, caller: 
     return to_json(await fleet.observations.review(request, caller.operator))
 
 
+async def _get_sessions(fleet: Fleet, request: GetSessions, _caller: Caller) -> Json:
+    return await supervision.get_sessions(fleet.database, request)
+
+
+async def _end_session(fleet: Fleet, request: EndSession, caller: Caller) -> Json:
+    return await supervision.end_session(fleet.database, request, caller.operator)
+
+
+async def _get_audit(fleet: Fleet, request: GetAudit, _caller: Caller) -> Json:
+    return await supervision.get_audit(fleet.database, request)
+
+
 SERVICES: dict[type[DeskRequest], Service] = {
     GetPositions: Service(Role.VIEWER, _get_positions),
     GetCommands: Service(Role.VIEWER, _get_commands),
@@ -127,4 +143,7 @@ SERVICES: dict[type[DeskRequest], Service] = {
     AbortTask: Service(Role.OPERATOR, _abort),
     EmergencyStop: Service(Role.OPERATOR, _emergency_stop),
     ClearEmergencyStop: Service(Role.SUPERVISOR, _clear_emergency_stop),
+    GetSessions: Service(Role.SUPERVISOR, _get_sessions),
+    EndSession: Service(Role.SUPERVISOR, _end_session),
+    GetAudit: Service(Role.SUPERVISOR, _get_audit),
 }

@@ -88,6 +88,7 @@ from .stopping import (
     EmergencyReport,
     EmergencyStop,
 )
+from .supervision import AuditReport, EndSession, GetAudit, GetSessions, SessionReport
 
 __all__ = [
     "ANSWERS",
@@ -103,6 +104,7 @@ __all__ = [
     "AbortTask",
     "Alive",
     "Answer",
+    "AuditReport",
     "ClearEmergencyStop",
     "Command",
     "CommandReport",
@@ -111,6 +113,8 @@ __all__ = [
     "DeskRequest",
     "EmergencyReport",
     "EmergencyStop",
+    "EndSession",
+    "GetAudit",
     "GetCommands",
     "GetImage",
     "GetMap",
@@ -119,6 +123,7 @@ __all__ = [
     "GetPosEnd",
     "GetPosIni",
     "GetPositions",
+    "GetSessions",
     "Hello",
     "MessageError",
     "ObservationReport",
@@ -137,6 +142,7 @@ __all__ = [
     "SendGPS",
     "SendImage",
     "SendPos",
+    "SessionReport",
     "SetMap",
     "SetObject",
     "SetPath",

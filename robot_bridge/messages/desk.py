@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 from .checks import MessageError, check_command_id, check_finite
 from .observations import GetImage, GetObservations, ReviewObservation
 from .stopping import AbortTask, ClearEmergencyStop, EmergencyStop, check_reason
+from .supervision import EndSession, GetAudit, GetSessions
 
 PROTOCOL_VERSION = 1
 LONGEST_EXPIRY = 366 * 86400.0
@@ -243,6 +244,9 @@ DeskRequest = (
     | GetObservations
     | GetImage
     | ReviewObservation
+    | GetSessions
+    | EndSession
+    | GetAudit
 )
 
 DESK_REQUESTS: dict[str, type[DeskRequest]] = {
@@ -261,5 +265,8 @@ DESK_REQUESTS: dict[str, type[DeskRequest]] = {
         GetObservations,
         GetImage,
         ReviewObservation,
+        GetSessions,
+        EndSession,
+        GetAudit,
     )
 }

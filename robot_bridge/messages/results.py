@@ -4,16 +4,19 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from .desk import CommandReport, RobotReport, SiteReport
+from .desk import CommandReport, RobotReport, Role, SiteReport
 from .observations import ObservationReport
+from .supervision import AuditReport, SessionReport
 
 
 @dataclass(frozen=True)
 class HelloResult:
-    """The answer to ``hello``: which protocol is spoken here, and the site."""
+    """The answer to ``hello``: which protocol is spoken here, the site, and who you are to the gateway."""
 
     protocol: int
     site: SiteReport
+    operator: str
+    role: Role
 
 
 @dataclass(frozen=True)
@@ -49,3 +52,17 @@ class Image:
 
     media_type: str
     image: bytes
+
+
+@dataclass(frozen=True)
+class Sessions:
+    """Operators' connections, newest first."""
+
+    sessions: list[SessionReport]
+
+
+@dataclass(frozen=True)
+class Audit:
+    """Who did what, newest first."""
+
+    entries: list[AuditReport]

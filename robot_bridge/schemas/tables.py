@@ -13,7 +13,8 @@ from ..messages.desk import (
     Subscribe,
 )
 from ..messages.observations import GetImage, GetObservations, ReviewObservation
-from ..messages.results import Commands, Done, HelloResult, Image, Observations, Positions
+from ..messages.results import Audit, Commands, Done, HelloResult, Image, Observations, Positions, Sessions
+from ..messages.supervision import EndSession, GetAudit, GetSessions, SessionReport
 
 RESULTS: dict[type[DeskRequest], type] = {
     Hello: HelloResult,
@@ -26,6 +27,9 @@ RESULTS: dict[type[DeskRequest], type] = {
     GetObservations: Observations,
     GetImage: Image,
     ReviewObservation: ObservationReport,
+    GetSessions: Sessions,
+    EndSession: SessionReport,
+    GetAudit: Audit,
 }
 """What each request of an operator is answered with."""
 
