@@ -76,12 +76,14 @@ Parameters = Mapping[str, Any]
 class PublishPlan:
     """Everything that is needed of the parameters and layers; usable from any thread.
 
-    The bounds of ``settings`` stand in where ``bounds_given`` is false, until the layers are read.
+    The bounds of ``settings`` stand in where ``bounds_given`` is false, until the layers are read. Their
+    version is as the folder was when the plan was made; ``replace_other`` lets another site be replaced.
     """
 
     folder: Path
     settings: SiteSettings
     bounds_given: bool
+    replace_other: bool
     sources: SiteSources
     site: SitePlacing
     default_height: float
@@ -115,6 +117,7 @@ def publish_plan(
         folder=folder,
         settings=next_version(settings, folder, replace_other=replace_other),
         bounds_given=given,
+        replace_other=replace_other,
         sources=sources,
         site=site,
         default_height=default_height(algorithm, parameters, context),

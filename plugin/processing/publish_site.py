@@ -22,7 +22,8 @@ from ...robot_bridge.sites.settings import Bounds, LivenessLimits, SiteSettings
 from ..errors import FleetError
 from ..sites.content_reading import read_content
 from ..sites.ground_reading import DEFAULT_WIDTH_M
-from ..sites.publication import publish
+from ..sites.publication import next_version, publish
+from ..sites.publication_lock import only_publication
 from ..sites.site_content import SiteContent
 from .errors import ParameterError, shown_by_processing
 from .export_plan import DEFAULT_HEIGHT
@@ -113,11 +114,12 @@ class PublishSite(FleetAlgorithm):
 
     def processAlgorithm(self, parameters, context, feedback):
         plan = self._plan
-        with shown_by_processing():
+        with shown_by_processing(), only_publication(plan.folder):
+            # Anew: another publication may have ended since the plan was made.
+            settings = next_version(plan.settings, plan.folder, replace_other=plan.replace_other)
             content = _content(plan, feedback)
             if content is None:
                 return {}
-            settings = plan.settings
             if not plan.bounds_given:
                 settings = replace(settings, bounds=_all_of(content))
             for warning in content.warnings:

@@ -20,11 +20,13 @@ from ...robot_bridge.sites.settings import (
     settings_text,
 )
 from .errors import PublicationError
+from .publication_lock import unwritable
 from .site_content import SiteContent
 from .site_file import stamp_in, write_site_file
 
 _ID = re.compile(r"""^[ \t]*id[ \t]*=[ \t]*(?:"([^"\n]*)"|'([^'\n]*)')""", re.MULTILINE)
 _VERSION = re.compile(r"^[ \t]*version[ \t]*=[ \t]*(\d+)", re.MULTILINE)
+_PARTIAL = ".publishing-"
 _STAMP = re.compile(r"(.+) version (\d+)")
 
 
@@ -87,15 +89,18 @@ def publish(folder: Path, content: SiteContent, settings: SiteSettings, feedback
 
     Other files in ``folder`` stay, and in ``site.toml`` the tables that the operator set. An earlier
     publication is replaced only after the new one is complete. A gateway that reads between the replacement
-    of the two files refuses what it finds and reads no half site.
+    of the two files refuses what it finds and reads no half site. To be called where no other publication
+    is under way, see ``publication_lock``.
 
     :raises PublicationError: when a setting is wrong or the folder cannot be written.
     """
     check_publication_values(settings, folder)
     try:
         folder.mkdir(parents=True, exist_ok=True)
+        for left_by_a_crash in folder.glob(f"{_PARTIAL}*"):
+            shutil.rmtree(left_by_a_crash, ignore_errors=True)
         # A folder inside the target, so that both renames stay on one file system.
-        partial = Path(tempfile.mkdtemp(prefix=".publishing-", dir=folder))
+        partial = Path(tempfile.mkdtemp(prefix=_PARTIAL, dir=folder))
         try:
             if not write_site_file(partial / GEOPACKAGE_FILE, content, settings, feedback):
                 return False
@@ -107,10 +112,7 @@ def publish(folder: Path, content: SiteContent, settings: SiteSettings, feedback
         finally:
             shutil.rmtree(partial, ignore_errors=True)
     except OSError as error:
-        raise PublicationError(
-            f"The site cannot be published in {folder}: {error.strerror or error}. Check the folder's rights "
-            "and the free space."
-        ) from error
+        raise unwritable(folder, error.strerror or str(error)) from error
     return True
 
 

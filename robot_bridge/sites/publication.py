@@ -86,7 +86,7 @@ def write_site(
 def _write(folder: Path, settings: SiteSettings, layers: Sequence[Layer]) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     # A folder inside the target, so that both renames stay on one file system.
-    partial = Path(tempfile.mkdtemp(prefix=".publishing-", dir=folder))
+    partial = Path(tempfile.mkdtemp(prefix=".writing-", dir=folder))
     try:
         write_layers(partial / GEOPACKAGE_FILE, layers, settings.crs, settings.stamp)
         text = settings_text(settings, earlier_settings(folder, settings.id))

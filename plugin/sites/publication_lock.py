@@ -1,0 +1,58 @@
+"""One publication at a time into a folder, whichever processes publish."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+from qgis.PyQt.QtCore import QLockFile
+
+from .errors import PublicationError
+
+LOCK_FILE = ".publishing.lock"
+
+
+@contextmanager
+def only_publication(folder: Path) -> Iterator[None]:
+    """Keep other publications out of ``folder``, which is made where it is missing, until the block ends.
+
+    A lock that a process left behind when it was killed holds nobody up.
+
+    :raises PublicationError: when another publication is under way, or the folder cannot be written.
+    """
+    is_new = not folder.exists()
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise unwritable(folder, error.strerror or str(error)) from error
+    lock = QLockFile(str(folder / LOCK_FILE))
+    # However long a publication takes: the lock is void only when its process has ended.
+    lock.setStaleLockTime(0)
+    if not lock.tryLock(0):
+        raise _why_not(lock, folder)
+    try:
+        yield
+    finally:
+        lock.unlock()
+        if is_new:
+            with suppress(OSError):
+                folder.rmdir()
+
+
+def unwritable(folder: Path, reason: str) -> PublicationError:
+    """Return the error of a ``folder`` that cannot be written for ``reason``."""
+    return PublicationError(
+        f"The site cannot be published in {folder}: {reason}. Check the folder's rights and the free space."
+    )
+
+
+def _why_not(lock: QLockFile, folder: Path) -> PublicationError:
+    if lock.error() != QLockFile.LockError.LockFailedError:
+        return unwritable(folder, f"no file {LOCK_FILE} can be made in it")
+    known, process, host, _ = lock.getLockInfo()
+    who = f"process {process} on {host}" if known else "another process"
+    return PublicationError(
+        f"Another publication into {folder} is under way, by {who}: wait until it has ended, or choose "
+        f"another folder. If it ended on another computer without a word, remove {folder / LOCK_FILE}."
+    )
