@@ -1,0 +1,26 @@
+"""Databases of all three kinds with the bridge's tables in them."""
+
+import pytest
+
+from robot_bridge.store import revisions
+from robot_bridge.store.address import read_address
+from robot_bridge.store.database import run_once
+
+KINDS = ("sqlite", "postgresql", "mariadb")
+
+
+def empty_url(request, kind, folder) -> str:
+    return f"sqlite:///{folder}/fleet.db" if kind == "sqlite" else request.getfixturevalue(f"{kind}_url")
+
+
+@pytest.fixture(params=KINDS)
+def kind(request) -> str:
+    return request.param
+
+
+@pytest.fixture
+def url(request, kind, tmp_path) -> str:
+    """A database of each kind with empty tables."""
+    found = empty_url(request, kind, tmp_path)
+    run_once(read_address(found), revisions.create)
+    return found

@@ -1,0 +1,135 @@
+"""One gateway at a time on a database, on each kind of database."""
+
+import asyncio
+import json
+import signal
+import subprocess
+import sys
+
+import pytest
+from sqlalchemy import insert, select
+
+from robot_bridge.errors import BridgeError, HopelessError
+from robot_bridge.store import sole_gateway
+from robot_bridge.store.address import read_address
+from robot_bridge.store.database import Database, run_once
+from robot_bridge.store.schema import bridge
+from robot_bridge.store.sole_gateway import SoleGateway
+
+HOLDER = """
+import asyncio, sys
+from robot_bridge.store.address import read_address
+from robot_bridge.store.sole_gateway import SoleGateway
+async def main():
+    await SoleGateway(read_address(sys.argv[1])).take()
+    print("taken", flush=True)
+    await asyncio.sleep(60)
+asyncio.run(main())
+"""
+
+
+@pytest.fixture
+def address(url):
+    return read_address(url)
+
+
+@pytest.fixture
+def held_elsewhere(url):
+    """Another process that holds the database."""
+    process = subprocess.Popen([sys.executable, "-c", HOLDER, url], stdout=subprocess.PIPE, text=True)
+    assert process.stdout.readline() == "taken\n"
+    yield process
+    process.kill()
+    process.wait(5)
+
+
+async def test_a_second_gateway_is_refused_and_told_which_one_runs(address, held_elsewhere):
+    with pytest.raises(BridgeError) as caught:
+        await SoleGateway(address).take()
+    assert f"another gateway runs on it: process {held_elsewhere.pid} on " in str(caught.value)
+    assert "end that one first, or give this one a database of its own" in str(caught.value)
+
+
+async def test_the_next_one_takes_over_when_the_first_is_killed(address, held_elsewhere):
+    held_elsewhere.send_signal(signal.SIGKILL)
+    gateway = SoleGateway(address)
+    await gateway.take()
+    await gateway.release()
+
+
+async def test_the_next_one_takes_over_when_the_first_ends(address):
+    first, second = SoleGateway(address), SoleGateway(address)
+    await first.take()
+    await first.release()
+    await second.take()
+    await second.release()
+
+
+async def test_the_lock_is_in_nobodys_way(address, kind):
+    """Others write the table that is locked, and the rows beside the one that is."""
+    gateway = SoleGateway(address)
+    await gateway.take()
+    database = Database(address)
+    try:
+        await database.run(lambda c: c.execute(insert(bridge).values(name="fact", value="1")))
+        names = await database.run(lambda c: set(c.scalars(select(bridge.c.name))))
+        assert names >= {"fact"} if kind == "sqlite" else names >= {"fact", "gateway", "gateway_lock"}
+    finally:
+        await database.close()
+        await gateway.release()
+
+
+@pytest.fixture
+def server(kind, request):
+    if kind == "sqlite":
+        pytest.skip("SQLite has no server")
+    return request.getfixturevalue(f"{kind}_server")
+
+
+@pytest.fixture
+def often(monkeypatch):
+    monkeypatch.setattr(sole_gateway, "PING_INTERVAL", 0.1)
+
+
+async def holding(gateway):
+    await gateway.take()
+    return asyncio.create_task(gateway.hold())
+
+
+async def test_the_lock_is_taken_again_when_the_server_comes_back(address, server, often, caplog):
+    gateway = SoleGateway(address)
+    hold = await holding(gateway)
+    server.kill()
+    await asyncio.sleep(0.5)
+    server.start()
+    for _ in range(100):
+        await asyncio.sleep(0.1)
+        try:
+            await asyncio.to_thread(gateway._lock.ping)
+            break
+        except (BridgeError, AssertionError):
+            continue
+    with pytest.raises(BridgeError, match="another gateway runs on it"):
+        await SoleGateway(address).take()
+    assert not hold.done()
+    assert "its lock is taken anew as soon as it is back" in caplog.text
+    hold.cancel()
+    await gateway.release()
+
+
+async def test_a_gateway_that_another_replaced_while_it_was_cut_off_ends(address, server, often):
+    gateway = SoleGateway(address)
+    hold = await holding(gateway)
+    gateway._lock._connection.connection.driver_connection.close()
+    other = {"run": "other", "host": "elsewhere", "process": 7, "since": 0}
+    run_once_async = asyncio.to_thread(
+        run_once,
+        address,
+        lambda c: c.execute(
+            bridge.update().where(bridge.c.name == "gateway").values(value=json.dumps(other))
+        ),
+    )
+    await run_once_async
+    with pytest.raises(HopelessError, match="another gateway: process 7 on elsewhere, since 1970-01-01"):
+        await asyncio.wait_for(hold, 10)
+    await gateway.release()

@@ -1,0 +1,127 @@
+"""Which positions are stored: where a robot moved, turned or came to stand, and a sign of life."""
+
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from robot_bridge.messages import SendPos
+from robot_bridge.sites.settings import TrajectorySettings
+from robot_bridge.store.trajectories import Fix
+from robot_bridge.trajectories import recorder as recording
+from robot_bridge.trajectories.recorder import Recorder
+from robot_bridge.trajectories.thinning import Thinning
+
+SETTINGS = TrajectorySettings(
+    min_distance_m=0.5, min_turn_deg=10.0, min_interval_s=0.2, max_interval_s=5.0, largest_backlog=1000
+)
+
+
+def fix(at, x=0.0, theta=0.0, v=1.0, robot="r1"):
+    return Fix(robot, at, SendPos(x, 0.0, theta, v))
+
+
+def kept(*fixes):
+    thinning = Thinning()
+    return [one.received_at for one in fixes if thinning.keeps(one, SETTINGS)]
+
+
+def test_the_first_position_is_stored():
+    assert kept(fix(100.0)) == [100.0]
+
+
+def test_a_robot_that_moves_is_stored_by_the_distance_it_came():
+    assert kept(*(fix(n, x=0.2 * n) for n in range(8))) == [0, 3, 6]
+
+
+def test_a_robot_that_turns_on_the_spot_is_stored_by_the_turn():
+    turns = [math.radians(angle) for angle in (178, 182, 187, 189)]
+    assert kept(*(fix(n, theta=math.remainder(t, math.tau), v=0.3) for n, t in enumerate(turns))) == [0, 3]
+
+
+def test_a_robot_that_stands_is_stored_as_a_sign_of_life_only():
+    assert kept(*(fix(n, x=0.01 * (n % 2), v=0.0) for n in range(12))) == [0, 5, 10]
+
+
+def test_a_fast_robot_is_stored_no_more_often_than_set():
+    assert kept(*(fix(n * 0.125, x=10.0 * n) for n in range(9))) == [0, 0.25, 0.5, 0.75, 1.0]
+
+
+def test_where_a_robot_comes_to_stand_is_stored_however_near():
+    assert kept(fix(0), fix(1, x=0.1), fix(2, x=0.2, v=0.0), fix(3, x=0.2, v=0.0)) == [0, 2]
+
+
+def test_robots_are_kept_apart():
+    assert kept(fix(0), fix(0.1, robot="r2"), fix(0.2, x=0.1), fix(0.3, x=0.1, robot="r2")) == [0, 0.1]
+
+
+def test_a_clock_that_was_set_back_does_not_end_the_recording():
+    assert kept(fix(1000.0), fix(10.0), fix(11.0, x=1.0)) == [1000.0, 10.0, 11.0]
+
+
+def test_the_last_place_of_a_robot_that_falls_silent_is_stored_once():
+    thinning = Thinning()
+    assert thinning.keeps(fix(0), SETTINGS) and not thinning.keeps(fix(1, x=0.3), SETTINGS)
+    assert thinning.silent(0.5) == []
+    assert [one.received_at for one in thinning.silent(2)] == [1]
+    assert thinning.silent() == []
+
+
+@given(st.lists(st.tuples(st.floats(0.01, 3), st.floats(-2, 2), st.floats(-1, 1), st.booleans()), min_size=1))
+def test_no_position_is_farther_from_a_stored_one_than_set_unless_it_is_too_soon(steps):
+    thinning, at, x, theta, last = Thinning(), 0.0, 0.0, 0.0, None
+    for seconds, metres, turn, moving in steps:
+        at, x, theta = at + seconds, x + metres, theta + turn
+        one = fix(at, x=x, theta=theta, v=1.0 if moving else 0.0)
+        if thinning.keeps(one, SETTINGS):
+            last = one
+        elapsed = at - last.received_at
+        assert elapsed < SETTINGS.max_interval_s
+        if elapsed >= SETTINGS.min_interval_s:
+            assert abs(x - last.pose.x) < SETTINGS.min_distance_m
+            assert abs(theta - last.pose.theta) < math.radians(SETTINGS.min_turn_deg)
+
+
+# --- on the way to the database -----------------------------------------------------------------------------
+
+
+@pytest.fixture
+def recorder():
+    return Recorder(lambda: SETTINGS)
+
+
+def test_what_could_not_be_stored_waits_in_its_order(recorder):
+    for n in range(3):
+        recorder.observe(fix(n, x=n))
+    taken = recorder.take(3.0)
+    recorder.observe(fix(3, x=3.0))
+    assert recorder.waiting == 1
+    recorder.give_back(taken)
+    assert [one.received_at for one in recorder.take(4.0)] == [0, 1, 2, 3]
+
+
+def test_what_waits_is_bounded_and_the_newest_stay(recorder, caplog):
+    for n in range(1200):
+        recorder.observe(fix(n, x=n))
+    for _ in range(3):
+        recorder.give_back(recorder.take(1200.0))
+    assert (recorder.waiting, recorder.given_up) == (1000, 200)
+    assert recorder.take(1200.0)[0].received_at == 200
+    assert [record.levelname for record in caplog.records] == ["ERROR"]
+    assert "trajectories.largest_backlog of site.toml" in caplog.text
+
+
+def test_a_batch_is_limited(recorder, monkeypatch):
+    monkeypatch.setattr(recording, "BATCH", 2)
+    for n in range(3):
+        recorder.observe(fix(n, x=n))
+    assert [len(recorder.take(3.0)) for _ in range(3)] == [2, 1, 0]
+
+
+def test_at_the_end_the_actual_place_is_stored(recorder):
+    recorder.observe(fix(0))
+    recorder.observe(fix(1, x=0.3))
+    assert len(recorder.take(1.0)) == 1
+    recorder.finish()
+    assert [one.pose.x for one in recorder.take(1.0)] == [0.3]
