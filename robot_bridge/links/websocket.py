@@ -9,19 +9,19 @@ from __future__ import annotations
 
 import asyncio
 import logging
+import secrets
 from collections import Counter
 from collections.abc import Callable
-from typing import Any
 
 from websockets.asyncio.server import ServerConnection
 from websockets.exceptions import ConnectionClosed, ConnectionClosedOK
 
 from .. import jsonrpc
-from ..errors import BridgeError, NotReadyError, StoreError
+from ..errors import BridgeError, NotReadyError
 from ..fleet import Fleet, Outcome
 from ..messages import MessageError, OpAck, Ready, Request, to_json
-from ..store.answers import AnswerRow
-from ..wire import decode_request, error_code, parse_params, with_base64
+from ..wire import decode_request, error_code
+from .delivery import Delivery
 
 log = logging.getLogger(__name__)
 
@@ -38,16 +38,20 @@ class WebSocketLink:
     def __init__(self, fleet: Fleet) -> None:
         self._fleet = fleet
         self._names: Counter[str] = Counter()
+        self._sessions: set[RobotSession] = set()
         self._holders: dict[str, RobotSession] = {}
+        fleet.emergency.reach(self._stop_all)
 
     async def serve(self, connection: ServerConnection, robot: str | None) -> None:
         """Serve one connection to its end; without a name the robot is given one."""
         name = robot or self._free_name()
         session = RobotSession(self._fleet, connection, name, self._admit)
         self._names[name] += 1
+        self._sessions.add(session)
         try:
             in_order = await session.run()
         finally:
+            self._sessions.discard(session)
             self._names -= Counter([name])
             held = self._holders.get(name) is session
             if held:
@@ -55,6 +59,15 @@ class WebSocketLink:
                 del self._holders[name]
         if in_order and held:
             self._fleet.closed(name)
+
+    def measure(self) -> None:
+        """Note the latency of every robot's connection."""
+        for session in self._holders.values():
+            session.measure()
+
+    def _stop_all(self, call_id: str) -> None:
+        for session in self._sessions:
+            session.stop_now(call_id)
 
     def _admit(self, session: RobotSession) -> None:
         """Let ``session`` be the connection of its robot, and end the one before."""
@@ -84,15 +97,23 @@ class RobotSession:
         self._connection = connection
         self._admit = admit
         self._admitted = False
-        self._delivery: asyncio.Task[None] | None = None
+        self._delivery = Delivery(fleet, connection, robot)
         self._closing: asyncio.Task[None] | None = None
 
     def replace(self) -> None:
         """End this connection because the robot has connected anew; what still comes in is passed over."""
-        if self._delivery is not None:
-            self._delivery.cancel()
+        self._delivery.end()
         # A connection whose robot is gone takes seconds to close, and the new one must not wait for it.
         self._closing = asyncio.create_task(self._connection.close(REPLACED, "the robot has connected anew"))
+
+    def stop_now(self, call_id: str) -> None:
+        """Tell the robot of an emergency stop, under the id ``call_id``."""
+        self._delivery.stop_now(call_id)
+
+    def measure(self) -> None:
+        """Note how long the last ping took there and back."""
+        if self._admitted and self._connection.latency:
+            self._fleet.robots.measured(self.robot, self._connection.latency)
 
     async def answers(self) -> bool:
         """Tell whether the robot is there: it answers a ping within a second."""
@@ -107,6 +128,8 @@ class RobotSession:
         """Serve the connection to its end; return true if the robot closed it in good order."""
         try:
             await self._connection.send(jsonrpc.call("Start", to_json(self._fleet.greeting())))
+            if (call_id := self._fleet.emergency.call_id) is not None:
+                self.stop_now(call_id)
             async for frame in self._connection:
                 if self._closing is None:
                     await self._receive(frame)
@@ -115,8 +138,7 @@ class RobotSession:
         except ConnectionClosed:
             return False
         finally:
-            if self._delivery is not None:
-                self._delivery.cancel()
+            self._delivery.end()
         return self._connection.close_code in (1000, 1001)
 
     async def _receive(self, frame: str | bytes) -> None:
@@ -138,9 +160,17 @@ class RobotSession:
             log.warning("link websocket: robot %r: %s", self.robot, error)
             await self._connection.send(jsonrpc.error(call.id, error_code(error), str(error)))
             return
+        except ConnectionClosed:
+            raise
+        except Exception:
+            number = secrets.token_hex(4)
+            log.exception("link websocket: robot %r: internal error %s", self.robot, number)
+            text = f"internal error {number}; the gateway's log says more under this number"
+            await self._connection.send(jsonrpc.error(call.id, jsonrpc.INTERNAL_ERROR, text))
+            return
         await self._respond(call, outcome)
         if isinstance(request, Ready) and outcome.admitted:
-            self._deliver_from_the_start()
+            self._delivery.begin()
 
     async def _ask(self, request: Request, id: int | None) -> Outcome:
         if not isinstance(request, Ready):
@@ -164,39 +194,17 @@ class RobotSession:
             await self._fleet.finish([outcome], [], acks=False)
 
     async def _receive_reply(self, reply: jsonrpc.Reply) -> None:
-        if not (self._admitted and isinstance(reply.id, int)):
+        if not self._admitted:
+            return
+        if isinstance(reply.id, str):
+            self._fleet.emergency.answered(self.robot, reply.id, refused=reply.error is not None)
             return
         try:
             ack = OpAck(id=reply.id, ok=reply.error is None, reason=reply.error)
             await self._fleet.receive(self.robot, NAME, ack, None)
         except (MessageError, BridgeError) as error:
             log.warning("link websocket: robot %r: %s", self.robot, error)
-
-    def _deliver_from_the_start(self) -> None:
-        """Begin to deliver the outbox; what the robot had not acknowledged is sent to it again."""
-        if self._delivery is not None:
-            self._delivery.cancel()
-        self._delivery = asyncio.create_task(self._deliver())
-
-    async def _deliver(self) -> None:
-        last = 0
-        event = self._fleet.outbox_event(self.robot)
-        while True:
-            event.clear()
-            try:
-                for row in await self._fleet.outbox(self.robot, last):
-                    await self._connection.send(jsonrpc.call(row.op, _params(row), row.id))
-                    await self._fleet.delivered([row.id])
-                    last = row.id
-            except ConnectionClosed:
-                return
-            except StoreError as error:
-                log.error("link websocket: robot %r: %s", self.robot, error)
-                await asyncio.sleep(1)
-                continue
-            await event.wait()
-
-
-def _params(row: AnswerRow) -> dict[str, Any]:
-    params: dict[str, Any] = parse_params(row.op, row.params) or {}
-    return with_base64(row.op, params, row.payload)
+        except Exception:
+            log.exception(
+                "link websocket: robot %r: internal error in acknowledgement %s", self.robot, reply.id
+            )
