@@ -136,6 +136,7 @@ class DeskSession:
             "site": to_json(self._fleet.site.report),
             "operator": self._operator,
             "role": self._gate.role(self._connection).value,
+            "emergency": to_json(self._fleet.emergency.report()),
         }
 
     def _start(self, name: str, work: Any) -> None:

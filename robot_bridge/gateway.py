@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from urllib.parse import parse_qs, urlsplit
 
+from sqlalchemy import URL
 from websockets.asyncio.server import Server
 from websockets.http11 import Request, Response
 
@@ -43,7 +44,7 @@ class GatewaySettings:
     """What a gateway is started with; port 0 takes any free one."""
 
     site: Path
-    database: str
+    database: str | URL
     host: str = "127.0.0.1"
     port: int = 8765
     tls: ServerFiles | None = None
@@ -78,6 +79,7 @@ class Gateway:
     async def _age(self) -> None:
         while True:
             self._fleet.age()
+            self._robots.measure()
             await asyncio.sleep(AGE_INTERVAL)
 
     async def _save(self) -> None:

@@ -119,10 +119,10 @@ class WebSocketLink:
         try:
             ack = agent.receive(decode_answer(message.method, message.params), id)
         except MessageError as error:
-            await connection.send(jsonrpc.error(id, jsonrpc.INVALID_PARAMS, str(error)))
+            await connection.send(jsonrpc.error(message.id, jsonrpc.INVALID_PARAMS, str(error)))
             return
-        if id is not None:
-            await connection.send(_reply(id, ack or OpAck(id=id)))
+        if message.id is not None:
+            await connection.send(_reply(message.id, ack or OpAck(id=id)))
 
     def _receive_reply(self, agent: Agent, reply: jsonrpc.Reply) -> None:
         asked = self._asked.pop(reply.id, None) if isinstance(reply.id, int) else None
@@ -147,7 +147,7 @@ def _acknowledgement(reply: jsonrpc.Reply) -> OpAck:
     return answer if isinstance(answer, OpAck) else OpAck()
 
 
-def _reply(id: int, ack: OpAck) -> str:
+def _reply(id: int | str, ack: OpAck) -> str:
     if ack.ok:
         return jsonrpc.result(id, to_json(ack))
     return jsonrpc.error(id, jsonrpc.REFUSED, ack.reason or "no reason given")
