@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import contextlib
-import json
 import socket
-import sqlite3
 import time
 
 import pytest
 from bridge_programs import wait_until
 from bridge_wires import RefusedError, RobotWire, map_bytes
+from either_wire import SqlRobot
 from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
@@ -32,7 +31,8 @@ def test_plug_and_play_over_websocket(bridge):
     robot = bridge.robot("ws1")
     robot.wait_for("Start")
     ack = robot.ask("Ready", {"magic": 4711})
-    assert ack == {"id": 1, "ok": True, "magic": 4711, "robot": "ws1"}
+    (database,) = bridge.sql("select value from bridge where name = 'id'")
+    assert ack == {"id": 1, "ok": True, "magic": 4711, "robot": "ws1", "database": database[0]}
     call = robot.wait_for("SetMap")
     assert decode(map_bytes(call)).border == SITE_BORDER
     robot.say(call["id"])
@@ -70,7 +70,19 @@ def test_who_has_not_said_ready_is_told_to(bridge):
         ("GetMap", {"x": 1, "y": 2, "area": -1}, -32602, "GetMap: area is -1"),
         ("Ready", {"magic": 10**30}, -32602, "Ready: magic is 1000"),
         ("Fly", {}, -32601, "unknown operation 'Fly'; known are Ready, Stopped"),
-        ("GetPosEnd", {}, -32601, "unknown operation 'GetPosEnd'"),
+        ("SendGPS", {"lat": 95, "lon": 15}, -32602, "SendGPS: lat is 95.0; give a number from -90 to 90"),
+        ("SetObject", {"x": 1, "y": 2, "object": ""}, -32602, "SetObject: object is ''; give 1 to 128"),
+        ("SetObject", {"x": 1, "y": 900, "object": "a"}, -32000, r"\(1.00, 900.00\) lies outside site"),
+        (
+            "SendImage",
+            {"x": 1, "y": 2, "object": "a"},
+            -32602,
+            "SendImage came without its payload; its image",
+        ),
+        ("SendImage", {"x": 1, "y": 2, "object": "a", "image": "!"}, -32602, "image is not base64 text"),
+        ("GetPath", {}, -32000, "GetPath: robot 'ws4' has no task"),
+        ("GetPosIni", {}, -32000, "GetPosIni: robot 'ws4' was given no SetPosIni or SetPath yet"),
+        ("GetPosEnd", {}, -32000, "GetPosEnd: robot 'ws4' was given no SetPosEnd or SetPath yet"),
     ],
 )
 def test_a_wrong_request_is_refused_and_the_robot_stays_connected(bridge, op, params, code, text):
@@ -114,27 +126,6 @@ def _mute_connection(bridge, path):
 # --- plain SQL --------------------------------------------------------------------------------------------
 
 
-class SqlRobot:
-    """A robot that knows nothing but two tables, as the paper's does."""
-
-    def __init__(self, file, name):
-        self.connection = sqlite3.connect(file, timeout=5, isolation_level=None)
-        self.name = name
-
-    def say(self, op, **params):
-        cursor = self.connection.execute(
-            "insert into rr (robot, op, params) values (?, ?, ?)", (self.name, op, json.dumps(params))
-        )
-        return cursor.lastrowid
-
-    def read(self, op, seconds=10.0):
-        """Wait for an answer, delete it, and return its id, parameters and payload."""
-        query = "select id, params, payload from sa where robot = ? and op = ? order by id limit 1"
-        row = wait_until(lambda: self.connection.execute(query, (self.name, op)).fetchone(), seconds, op)
-        self.connection.execute("delete from sa where id = ?", (row[0],))
-        return row[0], json.loads(row[1] or "{}"), row[2]
-
-
 @pytest.fixture
 def sql_robot(bridge):
     robots = []
@@ -152,7 +143,8 @@ def test_plug_and_play_over_plain_sql(bridge, sql_robot):
     robot, desk = sql_robot("sql1"), bridge.desk()
     ready = robot.say("Ready", magic=4711)
     _, ack, _ = robot.read("OpAck")
-    assert ack == {"id": ready, "ok": True, "magic": 4711, "robot": "sql1"}
+    (database,) = bridge.sql("select value from bridge where name = 'id'")
+    assert ack == {"id": ready, "ok": True, "magic": 4711, "robot": "sql1", "database": database[0]}
     map_id, _, payload = robot.read("SetMap")
     assert decode(payload).border == SITE_BORDER
     robot.say("OpAck", id=map_id)

@@ -8,7 +8,7 @@ import socket
 import sqlite3
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from subprocess import Popen
 from typing import Any
@@ -46,12 +46,14 @@ class Bridge:
         found = self._processes.wait_for_line(name, r"listening on (ws://\S+:(\d+))", 20)
         self.address, self.port = found.group(1), int(found.group(2))
 
-    def start_robot(self, name: str, pose: tuple[float, float, float], *, sql: bool = False) -> Popen[bytes]:
-        """Start a fast reference robot."""
+    def start_robot(
+        self, name: str, pose: tuple[float, float, float], *, sql: bool = False, options: Sequence[Any] = ()
+    ) -> Popen[bytes]:
+        """Start a fast reference robot, with more ``options`` of its command line."""
         way = ["--database", self.database] if sql else ["--url", f"{self.address}/robot"]
         where = ",".join(str(number) for number in pose)
-        options = ["--name", name, f"--pose={where}", "--speed", "5", "--turn-rate", "3", "--rate", "20"]
-        self._run(name, ["robot", *way, *options])
+        fast = ["--name", name, f"--pose={where}", "--speed", "5", "--turn-rate", "3", "--rate", "20"]
+        self._run(name, ["robot", *way, *fast, *options])
         return self.process
 
     def _run(self, name: str, command: list[Any]) -> str:

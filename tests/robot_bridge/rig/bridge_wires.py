@@ -87,6 +87,7 @@ class Desk(Wire):
         super().__init__(url, **options)
         self.robots: dict[str, dict[str, Any]] = {}
         self.commands: dict[str, dict[str, Any]] = {}
+        self.observations: dict[int, dict[str, Any]] = {}
         self.snapshots: list[dict[str, Any]] = []
         self.site = self.ask("hello", {"operator": operator})["site"]
 
@@ -112,6 +113,8 @@ class Desk(Wire):
         if frame["method"] == "positions":
             self.snapshots.append(frame["params"])
             self.robots.update({robot["robot"]: robot for robot in frame["params"]["robots"]})
+        elif frame["method"] == "observation":
+            self.observations[frame["params"]["observation"]] = frame["params"]
         elif frame["method"] == "command":
             self.commands[frame["params"]["command"]] = frame["params"]
 
