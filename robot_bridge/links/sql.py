@@ -9,7 +9,8 @@ from collections.abc import Iterable
 
 from ..errors import DataRefusedError, NotReadyError, RefusedError, StoreError
 from ..fleet import Fleet, Outcome
-from ..messages import MessageError, OpAck, Start, check_robot_name
+from ..messages import PAYLOADS, MessageError, OpAck, check_robot_name
+from ..store import requests
 from ..store.database import Database
 from ..store.requests import RequestRow
 from ..store.wakeups import GATEWAY_CHANNEL
@@ -82,7 +83,7 @@ class SqlLink:
     async def _deal_with(self, row: RequestRow) -> Outcome | None:
         try:
             check_robot_name(row.robot)
-            request = decode_request(row.op, parse_params(row.op, row.params))
+            request = decode_request(row.op, parse_params(row.op, row.params), await self._payload(row))
             return await self._fleet.receive(row.robot, NAME, request, row.id)
         except NotReadyError:
             return self._greet(row.robot)
@@ -96,12 +97,17 @@ class SqlLink:
             log.exception("link sql: request %d of robot %r failed: error %s", row.id, row.robot, number)
             return _refusal(row, f"{row.op}: internal error {number}; the gateway's log says more")
 
+    async def _payload(self, row: RequestRow) -> bytes | None:
+        if row.op not in PAYLOADS:
+            return None
+        return await self._database.run(requests.payload, row.id, self._fleet.observations.check_size)
+
     def _greet(self, robot: str) -> Outcome | None:
         """Tell a robot that never said Ready that it may, once: it sends positions many times a second."""
         if robot in self._greeted:
             return None
         self._greeted.add(robot)
-        return Outcome(robot, answer=Start())
+        return Outcome(robot, answer=self._fleet.greeting())
 
 
 def _refusal(row: RequestRow, reason: str) -> Outcome:

@@ -15,7 +15,7 @@ from ..store import answers, requests
 from ..store.answers import AnswerRow
 from ..store.database import Database
 from ..store.wakeups import robot_channel
-from ..wire import decode_answer, parse_params
+from ..wire import decode_answer, parse_params, payload_of
 from .agent import Agent
 
 log = logging.getLogger(__name__)
@@ -73,18 +73,27 @@ class SqlLink:
 
     async def _turn(self, agent: Agent) -> bool:
         rows = await self._database.run(answers.read, self._robot)
-        acks = [ack for row in rows if (ack := self._receive(agent, row)) is not None]
-        await self._flush([row.id for row in rows], acks)
-        return bool(rows)
+        read, acks = [], []
+        for row in rows:
+            own, ack = self._receive(agent, row)
+            if own:
+                read.append(row.id)
+            if ack is not None:
+                acks.append(ack)
+        await self._flush(read, acks)
+        return bool(read)
 
-    def _receive(self, agent: Agent, row: AnswerRow) -> OpAck | None:
+    def _receive(self, agent: Agent, row: AnswerRow) -> tuple[bool, OpAck | None]:
+        """Hand a row to the agent; return whether it was the agent's own, and how to acknowledge it."""
         try:
             answer = decode_answer(row.op, parse_params(row.op, row.params), row.payload)
         except MessageError as error:
-            return OpAck(id=row.id, ok=False, reason=str(error))
+            return True, OpAck(id=row.id, ok=False, reason=str(error))
+        if not agent.concerns(answer):
+            return False, None
         if isinstance(answer, OpAck) and not answer.ok:
             log.error("the gateway refused request %s: %s", answer.id, answer.reason)
-        return agent.receive(answer, row.id)
+        return True, agent.receive(answer, row.id)
 
     async def _flush(self, read: list[int], acks: list[OpAck]) -> None:
         outgoing, self._outgoing = [*acks, *self._outgoing], []
@@ -99,5 +108,8 @@ class SqlLink:
 
 def _exchange(connection: Connection, robot: str, read: list[int], outgoing: list[Request]) -> None:
     answers.remove(connection, read)
-    rows = [(robot, type(request).__name__, json.dumps(to_json(request))) for request in outgoing]
-    requests.add_all(connection, rows)
+    requests.add_all(connection, [_row(robot, request) for request in outgoing])
+
+
+def _row(robot: str, request: Request) -> tuple[str, str, str, bytes | None]:
+    return robot, type(request).__name__, json.dumps(to_json(request)), payload_of(request)

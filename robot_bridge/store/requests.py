@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
-from sqlalchemy import Connection, Text, cast, delete, insert, select
+from sqlalchemy import Connection, LargeBinary, Text, cast, delete, func, insert, select
 
 from .schema import rr
 
@@ -27,14 +27,27 @@ def read(connection: Connection, limit: int = 500) -> list[RequestRow]:
     return [RequestRow(*row) for row in connection.execute(query)]
 
 
+def payload(connection: Connection, id: int, check_size: Callable[[int], None]) -> bytes | None:
+    """Return the payload of a request, if it has one; ``check_size`` may refuse it before it is read."""
+    size = connection.scalar(select(func.length(rr.c.payload)).where(rr.c.id == id))
+    if size is None:
+        return None
+    check_size(size)
+    # SQLite gives text that somebody wrote into it back as text.
+    return bytes(
+        connection.execute(select(cast(rr.c.payload, LargeBinary)).where(rr.c.id == id)).scalar_one()
+    )
+
+
 def remove(connection: Connection, ids: Sequence[int]) -> None:
     """Delete requests that have been dealt with."""
     if ids:
         connection.execute(delete(rr).where(rr.c.id.in_(ids)))
 
 
-def add_all(connection: Connection, rows: Sequence[tuple[str, str, str]]) -> None:
-    """Write requests (robot, op, params), as a robot does: it may insert and not read what it inserted."""
+def add_all(connection: Connection, rows: Sequence[tuple[str, str, str, bytes | None]]) -> None:
+    """Write requests (robot, op, params, payload), as a robot does: it may not read what it inserted."""
     if rows:
-        values = [{"robot": robot, "op": op, "params": params} for robot, op, params in rows]
+        names = ("robot", "op", "params", "payload")
+        values = [dict(zip(names, row, strict=True)) for row in rows]
         connection.execute(insert(rr).inline(), values)
