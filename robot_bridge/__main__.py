@@ -11,30 +11,50 @@ from typing import Annotated
 
 import typer
 
+from .commands import audit, operators, robot_tokens, robots, schemas, sessions, tls, trajectories
+from .commands import database as databases
+from .commands.database_option import DEFAULT, DatabaseOption, PasswordFileOption, database_address
 from .errors import BridgeError
-from .messages import MessageError
+from .messages import MessageError, SetObject
+from .robot.sightings import Thing
 from .robotmap.errors import RobotMapError
 from .sites.errors import SiteError
 
 app = typer.Typer(
     help="The bridge between operators and robots.", no_args_is_help=True, pretty_exceptions_enable=False
 )
+app.add_typer(databases.app, name="database")
+app.add_typer(robots.app, name="robots")
+app.add_typer(trajectories.app, name="trajectories")
+app.add_typer(operators.app, name="operators")
+app.add_typer(sessions.app, name="sessions")
+app.add_typer(tls.app, name="tls")
+app.command()(audit.audit)
+app.command()(schemas.schemas)
+robot_tokens.add_to(robots.app)
 
 
 @app.command()
 def serve(
     site: Annotated[Path, typer.Option(help="Folder of a published site: site.toml and site.gpkg.")],
-    database: Annotated[
-        str, typer.Option(help="Where commands, requests and answers are kept.")
-    ] = "sqlite:///robot-bridge.db",
-    host: Annotated[str, typer.Option(help="Address to listen on; loopback only.")] = "127.0.0.1",
+    database: DatabaseOption = DEFAULT,
+    database_password_file: PasswordFileOption = None,
+    host: Annotated[
+        str, typer.Option(help="Address to listen on; beyond loopback with TLS and accounts.")
+    ] = "127.0.0.1",
     port: Annotated[int, typer.Option(help="Port to listen on; 0 takes any.", min=0, max=65535)] = 8765,
+    certificate: Annotated[
+        Path | None, typer.Option(help="The gateway's certificate (PEM), for wss://.")
+    ] = None,
+    key: Annotated[Path | None, typer.Option(help="Its key (PEM).")] = None,
 ) -> None:
     """Serve one site to robots (/robot, and tables rr and sa) and to operators (/desk)."""
+    from .access.tls import server_files
     from .gateway import GatewaySettings, run
 
     async def work() -> None:
-        settings = GatewaySettings(site, database, host, port)
+        address = database_address(database, database_password_file)
+        settings = GatewaySettings(site, address, host, port, server_files(certificate, key))
         await run(settings, _stop_event(), lambda address: print(f"listening on {address}", flush=True))
 
     asyncio.run(work())
@@ -45,14 +65,23 @@ def robot(
     name: Annotated[str, typer.Option(help="The robot's name.")],
     url: Annotated[str | None, typer.Option(help="Gateway, as ws://127.0.0.1:8765/robot.")] = None,
     database: Annotated[str | None, typer.Option(help="Database with rr and sa, instead of --url.")] = None,
+    database_password_file: PasswordFileOption = None,
+    token_file: Annotated[Path | None, typer.Option(help="File that holds the robot's token.")] = None,
+    ca: Annotated[Path | None, typer.Option(help="The site's ca.pem, for wss://.")] = None,
     pose: Annotated[str, typer.Option(help="Where it starts: X,Y,THETA in metres and radians.")] = "0,0,0",
     speed: Annotated[float, typer.Option(help="Largest speed, m/s.", min=0.05, max=20)] = 1.5,
     turn_rate: Annotated[float, typer.Option(help="Largest turn rate, rad/s.", min=0.05, max=10)] = 1.2,
     rate: Annotated[float, typer.Option(help="Positions a second.", min=0.1, max=50)] = 5.0,
     noise: Annotated[float, typer.Option(help="Noise of the reported position, metres.", min=0)] = 0.01,
     seed: Annotated[int, typer.Option(help="Seed of the noise.")] = 1,
+    see: Annotated[
+        list[str] | None, typer.Option(help="X,Y,ID of a thing that it tells of once it is within 10 m.")
+    ] = None,
+    image: Annotated[Path | None, typer.Option(help="Image (JPEG, PNG, WebP) that it sends of each.")] = None,
+    ask_path: Annotated[bool, typer.Option(help="Ask for a path to every target.")] = False,
 ) -> None:
     """Run the reference robot: a simulated body that speaks the protocol."""
+    from .access.credentials import Credentials
     from .robot.body import BodyLimits
     from .robot.runner import RobotSettings, run
 
@@ -61,12 +90,16 @@ def robot(
     settings = RobotSettings(
         name=name,
         url=url,
-        database=database,
+        database=None if database is None else database_address(database, database_password_file),
         pose=_pose(pose),
         limits=BodyLimits(speed=speed, turn_rate=turn_rate),
         rate=rate,
         noise=noise,
         seed=seed,
+        credentials=Credentials(token_file, ca),
+        things=tuple(_thing(text) for text in see or ()),
+        image=None if image is None else _bytes(image),
+        asks_path=ask_path,
     )
 
     async def work() -> None:
@@ -81,6 +114,25 @@ def _pose(text: str) -> tuple[float, float, float]:
     except ValueError:
         raise BridgeError(f"pose {text!r} cannot be read; write X,Y,THETA such as 10,20,1.57") from None
     return x, y, theta
+
+
+def _thing(text: str) -> Thing:
+    x, y, id = (*text.split(",", 2), "", "")[:3]
+    try:
+        thing = Thing(float(x), float(y), id)
+        SetObject(thing.x, thing.y, thing.id)
+    except ValueError as error:
+        raise BridgeError(
+            f"thing {text!r} cannot be read ({error}); write X,Y,ID such as 10,20,cone-7"
+        ) from None
+    return thing
+
+
+def _bytes(file: Path) -> bytes:
+    try:
+        return file.read_bytes()
+    except OSError as error:
+        raise BridgeError(f"image {file} cannot be read: {error.strerror or error}") from None
 
 
 def _stop_event() -> asyncio.Event:

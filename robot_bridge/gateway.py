@@ -29,6 +29,7 @@ from .fleet import Fleet
 from .links.sql import SqlLink
 from .links.websocket import WebSocketLink
 from .messages import MessageError, check_robot_name
+from .schemas.documents import served
 from .site_maps import SiteMaps
 from .sites.publication import read_site
 from .store.database import Database
@@ -94,6 +95,11 @@ class Gateway:
         if (refusal := self._gate.refuse_page(visitor, request)) is not None:
             return refusal
         path = urlsplit(request.path).path
+        if (document := served(path)) is not None:
+            response = visitor.respond(http.HTTPStatus.OK, document)
+            del response.headers["Content-Type"]
+            response.headers["Content-Type"] = "application/json"
+            return response
         if path not in ("/robot", "/desk"):
             text = f"{path} is not served here; robots connect to /robot, operators to /desk\n"
             return visitor.respond(http.HTTPStatus.NOT_FOUND, text)

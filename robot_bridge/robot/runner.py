@@ -7,6 +7,8 @@ import secrets
 from dataclasses import dataclass, field
 from typing import Protocol
 
+from sqlalchemy import URL
+
 from ..access.credentials import Credentials
 from ..messages import Request, check_robot_name
 from .agent import Agent, AgentSettings
@@ -25,7 +27,7 @@ class RobotSettings:
 
     name: str
     url: str | None
-    database: str | None
+    database: str | URL | None
     pose: Pose = (0.0, 0.0, 0.0)
     limits: BodyLimits = field(default_factory=BodyLimits)
     rate: float = 5.0

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -19,6 +20,31 @@ NEEDED = "0002"
 FIRST = "0001"
 """Version 0.1.0, which did not write down its revision."""
 MIGRATIONS = Path(__file__).with_name("migrations")
+
+
+class RevisionError(StoreError):
+    """The tables are not of the revision that is needed."""
+
+
+@dataclass(frozen=True)
+class Report:
+    """The revision that a database has (None: no tables), and where it differs from what is needed."""
+
+    found: str | None
+    differences: list[str]
+
+    @property
+    def good(self) -> bool:
+        """Whether this program can work with it."""
+        return self.found == NEEDED and not self.differences
+
+    @property
+    def advice(self) -> str:
+        """What is to be done."""
+        if self.found == NEEDED and self.differences:
+            return "somebody changed the tables: put them back, or restore a backup"
+        return _advice(self.found)
+
 
 _version = Table("alembic_version", MetaData(), Column("version_num", String(32), primary_key=True))
 _MARKS = frozenset({"rr", "sa", "commands", "trajectories"})
@@ -38,11 +64,9 @@ def must_create(connection: Connection, where: str, made_by_serve: bool) -> bool
     if found == NEEDED:
         return False
     if found is not None:
-        raise StoreError(f"database {where} {_mismatch(found)}")
+        raise RevisionError(f"database {where} is at revision {found}, {_needed(found)}")
     if not made_by_serve:
-        raise StoreError(
-            f"database {where} has no tables of the bridge; make them with: robot-bridge database create"
-        )
+        raise RevisionError(f"database {where} has no tables of the bridge; {_advice(found)}")
     return True
 
 
@@ -50,7 +74,7 @@ def create(connection: Connection) -> None:
     """Make the tables in an empty database; raises StoreError when it has some."""
     found = current(connection)
     if found is not None:
-        raise StoreError(f"the tables are there already, at revision {found}; {_advice(found)}")
+        raise RevisionError(f"the tables are there already, at revision {found}; {_advice(found)}")
     _migrate(connection)
 
 
@@ -58,13 +82,19 @@ def upgrade(connection: Connection) -> str:
     """Bring the tables up to date with all that is in them; return the revision that was there."""
     found = current(connection)
     if found is None:
-        raise StoreError("there are no tables to upgrade; make them with: robot-bridge database create")
+        raise RevisionError(f"there are no tables to upgrade; {_advice(found)}")
     if found > NEEDED:
-        raise StoreError(f"the database {_mismatch(found)}")
+        raise RevisionError(f"the tables are at revision {found}, {_needed(found)}")
     if found == FIRST and _version.name not in inspect(connection).get_table_names():
         _stamp(connection, FIRST)
     _migrate(connection)
     return found
+
+
+def report(connection: Connection) -> Report:
+    """Return how the tables are."""
+    found = current(connection)
+    return Report(found, differences(connection) if found == NEEDED else [])
 
 
 def differences(connection: Connection) -> list[str]:
@@ -98,11 +128,13 @@ def _config(connection: Connection) -> Config:
     return config
 
 
-def _mismatch(found: str) -> str:
-    return f"is at revision {found}, and this version of robot-bridge needs {NEEDED}; {_advice(found)}"
+def _needed(found: str) -> str:
+    return f"and this version of robot-bridge needs {NEEDED}; {_advice(found)}"
 
 
-def _advice(found: str) -> str:
+def _advice(found: str | None) -> str:
+    if found is None:
+        return "make them with: robot-bridge database create"
     if found == NEEDED:
         return "nothing is to be done"
     if found < NEEDED:
