@@ -14,13 +14,14 @@ from ..store import revisions
 from ..store.address import shown
 from ..store.database import run_once
 from ..store.engines.sqlite import SQLite
-from . import gateway_account
+from . import backup, gateway_account
 from .database_option import DEFAULT, DatabaseOption, PasswordFileOption, database_address
 
 T = TypeVar("T")
 
 app = typer.Typer(help="Make, upgrade and check the database.", no_args_is_help=True)
 app.command()(gateway_account.account)
+backup.add_to(app)
 
 
 @app.command()

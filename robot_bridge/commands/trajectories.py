@@ -31,7 +31,7 @@ def export(
     file: Annotated[Path, typer.Argument(help="The GeoPackage to be written.")],
     site: Annotated[Path, typer.Option(help="Folder of the published site, for its CRS and frame.")],
     database: DatabaseOption = DEFAULT,
-    password_file: PasswordFileOption = None,
+    database_password_file: PasswordFileOption = None,
     robot: Annotated[list[str] | None, typer.Option(help="Only this robot; may be given repeatedly.")] = None,
     since: Annotated[
         str | None, typer.Option(help="Not before: 2026-11-21T08:00 (UTC), or with an offset such as +01:00.")
@@ -55,7 +55,7 @@ def export(
         bounds=_bounds(bounds),
     )
     frame = read_settings(site / SETTINGS_FILE).frame
-    address = database_address(database, password_file)
+    address = database_address(database, database_password_file)
 
     async def work() -> TrajectoryFile:
         opened = Database(address, patience=None)

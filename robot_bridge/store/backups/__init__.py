@@ -1,0 +1,1 @@
+"""Backups: what a database holds in one file, and back."""

@@ -1,0 +1,154 @@
+"""Backing a database up into one file, and restoring it."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import Protocol
+
+from sqlalchemy import URL, Connection, delete, func, inspect, select
+
+from ...errors import BridgeError, StoreError
+from .. import facts, revisions
+from ..address import shown
+from ..database import run_once
+from ..schema import bridge, metadata, rr
+from ..sole_gateway import SoleGateway
+from .server_dump import MariaDbBackups, PostgreSqlBackups
+from .sqlite_file import SqliteBackups
+
+
+class Backups(Protocol):
+    """How one kind of database is backed up; every method raises StoreError for what goes wrong."""
+
+    kind: str
+
+    def recognises(self, head: bytes) -> bool:
+        """Tell whether a file that begins so may be a backup of this kind."""
+
+    def write(self, partial: Path, revision: str) -> None:
+        """Write a backup into ``partial``."""
+
+    def check(self, file: Path, revision: str) -> None:
+        """Raise StoreError unless ``file`` is a whole backup that fits tables of ``revision``."""
+
+    def load(self, file: Path) -> None:
+        """Put what ``file`` holds in the place of what is there."""
+
+
+KINDS: dict[str, Callable[[URL], Backups]] = {
+    "sqlite": SqliteBackups,
+    "postgresql": PostgreSqlBackups,
+    "mariadb": MariaDbBackups,
+}
+
+
+def back_up(url: URL, file: Path, *, replace: bool = False) -> int:
+    """Write a backup of the database into ``file``, whole or not at all; return its size in bytes.
+
+    The gateway may run. Raises BridgeError and StoreError.
+    """
+    if file.exists() and not replace:
+        raise BridgeError(f"{file} is there already; choose another name, or give --replace")
+    revision = run_once(url, _revision, shown(url))
+    try:
+        with tempfile.TemporaryDirectory(prefix=".backing-up-", dir=file.parent) as folder:
+            partial = Path(folder) / "backup"
+            # It holds what the database does, and nobody else's eyes are meant for it.
+            os.close(os.open(partial, os.O_CREAT | os.O_WRONLY, 0o600))
+            kind = KINDS[url.get_backend_name()](url)
+            kind.write(partial, revision)
+            kind.check(partial, revision)
+            _to_disk(partial)
+            partial.replace(file)
+    except OSError as error:
+        raise BridgeError(f"{file} cannot be written: {error.strerror or error}; check its folder") from error
+    return file.stat().st_size
+
+
+async def restore(url: URL, file: Path, *, replace: bool = False) -> None:
+    """Put the backup in ``file`` in the place of the database.
+
+    The database gets a new id, so that robots forget the numbers of messages that may come again. Refused
+    while a gateway runs on it, and where it holds anything unless ``replace``. Raises BridgeError and
+    StoreError.
+    """
+    _check_kind(url, file)
+    gateway = SoleGateway(url)
+    await gateway.take()
+    try:
+        await asyncio.to_thread(_restore, url, file, replace)
+    finally:
+        await gateway.release()
+
+
+def _restore(url: URL, file: Path, replace: bool) -> None:
+    kind = KINDS[url.get_backend_name()](url)
+    if url.get_backend_name() == "sqlite":
+        revision = run_once(url, revisions.current) or ""
+    else:
+        revision = run_once(url, _revision, shown(url))
+    kind.check(file, revision)
+    held = run_once(url, _held) if revision else None
+    if held is not None and not replace:
+        raise BridgeError(
+            f"database {shown(url)} is not empty: it has {held}; back it up, then give --replace to have it "
+            "replaced"
+        )
+    kind.load(file)
+    run_once(url, _renew)
+
+
+def _revision(connection: Connection, where: str) -> str:
+    found = revisions.current(connection)
+    if found is None:
+        raise StoreError(
+            f"database {where} has no tables of the bridge; make them with: robot-bridge database create"
+        )
+    return found
+
+
+def _held(connection: Connection) -> str | None:
+    """Return how much of what the database holds, None for nothing."""
+    present = set(inspect(connection).get_table_names())
+    for name in ("commands", "trajectories", "robots", "operators", "observations", "audit"):
+        if name not in present:
+            continue
+        table = metadata.tables[name]
+        count = connection.scalar(select(func.count()).select_from(table)) or 0
+        if count:
+            return f"{count} rows in {name}"
+    return None
+
+
+def _renew(connection: Connection) -> None:
+    if bridge.name not in inspect(connection).get_table_names():
+        return  # a database of version 0.1.0, which gets its id when it is upgraded
+    connection.execute(delete(rr))
+    connection.execute(delete(bridge).where(bridge.c.name == "id"))
+    facts.database_id(connection)
+
+
+def _check_kind(url: URL, file: Path) -> None:
+    try:
+        with file.open("rb") as source:
+            head = source.read(64)
+    except OSError as error:
+        raise BridgeError(f"backup {file} cannot be read: {error.strerror}") from error
+    wanted = url.get_backend_name()
+    if KINDS[wanted](url).recognises(head):
+        return
+    of = next((name for name in KINDS if KINDS[name](url).recognises(head)), None)
+    what = f"is of {of}" if of == "sqlite" else "is of a database server" if of else "is no backup"
+    raise StoreError(f"file {file} {what}, and database {shown(url)} is {wanted}; give a backup of {wanted}")
+
+
+def _to_disk(file: Path) -> None:
+    descriptor = os.open(file, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)

@@ -1,0 +1,234 @@
+"""A backup holds what the database held, on each kind of database, and comes back whole or not at all."""
+
+import asyncio
+import gzip
+import os
+import secrets
+import sqlite3
+import stat
+
+import pytest
+from sqlalchemy import insert, select
+
+from robot_bridge.errors import BridgeError, StoreError
+from robot_bridge.store import revisions
+from robot_bridge.store.accounts.choice import keeper_on
+from robot_bridge.store.address import read_address
+from robot_bridge.store.backups.backing_up import back_up, restore
+from robot_bridge.store.database import run_once
+from robot_bridge.store.schema import bridge, metadata
+from robot_bridge.store.sole_gateway import SoleGateway
+
+ODD = "it's \"odd\" \\ back\\'slash; -- č 火 🚜 %s :x\n\ttab"
+BYTES = bytes(range(256)) * 300
+COMPARED = sorted(metadata.tables.keys() - {"rr", "bridge"})
+
+
+def put_back(address, file, *, replace=False):
+    asyncio.run(restore(address, file, replace=replace))
+
+
+def rows():
+    """Rows for every table, with everything in them that is easily lost on the way."""
+    step = {"command": "c1", "at": 1790000000.123456, "by": ODD}
+    robot = {
+        "name": "r1",
+        "magic": 2**62,
+        "link": "sql",
+        "received_at": 0.1,
+        "ended_in_order": 1,
+        "pose": "{}",
+    }
+    command = {"id": "c1", "robot": "r1", "op": "SetPath", "params": "x" * 200_000, "operator": ODD}
+    image = {"robot": "r1", "kind": "image", "object": ODD, "x": 0.1, "y": 0.2, "image": BYTES}
+    place = {"theta": 0.1, "v": 1.0, "fix_time": None}
+    return {
+        "rr": [{"robot": "r1", "op": "Alive", "params": "{}"}],
+        "sa": [
+            {"robot": "r1", "op": "SetMap", "params": ODD, "payload": BYTES, "urgent": 0},
+            {"robot": "r1", "op": "Abort", "params": None, "payload": None, "urgent": 1},
+        ],
+        "robots": [robot],
+        "commands": [{**command, "state": "queued", "sa_id": 900, "created_at": 1.5, "deviation": 1e-9}],
+        "command_steps": [{**step, "state": "queued", "reason": text} for text in (None, ODD)],
+        "trajectories": [
+            {"robot": f"r{n % 7}", "received_at": 1.79e9 + n / 3, "x": n / 7, "y": -n / 11, **place}
+            for n in range(3000)
+        ],
+        "observations": [{**image, "received_at": 3.0, "state": "new"}],
+        "operators": [{"name": ODD, "role": "viewer", "created_at": 1.0}],
+        "tokens": [{"id": "t1", "kind": "operator", "owner": ODD, "hash": "0" * 64, "created_at": 1.0}],
+        "audit": [{"at": 1.0, "who": ODD, "action": "send", "done": 1, "detail": ODD}],
+    }
+
+
+def fill(connection):
+    for table, found in rows().items():
+        connection.execute(insert(metadata.tables[table]), found)
+    if connection.dialect.name == "sqlite":
+        connection.exec_driver_sql("update sqlite_sequence set seq = 900 where name = 'sa'")
+
+
+def contents(connection):
+    """Every row of every table, but for the times that a server writes in its own way."""
+    found = {}
+    for name in COMPARED:
+        columns = [
+            column for column in metadata.tables[name].c if (name, column.name) != ("sa", "created_at")
+        ]
+        found[name] = sorted((tuple(row) for row in connection.execute(select(*columns))), key=repr)
+    return found
+
+
+def identity(connection):
+    return connection.scalar(select(bridge.c.value).where(bridge.c.name == "id"))
+
+
+@pytest.fixture
+def address(url):
+    address = read_address(url)
+    run_once(address, fill)
+    return address
+
+
+@pytest.fixture
+def other(request, kind, tmp_path):
+    """Another database, on which robots have accounts where the server has accounts."""
+    if kind == "sqlite":
+        return read_address(f"sqlite:///{tmp_path}/other.db")
+    url = request.getfixturevalue(f"{kind}_server").new_database()
+    run_once(read_address(url), revisions.create)
+    admin = read_address(request.getfixturevalue(f"{kind}_server").admin_url(url))
+    run_once(admin, lambda c: keeper_on(c).add_robot(f"bot{secrets.token_hex(4)}", "password"))
+    return read_address(url)
+
+
+def test_what_was_backed_up_is_what_is_restored(address, other, tmp_path, kind):
+    file = tmp_path / "backup"
+    assert back_up(address, file) == file.stat().st_size
+    put_back(other, file)
+    assert run_once(other, contents) == run_once(address, contents)
+    assert len(run_once(other, contents)["trajectories"]) == 3000
+    assert run_once(other, lambda c: c.scalar(select(metadata.tables["rr"].c.id))) is None
+    assert [entry.name for entry in tmp_path.iterdir() if "backing" in entry.name] == []
+
+
+def test_a_restored_database_is_another_and_gives_out_new_numbers(address, other, tmp_path):
+    file = tmp_path / "backup"
+    back_up(address, file)
+    put_back(other, file)
+    assert run_once(other, identity) not in (None, run_once(address, identity))
+    sa = metadata.tables["sa"]
+    new = run_once(
+        other,
+        lambda c: c.execute(insert(sa).values(robot="r1", op="Start", params="{}")).inserted_primary_key[0],
+    )
+    # Not only above the rows that are there: a command of the backup knows its message by number 900.
+    assert new > 900
+    step = metadata.tables["command_steps"]
+    run_once(other, lambda c: c.execute(insert(step).values(command="c1", state="x", at=1.0, by="x")))
+
+
+def test_a_database_that_holds_something_is_replaced_only_when_told(address, tmp_path):
+    file = tmp_path / "backup"
+    before = run_once(address, contents)
+    back_up(address, file)
+    run_once(address, lambda c: c.execute(metadata.tables["robots"].delete()))
+    changed = run_once(address, contents)
+    with pytest.raises(
+        BridgeError, match="is not empty: it has 1 rows in commands; back it up, then give --replace"
+    ):
+        put_back(address, file)
+    assert run_once(address, contents) == changed != before
+    put_back(address, file, replace=True)
+    assert run_once(address, contents) == before
+
+
+def test_nothing_is_restored_under_a_running_gateway(address, tmp_path):
+    file = tmp_path / "backup"
+    back_up(address, file)
+    gateway = SoleGateway(address)
+    asyncio.run(gateway.take())
+    try:
+        with pytest.raises(BridgeError, match="another gateway runs on it: process"):
+            put_back(address, file, replace=True)
+        back_up(address, tmp_path / "another")
+    finally:
+        asyncio.run(gateway.release())
+
+
+def test_a_damaged_backup_changes_nothing(address, tmp_path):
+    file = tmp_path / "backup"
+    back_up(address, file)
+    before = run_once(address, contents)
+    whole = file.read_bytes()
+    middle = len(whole) // 2
+    for damaged in (whole[:middle], whole[:middle] + b"\0" * 5000 + whole[middle + 5000 :]):
+        file.write_bytes(damaged)
+        with pytest.raises(StoreError, match=r"damaged|malformed|not a database"):
+            put_back(address, file, replace=True)
+        assert run_once(address, contents) == before
+
+
+def test_a_backup_that_the_server_refuses_changes_nothing(address, tmp_path, kind):
+    if kind == "sqlite":
+        pytest.skip("SQLite is copied page by page")
+    file = tmp_path / "backup"
+    back_up(address, file)
+    before = run_once(address, contents)
+    with gzip.open(file, "ab") as more:
+        more.write(b"\ninsert into robots (name) values ('half a row');\n")
+    with pytest.raises(StoreError, match=r"psql failed|mariadb failed"):
+        put_back(address, file, replace=True)
+    assert run_once(address, contents) == before
+
+
+def test_a_file_that_is_no_backup_or_of_another_kind_is_named(address, tmp_path, kind):
+    text, database = tmp_path / "letter", tmp_path / "some.db"
+    text.write_text("Dear Ada")
+    with pytest.raises(
+        StoreError, match=f"letter is no backup, and database .* is {kind}; give a backup of {kind}"
+    ):
+        put_back(address, text, replace=True)
+    sqlite3.connect(database).execute("create table t (i)").connection.close()
+    if kind == "sqlite":
+        with gzip.open(text, "wb") as file:
+            file.write(b"x")
+        with pytest.raises(StoreError, match="is of a database server"):
+            put_back(address, text, replace=True)
+    else:
+        with pytest.raises(StoreError, match="is of sqlite, and database"):
+            put_back(address, database, replace=True)
+        with gzip.open(text, "wb") as file:
+            file.write(b'-- robot-bridge backup {"kind": "oracle", "revision": "0002"}\n')
+        with pytest.raises(StoreError, match="is of oracle"):
+            put_back(address, text, replace=True)
+    with pytest.raises(BridgeError, match="nothing cannot be read: No such file"):
+        put_back(address, tmp_path / "nothing")
+
+
+def test_a_backup_is_for_its_owners_eyes_and_replaces_nothing(address, tmp_path):
+    file = tmp_path / "backup"
+    back_up(address, file)
+    assert stat.S_IMODE(file.stat().st_mode) == 0o600
+    with pytest.raises(BridgeError, match="is there already; choose another name, or give --replace"):
+        back_up(address, file)
+    assert back_up(address, file, replace=True) > 0
+    with pytest.raises(BridgeError, match="cannot be written"):
+        back_up(address, tmp_path / "none" / "backup")
+
+
+def test_a_program_that_is_missing_is_named_and_no_password(address, tmp_path, kind, monkeypatch):
+    if kind == "sqlite":
+        pytest.skip("SQLite needs no program")
+    monkeypatch.setenv("PATH", str(tmp_path))
+    with pytest.raises(StoreError) as caught:
+        back_up(address, tmp_path / "backup")
+    assert "is not installed" in str(caught.value) and "-client" in str(caught.value)
+    fake = tmp_path / ("pg_dump" if kind == "postgresql" else "mariadb-dump")
+    fake.write_text("#!/bin/sh\necho $0 $@ >&2; exit 3\n")
+    fake.chmod(0o700)
+    with pytest.raises(StoreError, match=f"{fake.name} failed: ") as caught:
+        back_up(address, tmp_path / "backup")
+    assert str(address.password) not in str(caught.value)
+    assert os.listdir(tmp_path) == [fake.name]  # noqa: PTH208
