@@ -11,11 +11,12 @@ the window cuts becomes open chains; no wall is invented on the border.</p>
 <p><b>Site CRS</b>: in metres, such as the local UTM zone. EPSG:3857 is refused, because its metres are not
 metres. Default: the project's CRS; without a project the layers' own. A local engineering CRS is used as it
 is.</p>
-<p><b>Height, label, outdoors</b>: QGIS expressions. Expressions kept in a layer's custom properties
-<i>fleet/height</i>, <i>fleet/semantics</i> and <i>fleet/outdoor</i> win over these; the property
-<i>fleet/role</i> makes flights of risers of a layer (stairs) or surfaces without height (ramp). Default: the
-field <i>height</i> or <i>height_m</i>, the layer's name, true. Where no height is known, the default height
-is used, said in a warning and marked <i>h=est</i> in the map.</p>
+<p><b>Height, foot, label, outdoors</b>: QGIS expressions; the foot is where a feature begins above the
+ground, and its height counts from there. What a layer keeps (menu Fleet Supervisor, Layer roles) wins over
+these. There its role makes flights of risers of a layer (stairs) or surfaces without height (ramp), its
+filter says which features count, and points of furniture get a shape. Default: the field <i>height</i> or
+<i>height_m</i>, on the ground, the layer's name, true. Where no height is known, the default height is used,
+said in a warning and marked <i>h=est</i> in the map.</p>
 <p><b>Map profile</b>: a file that says by layer name what layers are: <i>openstreetmap</i>,
 <i>upc_campus_nord</i> or the path of one's own. It wins over what the layers keep.</p>
 <p><b>Smaller maps</b> (advanced, each off unless asked for): only what the robot's plane meets, without

@@ -60,6 +60,9 @@ WIDTHS = {
     RESULT: 210,
 }
 
+MOST_OF_TABLE = 370
+"""How high the table is at first when it has many rows, pixels."""
+
 
 class RolesDialog(QDialog):
     """Nothing changes in the project before *Apply* or *OK*."""
@@ -153,6 +156,8 @@ class RolesDialog(QDialog):
         splitter.addWidget(self._view)
         splitter.setStretchFactor(0, 1)
         splitter.setStretchFactor(1, 1)
+        rows = self._table.verticalHeader().length() + self._table.horizontalHeader().height()
+        splitter.setSizes([min(rows + 10, MOST_OF_TABLE), 300])
         layout.addWidget(splitter, 1)
         layout.addWidget(self._summary)
         layout.addWidget(self._buttons)
