@@ -155,5 +155,6 @@ python=${python:-$(find_pyqgis)}
     "Tell which Python QGIS uses: make setup PYTHON=/path/to/python3"
 check_versions "$python"
 make_venv "$python"
+scripts/asyncapi_parser.sh || say "without AsyncAPI's parser the test that asks it is skipped"
 touch $STAMP
 say "ready: $($VENV/bin/python -c 'from qgis.core import Qgis; print("QGIS", Qgis.QGIS_VERSION)'), $VENV"

@@ -9,6 +9,8 @@ from typing import Any
 
 Ranges = Mapping[str, tuple[float, float]]
 """The smallest and the largest value of numbers, by the name of the parameter."""
+Texts = Mapping[str, int]
+"""The most characters of texts, by the name of the parameter."""
 
 ROBOT_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,62}")
 LARGEST_NUMBER = 2**63 - 1
@@ -41,9 +43,10 @@ def check_ranges(message: Any) -> None:
             raise MessageError(f"{name} is {value}; give a number from {low:g} to {high:g}")
 
 
-def check_text(longest: int, **texts: str | None) -> None:
-    """Refuse a text that is empty, too long or has a line break; raises MessageError naming the parameter."""
-    for name, value in texts.items():
+def check_texts(message: Any) -> None:
+    """Refuse what is empty, too long or has a line break among the ``texts`` of its message; MessageError."""
+    for name, longest in message.texts.items():
+        value = getattr(message, name)
         if value is not None and not (0 < len(value) <= longest and value.isprintable()):
             raise MessageError(f"{name} is {value[:40]!r}; give 1 to {longest} printable characters")
 

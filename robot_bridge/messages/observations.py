@@ -6,8 +6,11 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import ClassVar
 
-from .checks import MessageError, Ranges, check_ranges, check_stored_number, check_text
+from .checks import MessageError, Ranges, Texts, check_ranges, check_stored_number, check_texts
 from .robots import LONGEST_LABEL
+
+LONGEST_REASON = 1000
+"""characters."""
 
 
 class ObservationState(str, Enum):
@@ -93,11 +96,11 @@ class ReviewObservation:
     reason: str | None = None
     revise: bool = False
     ranges: ClassVar[Ranges] = {"height": (0, 1000), "radius": (0.01, 50)}
+    texts: ClassVar[Texts] = {"semantics": LONGEST_LABEL, "reason": LONGEST_REASON}
 
     def __post_init__(self) -> None:
         check_stored_number(observation=self.observation)
         check_ranges(self)
-        check_text(LONGEST_LABEL, semantics=self.semantics)
-        check_text(1000, reason=self.reason)
+        check_texts(self)
         if not self.accept and (self.semantics, self.height, self.radius) != (None, None, None):
             raise MessageError("accept is false, and semantics, height and radius are for what is accepted")

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from .desk import CommandReport, RobotReport, Role, SiteReport
 from .observations import ObservationReport
+from .stopping import EmergencyReport
 from .supervision import AuditReport, SessionReport
 
 
@@ -17,6 +18,7 @@ class HelloResult:
     site: SiteReport
     operator: str
     role: Role
+    emergency: EmergencyReport
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar, Literal
 
-from .checks import MessageError, Ranges, check_finite, check_ranges, check_stored_number, check_text
+from .checks import (
+    MessageError,
+    Ranges,
+    Texts,
+    check_finite,
+    check_ranges,
+    check_stored_number,
+    check_texts,
+)
 
 LONGEST_LABEL = 128
 """characters; of an object's id, its label and a robot's own number of an observation."""
@@ -178,11 +186,12 @@ class SetObject:
     source: str | None = None
     acknowledged: ClassVar[bool] = True
     ranges: ClassVar[Ranges] = {"height": (0, 1000), "radius": (0.01, 50)}
+    texts: ClassVar[Texts] = {"object": LONGEST_LABEL, "label": LONGEST_LABEL, "source": LONGEST_LABEL}
 
     def __post_init__(self) -> None:
         check_finite(x=self.x, y=self.y, t=self.t)
         check_ranges(self)
-        check_text(LONGEST_LABEL, object=self.object, label=self.label, source=self.source)
+        check_texts(self)
 
 
 @dataclass(frozen=True)
@@ -200,10 +209,11 @@ class SendImage:
     t: float | None = None
     source: str | None = None
     acknowledged: ClassVar[bool] = True
+    texts: ClassVar[Texts] = {"object": LONGEST_LABEL, "media_type": LONGEST_LABEL, "source": LONGEST_LABEL}
 
     def __post_init__(self) -> None:
         check_finite(x=self.x, y=self.y, t=self.t)
-        check_text(LONGEST_LABEL, object=self.object, source=self.source, media_type=self.media_type)
+        check_texts(self)
 
 
 @dataclass(frozen=True)

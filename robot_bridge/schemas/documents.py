@@ -26,3 +26,10 @@ def documents() -> dict[str, str]:
     files["asyncapi.json"] = asyncapi()
     files["index.json"] = {"documents": sorted(files)}
     return {path: json.dumps(content, indent=2) + "\n" for path, content in files.items()}
+
+
+def served(path: str) -> str | None:
+    """Return the document at ``path`` of a URL, such as ``/schemas/asyncapi.json``; the index at its root."""
+    if path in ("/schemas", "/schemas/"):
+        return documents()["index.json"]
+    return documents().get(path.removeprefix("/schemas/")) if path.startswith("/schemas/") else None

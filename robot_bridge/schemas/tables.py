@@ -14,6 +14,7 @@ from ..messages.desk import (
 )
 from ..messages.observations import GetImage, GetObservations, ReviewObservation
 from ..messages.results import Audit, Commands, Done, HelloResult, Image, Observations, Positions, Sessions
+from ..messages.stopping import AbortTask, ClearEmergencyStop, EmergencyReport, EmergencyStop
 from ..messages.supervision import EndSession, GetAudit, GetSessions, SessionReport
 
 RESULTS: dict[type[DeskRequest], type] = {
@@ -23,6 +24,9 @@ RESULTS: dict[type[DeskRequest], type] = {
     SetPositions: Commands,
     Send: CommandReport,
     AbortAll: Commands,
+    AbortTask: CommandReport,
+    EmergencyStop: EmergencyReport,
+    ClearEmergencyStop: EmergencyReport,
     GetCommands: Commands,
     GetObservations: Observations,
     GetImage: Image,
@@ -37,5 +41,6 @@ NOTIFICATIONS: dict[str, type] = {
     "positions": Positions,
     "command": CommandReport,
     "observation": ObservationReport,
+    "emergency": EmergencyReport,
 }
 """What operators are told without asking, by method."""

@@ -1,4 +1,4 @@
-"""What is left of a task: a straight line to a target, or the rest of a drawn path and nothing of it twice."""
+"""What is left of a task: a straight line to a target, or the rest of a drawn path, nothing of it twice."""
 
 from __future__ import annotations
 
