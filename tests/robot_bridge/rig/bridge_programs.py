@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import itertools
 import socket
-import sqlite3
 import sys
 import time
 from collections.abc import Callable, Sequence
@@ -14,6 +13,7 @@ from subprocess import Popen
 from typing import Any
 
 from bridge_wires import Desk, RobotWire
+from database_client import DatabaseClient
 from stage.processes import Processes
 
 RUNS = itertools.count(1)
@@ -29,28 +29,42 @@ def wait_until(condition: Callable[[], Any], seconds: float = 10.0, what: str = 
 
 
 class Bridge:
-    """One gateway on one site and one database file, its robots, and who talks to it."""
+    """One gateway on one site and one database, its robots, and who talks to it."""
 
-    def __init__(self, processes: Processes, site: Path, file: Path):
-        self.site, self.file = site, file
-        self.database = f"sqlite:///{file}"
+    def __init__(self, processes: Processes, site: Path, database: str):
+        self.site, self.database = site, database
         self.address, self.port = "", 0
+        self.options: list[Any] = []
+        """More options of the gateway's command line."""
         self._processes = processes
         self._names: list[str] = []
         self._wires: list[Any] = []
 
+    @property
+    def file(self) -> Path:
+        """The file of a SQLite database."""
+        return Path(self.database.removeprefix("sqlite:///"))
+
     def start_gateway(self) -> None:
         """Start the gateway, on the port it had if it ran before; return once it listens."""
         options = ["--site", self.site, "--port", str(self.port), "--database", self.database]
-        name = self._run("gateway", ["serve", *options])
-        found = self._processes.wait_for_line(name, r"listening on (ws://\S+:(\d+))", 20)
+        name = self._run("gateway", ["serve", *options, *self.options])
+        found = self._processes.wait_for_line(name, r"listening on (wss?://\S+:(\d+))", 20)
         self.address, self.port = found.group(1), int(found.group(2))
 
     def start_robot(
-        self, name: str, pose: tuple[float, float, float], *, sql: bool = False, options: Sequence[Any] = ()
+        self,
+        name: str,
+        pose: tuple[float, float, float],
+        *,
+        sql: bool | str = False,
+        options: Sequence[Any] = (),
     ) -> Popen[bytes]:
-        """Start a fast reference robot, with more ``options`` of its command line."""
-        way = ["--database", self.database] if sql else ["--url", f"{self.address}/robot"]
+        """Start a fast reference robot, with more ``options`` of its command line.
+
+        ``sql`` is the URL of the database, or true for the gateway's own.
+        """
+        way = ["--database", self.database if sql is True else sql] if sql else ["--url", f"{self.address}/robot"]
         where = ",".join(str(number) for number in pose)
         fast = ["--name", name, f"--pose={where}", "--speed", "5", "--turn-rate", "3", "--rate", "20"]
         self._run(name, ["robot", *way, *fast, *options])
@@ -69,15 +83,15 @@ class Bridge:
         self.gateway.kill()
         self.gateway.wait(5)
 
-    def desk(self, operator: str = "Ada") -> Desk:
+    def desk(self, operator: str = "Ada", **options: Any) -> Desk:
         """Return an operator's connection."""
-        desk = Desk(f"{self.address}/desk", operator)
+        desk = Desk(f"{self.address}/desk", operator, **options)
         self._wires.append(desk)
         return desk
 
-    def robot(self, name: str | None = None) -> RobotWire:
+    def robot(self, name: str | None = None, **options: Any) -> RobotWire:
         """Return a robot's connection that does nothing by itself."""
-        wire = RobotWire(f"{self.address}/robot" + (f"?robot={name}" if name else ""))
+        wire = RobotWire(f"{self.address}/robot" + (f"?robot={name}" if name else ""), **options)
         self._wires.append(wire)
         return wire
 
@@ -95,8 +109,8 @@ class Bridge:
 
     def sql(self, text: str, *values: Any) -> list[tuple[Any, ...]]:
         """Run one statement as any other program would."""
-        with contextlib.closing(sqlite3.connect(self.file, timeout=5, isolation_level=None)) as connection:
-            return connection.execute(text, values).fetchall()
+        with contextlib.closing(DatabaseClient(self.database)) as client:
+            return client.sql(text, *values)
 
     def output(self) -> str:
         """Return what the gateway and the robots have printed."""
