@@ -97,6 +97,7 @@ def test_get_positions_tells_of_every_robot(bridge):
     (here,) = [r for r in answer["robots"] if r["robot"] == "here"]
     assert abs(answer["t"] - time.time()) < 5
     assert here.pop("age") < 1
+    assert here.pop("pose_age") < 1
     assert here == {
         "robot": "here",
         "state": "fresh",
