@@ -9,7 +9,7 @@ from qgis.PyQt.QtCore import QObject, QThread
 
 from .errors import NotSentError
 from .websocket_library import websocket_library
-from .wire.addresses import check_address
+from .wire.addresses import Credentials, check_address
 from .wire.client import DeskClient
 from .wire.mailbox import Mailbox, News
 from .wire.outbox import Order
@@ -36,18 +36,21 @@ class Connection(QObject):
         """Whether a link is wanted, be it up or not."""
         return self._worker is not None
 
-    def open(self, url: str, operator: str) -> None:
+    def open(self, url: str, operator: str, credentials: Credentials | None = None) -> None:
         """Connect to the gateway at ``url`` and stay connected until :meth:`close`.
 
-        :raises AddressError: when the URL cannot be a gateway's.
+        :raises AddressError: when the URL cannot be a gateway's, or the token or the CA file not be used.
         :raises LibraryMissingError: when there is no WebSocket library.
         """
         url = check_address(url)
+        credentials = credentials or Credentials()
+        credentials.check(url)
         library = websocket_library()
         self.close()
         self._mailbox = Mailbox()
         self._mailbox.put_link(LinkStatus(Phase.CONNECTING))
-        self._worker = _Worker(DeskClient(url, operator, self._mailbox, library), self._mailbox)
+        client = DeskClient(url, operator, self._mailbox, library, credentials=credentials)
+        self._worker = _Worker(client, self._mailbox)
         self._worker.start()
 
     def close(self) -> None:

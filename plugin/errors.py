@@ -18,12 +18,14 @@ class AddressError(FleetError):
 class LinkError(FleetError):
     """The gateway could not be reached, or what answered is no gateway.
 
-    ``final`` is true when trying again cannot help before somebody changes something.
+    ``final`` is true when trying again cannot help before somebody changes something; ``wants_token`` when
+    that is the token or the CA file.
     """
 
-    def __init__(self, message: str, *, final: bool = False):
+    def __init__(self, message: str, *, final: bool = False, wants_token: bool = False):
         super().__init__(message)
         self.final = final
+        self.wants_token = wants_token
 
 
 class NotSentError(FleetError):

@@ -9,9 +9,10 @@ from qgis.core import QgsProject
 from qgis.gui import QgsMapCanvas
 from qgis.PyQt.QtCore import QObject, QTimer, pyqtSignal
 
-from ...robot_bridge.messages import SiteReport
+from ...robot_bridge.messages import EmergencyReport, EmergencyStop, SiteReport
 from ..connection import Connection
 from ..errors import FleetError, NotSentError, PlacementError
+from ..wire.addresses import Credentials
 from ..wire.mailbox import News
 from ..wire.outbox import Order
 from ..wire.status import LinkStatus, Phase
@@ -35,6 +36,8 @@ class Desk(QObject):
     link_changed = pyqtSignal()
     commands_changed = pyqtSignal(list)
     selection_changed = pyqtSignal()
+    emergency_changed = pyqtSignal()
+    """An emergency stop was asked for, or the gateway said how one stands."""
     failed = pyqtSignal(str)
     """Something that was asked for was not done: the text must not go unseen."""
     complained = pyqtSignal(str)
@@ -61,6 +64,7 @@ class Desk(QObject):
         self.orders = Orders(self._submit, clock, self)
         self.link = LinkStatus(Phase.CLOSED)
         self.site: SiteReport | None = None
+        self.emergency: EmergencyReport | None = None
         self.selected: str | None = None
         self._placement: Placement | None = None
         self._check_layers = LayerCheck(project)
@@ -73,14 +77,14 @@ class Desk(QObject):
 
     # --- the link ---
 
-    def open_link(self, url: str, operator: str) -> None:
+    def open_link(self, url: str, operator: str, credentials: Credentials | None = None) -> None:
         """Connect to a gateway; another gateway's robots are forgotten when it says which site it serves.
 
-        :raises FleetError: when the URL or the name cannot be used.
+        :raises FleetError: when the URL, the name, the token or the CA file cannot be used.
         """
         if not operator.strip():
             raise NotSentError("The operator's name is empty. Write who you are: it stands in every log.")
-        self.connection.open(url, operator.strip())
+        self.connection.open(url, operator.strip(), credentials)
         self._timer.start()
         self.pull()
 
@@ -113,6 +117,7 @@ class Desk(QObject):
             self.picture.clear()
             self.trails.clear()
             self.book.clear()
+            self.emergency = None
             self.select(None)
         self.drafts.put(None)
         self.site = site
@@ -128,6 +133,10 @@ class Desk(QObject):
             self.commands_changed.emit(changed)
         for answer in news.answers:
             self.orders.answered(answer)
+        if news.emergency is not None:
+            self.emergency = news.emergency
+        if news.emergency is not None or news.answers:
+            self.emergency_changed.emit()
 
     # --- places ---
 
@@ -183,6 +192,15 @@ class Desk(QObject):
         """Ask every robot to give up its task, at once and without a question."""
         self._try(self.orders.abort_all)
 
+    def emergency_stop(self) -> None:
+        """Stop every robot at once and without a question, until a supervisor clears it."""
+        self._try(self.orders.emergency_stop)
+        self.emergency_changed.emit()
+
+    def clear_emergency(self, stop: str, reason: str) -> None:
+        """Ask for the emergency stop ``stop`` to be cleared; the gateway lets supervisors only."""
+        self._try(lambda: self.orders.clear_emergency(stop, reason))
+
     def _try(self, action: Callable[[], object]) -> bool:
         try:
             action()
@@ -192,12 +210,19 @@ class Desk(QObject):
         return True
 
     def _submit(self, order: Order) -> None:
-        if self.link.phase is not Phase.CONNECTED:
+        if self.link.phase is Phase.CONNECTED:
+            self.connection.submit(order)
+            return
+        if order.method != EmergencyStop.method or not self.connection.is_open:
             raise NotSentError(
                 "the desk is not connected to a gateway. Connect first; to stop a robot now use the robot's "
                 "own emergency stop."
             )
         self.connection.submit(order)
+        self.failed.emit(
+            "EMERGENCY STOP is NOT sent yet: the link is down. It is sent as soon as that is back; use the "
+            "robots' own emergency stops now."
+        )
 
     def _refused(self, text: str, draft: Draft | None) -> None:
         self.failed.emit(text)

@@ -10,6 +10,7 @@ from qgis.PyQt.QtWidgets import QToolBar
 from ..errors import FleetError
 from ..wire.status import Phase
 from .actions import Actions
+from .clear_dialog import ClearDialog
 from .cone_tool import ConeTool
 from .desk import Desk
 from .dock import FleetDock
@@ -84,6 +85,9 @@ class DeskWindow(QObject):
         actions.follow.toggled.connect(self.view.follow)
         actions.abort.triggered.connect(desk.abort_selected)
         actions.abort_all.triggered.connect(desk.abort_all)
+        actions.emergency.triggered.connect(desk.emergency_stop)
+        actions.clear_emergency.triggered.connect(self._ask_to_clear)
+        desk.emergency_changed.connect(self._show_emergency)
         self.dock.table.zoom_wanted.connect(self._zoom_to)
         desk.failed.connect(self.notices.error)
         desk.complained.connect(self.notices.warning)
@@ -100,13 +104,17 @@ class DeskWindow(QObject):
         if not wanted:
             self.desk.close_link()
             return
+        panel = self.dock.connection_panel
         try:
-            self.desk.open_link(self.dock.connection_panel.url(), self.dock.connection_panel.operator())
+            self.desk.open_link(panel.url(), panel.operator(), panel.credentials())
         except FleetError as error:
             self.notices.error(error)
             self._show_link()
             return
-        self.dock.connection_panel.remember()
+        try:
+            panel.remember()
+        except FleetError as error:
+            self.notices.warning(str(error))
 
     def _show_link(self) -> None:
         link = self.desk.link
@@ -119,6 +127,17 @@ class DeskWindow(QObject):
             # The panel goes on showing it; the message bar says it once for each outage.
             self.notices.warning(link.reason)
         self._told = "" if link.phase in (Phase.CONNECTED, Phase.CLOSED) else link.reason
+
+    def _show_emergency(self) -> None:
+        if not self.dock.banner.isHidden() and not self.dock.isUserVisible():
+            self.dock.setUserVisible(True)
+
+    def _ask_to_clear(self) -> None:
+        report = self.desk.emergency
+        if report is not None and report.in_force:
+            dialog = ClearDialog(report, self._iface.mainWindow())
+            dialog.confirmed.connect(self.desk.clear_emergency)
+            dialog.open()
 
     def _zoom_to(self, robot: str) -> None:
         try:

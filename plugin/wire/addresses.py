@@ -1,15 +1,60 @@
-"""The gateway's URL, and what a failure to reach it means."""
+"""The gateway's URL, and what an operator brings to it."""
 
 from __future__ import annotations
 
-import socket
+import ipaddress
 import ssl
-from types import ModuleType
+from dataclasses import dataclass, field
+from typing import Any
 from urllib.parse import urlsplit
 
-from ..errors import AddressError, LinkError
+from ..errors import AddressError
 
 DEFAULT_URL = "ws://127.0.0.1:8765/desk"
+
+
+@dataclass(frozen=True)
+class Credentials:
+    """The operator's token, and the file (PEM) of the authority that the gateway's certificate is from.
+
+    Both are empty where none is needed; without a file the authorities of the system are trusted.
+    """
+
+    token: str = field(default="", repr=False)
+    ca_file: str = ""
+
+    def options(self, url: str) -> dict[str, Any]:
+        """Return what ``websockets`` is to connect to ``url`` with; raises AddressError."""
+        options: dict[str, Any] = {}
+        if self.token:
+            options["additional_headers"] = {"Authorization": f"Bearer {self.token}"}
+        if urlsplit(url).scheme == "wss":
+            options["ssl"] = self._context()
+        return options
+
+    def check(self, url: str) -> None:
+        """Raise AddressError when ``url`` cannot be connected to with this."""
+        parts = urlsplit(url)
+        if self.token and (not self.token.isascii() or len(self.token.split()) != 1):
+            raise AddressError("The token cannot be right: it is one word. Paste it again, whole and alone.")
+        if parts.scheme == "ws" and self.token and not _is_own(parts.hostname or ""):
+            raise AddressError(
+                f"Over {url} everybody on the way could read the token. Write wss:// instead of ws://; a "
+                "gateway that other computers can reach has TLS."
+            )
+        if parts.scheme == "wss":
+            self._context()
+
+    def _context(self) -> ssl.SSLContext:
+        try:
+            context = ssl.create_default_context(cafile=self.ca_file or None)
+        except (OSError, ssl.SSLError) as error:
+            raise AddressError(
+                f"The CA file {self.ca_file} cannot be used: {error.strerror or error}. Choose the ca.pem "
+                "that whoever runs the site gave you."
+            ) from error
+        context.minimum_version = ssl.TLSVersion.TLSv1_2
+        return context
 
 
 def check_address(url: str) -> str:
@@ -35,77 +80,8 @@ def check_address(url: str) -> str:
     return url
 
 
-def explain(error: Exception, url: str, exceptions: ModuleType) -> LinkError | None:
-    """Return what a failed or ended link means, in the operator's words; None when it is not known.
-
-    ``exceptions`` is the module of the websockets package in use.
-    """
-    place = _place(url)
-    if isinstance(error, exceptions.InvalidStatus):
-        return _bad_status(error.response.status_code, url)
-    if isinstance(error, (exceptions.InvalidHandshake, exceptions.ProtocolError, EOFError)):
-        return LinkError(
-            f"What answers at {place} does not speak WebSocket. Check host and port: a gateway prints its "
-            "URL when it starts."
-        )
-    if isinstance(error, exceptions.ConnectionClosed):
-        return _closed(error, place)
-    if isinstance(error, exceptions.InvalidURI):
-        return LinkError(f"The gateway's URL {url} cannot be used. Write it like {DEFAULT_URL}.", final=True)
-    return _network_failure(error, place)
-
-
-def _place(url: str) -> str:
-    parts = urlsplit(url)
-    return f"{parts.hostname}:{parts.port or (443 if parts.scheme == 'wss' else 80)}"
-
-
-def _bad_status(status: int, url: str) -> LinkError:
-    if status == 404:
-        return LinkError(
-            f"There is no desk at {url} (HTTP 404). A gateway's desk has the path /desk, "
-            f"as in {DEFAULT_URL}; or another program answers there."
-        )
-    if status in (401, 403):
-        return LinkError(
-            f"{url} refuses this desk (HTTP {status}). Ask whoever runs the site for access.", final=True
-        )
-    return LinkError(
-        f"{url} answered HTTP {status} instead of opening a WebSocket. Check that a gateway runs there and "
-        "what its log says."
-    )
-
-
-def _closed(error: Exception, place: str) -> LinkError:
-    received = getattr(error, "rcvd", None)
-    if received is None:
-        return LinkError(
-            f"The link to the gateway at {place} broke off. It is tried again by itself; if it does not come "
-            "back, check the gateway and the network."
-        )
-    why = f": {received.reason}" if received.reason else ""
-    return LinkError(
-        f"The gateway at {place} closed the link (code {received.code}{why}). It is tried again by itself."
-    )
-
-
-def _network_failure(error: Exception, place: str) -> LinkError | None:
-    if isinstance(error, ssl.SSLError):
-        return LinkError(
-            f"No secure link to {place}: {error.reason or error}. Check the certificate, or use ws:// if the "
-            "gateway has no TLS."
-        )
-    if isinstance(error, ConnectionRefusedError) or "Connect call failed" in str(error):
-        return LinkError(
-            f"Nothing listens at {place}. Start the gateway (robot-bridge serve --site ...) or correct the "
-            "URL."
-        )
-    if isinstance(error, socket.gaierror):
-        return LinkError(f"The host of {place} is not known to this network. Correct the URL.")
-    if isinstance(error, TimeoutError):
-        return LinkError(
-            f"{place} did not answer in time. Check that the gateway runs, and the network and firewall."
-        )
-    if isinstance(error, OSError):
-        return LinkError(f"{place} cannot be reached: {error.strerror or error}. Check network and URL.")
-    return None
+def _is_own(host: str) -> bool:
+    try:
+        return ipaddress.ip_address("127.0.0.1" if host == "localhost" else host).is_loopback
+    except ValueError:
+        return False

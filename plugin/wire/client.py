@@ -7,9 +7,10 @@ import time
 from types import ModuleType
 from typing import Any
 
-from ..errors import LinkError
-from .addresses import explain
+from ..errors import AddressError, LinkError
+from .addresses import Credentials
 from .backoff import Backoff
+from .failures import explain
 from .mailbox import Mailbox
 from .outbox import Order
 from .protocol import DeskProtocol
@@ -26,8 +27,17 @@ LARGEST_MESSAGE = 64 * 2**20
 class DeskClient:
     """The link to one gateway, for as long as :meth:`run` runs. All methods belong to its event loop."""
 
-    def __init__(self, url: str, operator: str, mailbox: Mailbox, library: ModuleType, rate: float = 10.0):
+    def __init__(
+        self,
+        url: str,
+        operator: str,
+        mailbox: Mailbox,
+        library: ModuleType,
+        rate: float = 10.0,
+        credentials: Credentials | None = None,
+    ):
         self._url = url
+        self._credentials = credentials or Credentials()
         self._mailbox = mailbox
         self._library = library
         self._protocol = DeskProtocol(operator, rate, url, mailbox, time.monotonic)
@@ -43,7 +53,7 @@ class DeskClient:
                 failure = await self._attempt()
                 reason = str(failure)
                 if failure.final:
-                    self._mailbox.put_link(LinkStatus(Phase.FAILED, reason))
+                    self._mailbox.put_link(LinkStatus(Phase.FAILED, reason, wants_token=failure.wants_token))
                     return
                 wait = self._backoff.next_wait()
                 due = time.monotonic() + wait
@@ -63,6 +73,8 @@ class DeskClient:
                 await self._converse(socket)
         except LinkError as error:
             return error
+        except AddressError as error:
+            return LinkError(str(error), final=True, wants_token=True)
         except Exception as error:
             explained = explain(error, self._url, self._library.exceptions)
             if explained is None:
@@ -80,6 +92,7 @@ class DeskClient:
             "close_timeout": CLOSE_WITHIN,
             "max_size": LARGEST_MESSAGE,
             "compression": None,
+            **self._credentials.options(self._url),
         }
         version = self._library.version.version
         if int(version.split(".")[0]) >= 15:

@@ -10,7 +10,7 @@ import threading
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
-from ...robot_bridge.messages import CommandReport, RobotReport, SiteReport
+from ...robot_bridge.messages import CommandReport, EmergencyReport, RobotReport, SiteReport
 from .outbox import Answer
 from .status import LinkStatus, Phase
 
@@ -34,6 +34,7 @@ class News:
     robots: dict[str, Sighting] = field(default_factory=dict)
     commands: dict[str, CommandReport] = field(default_factory=dict)
     answers: list[Answer] = field(default_factory=list)
+    emergency: EmergencyReport | None = None
 
 
 class Mailbox:
@@ -68,6 +69,11 @@ class Mailbox:
                 commands[report.command] = report
             while len(commands) > MOST_COMMANDS:
                 del commands[next(iter(commands))]
+
+    def put_emergency(self, report: EmergencyReport) -> None:
+        """Leave how an emergency stop stands."""
+        with self._lock:
+            self._news.emergency = report
 
     def put_answer(self, answer: Answer) -> None:
         """Leave what became of an order; every one of them is kept."""

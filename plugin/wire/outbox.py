@@ -11,13 +11,15 @@ class Order:
     """One thing that the operator asked for, with one button pressed once.
 
     ``key`` stays the same however often the order has to be repeated; for ``send`` it is the command's id,
-    which lets the gateway recognise a repetition. ``asked_at`` is on the monotonic clock.
+    which lets the gateway recognise a repetition. ``asked_at`` is on the monotonic clock. ``lasting`` is for
+    what is right however late it comes, as an emergency stop is.
     """
 
     key: str
     method: str
     params: dict[str, Any] = field(default_factory=dict)
     asked_at: float = 0.0
+    lasting: bool = False
 
 
 @dataclass(frozen=True)
@@ -33,7 +35,7 @@ class Outbox:
     """Keeps orders over the loss of a link, so that each is repeated until answered and then never again.
 
     A robot must not drive off because of something that was asked for long ago: an order older than
-    ``repeat_within`` seconds is not repeated but handed back as not known to have arrived.
+    ``repeat_within`` seconds is not repeated but handed back as not known to have arrived, unless it lasts.
     """
 
     def __init__(self, repeat_within: float = 30.0):
@@ -56,7 +58,8 @@ class Outbox:
 
     def renew(self, now: float) -> tuple[list[Order], list[Order]]:
         """Return the orders to send on a new link, oldest first, and those that are too old, taken out."""
-        too_old = [o for o in self._waiting.values() if now - o.asked_at > self._repeat_within]
+        limit = now - self._repeat_within
+        too_old = [o for o in self._waiting.values() if o.asked_at < limit and not o.lasting]
         for order in too_old:
             del self._waiting[order.key]
         return list(self._waiting.values()), too_old

@@ -10,13 +10,16 @@ from typing import Any
 
 from ...robot_bridge.messages import (
     PROTOCOL_VERSION,
+    ClearEmergencyStop,
     CommandReport,
+    EmergencyStop,
     GetCommands,
     Hello,
     RobotReport,
     SiteReport,
     Subscribe,
     command_report,
+    emergency_report,
     robot_report,
     site_report,
     to_json,
@@ -102,6 +105,8 @@ class DeskProtocol:
             self._mailbox.put_robots(reports, self._clock())
         elif method == "command":
             self._mailbox.put_commands([command_report(params)])
+        elif method == "emergency":
+            self._mailbox.put_emergency(emergency_report(params))
         # Another notification is of a newer gateway and nothing that this desk asked for.
 
     def _answered(self, message: dict[str, Any]) -> list[str]:
@@ -129,6 +134,8 @@ class DeskProtocol:
                 final=True,
             )
         self._mailbox.put_site(checked_site(site_report(result["site"])))
+        if "emergency" in result:
+            self._mailbox.put_emergency(emergency_report(result["emergency"]))
         self.ready = True
         orders, too_old = self._outbox.renew(self._clock())
         for order in too_old:
@@ -146,6 +153,8 @@ class DeskProtocol:
                 self._mailbox.put_answer(Answer(order, error=_error_text(message)))
             return []
         result = message.get("result") or {}
+        if order.method in (EmergencyStop.method, ClearEmergencyStop.method):
+            self._mailbox.put_emergency(emergency_report(result))
         self._mailbox.put_commands(_commands_in(result))
         if waiting is not None:
             self._mailbox.put_answer(Answer(order, result=result))
@@ -154,7 +163,7 @@ class DeskProtocol:
 
 def checked_robot(report: RobotReport) -> RobotReport:
     """Return ``report`` if its numbers are finite numbers, else raise ValueError naming the field."""
-    for name in ("age", "x", "y", "theta", "v", "battery"):
+    for name in ("age", "x", "y", "theta", "v", "battery", "latency"):
         _check_number(f"{name} of robot {report.robot}", getattr(report, name), name != "age")
     return report
 

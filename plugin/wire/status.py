@@ -18,11 +18,15 @@ class Phase(str, Enum):
 
 @dataclass(frozen=True)
 class LinkStatus:
-    """The link's stage, why it is not connected, and when the next attempt is due (monotonic clock)."""
+    """The link's stage, why it is not connected, and when the next attempt is due (monotonic clock).
+
+    ``wants_token`` is true when it takes another token or CA file to connect.
+    """
 
     phase: Phase
     reason: str = ""
     next_try: float | None = None
+    wants_token: bool = False
 
     def wait(self, now: float) -> float:
         """Return the seconds until the next attempt, 0 when it is due."""
