@@ -112,9 +112,9 @@ class Journal:
                 self._dropped += 1
                 return
             self._waiting.extendleft(reversed(batch))
-            self._batch = 1
+            self._batch = max(1, count // 2)
             raise
-        self._batch = BATCH
+        self._batch = min(BATCH, 2 * self._batch)
 
     async def _is_there(self) -> bool:
         try:

@@ -1,0 +1,119 @@
+"""A database of the test's own with accounts in it, and gateways whose site has other limits."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from robot_bridge.store.database import Database
+
+
+@pytest.fixture
+async def database(tmp_path):
+    database = Database(f"sqlite:///{tmp_path}/accounts.db")
+    await database.open()
+    yield database
+    await database.close()
+
+
+@pytest.fixture
+def clock():
+    """A clock that the test turns: ``clock.now``."""
+
+    class Clock:
+        now = 1_000_000.0
+
+        def __call__(self):
+            return self.now
+
+    return Clock()
+
+
+@pytest.fixture(scope="module")
+def limited_site(sample_site, tmp_path_factory):
+    """Make a copy of the sample site with more lines in its site.toml: ``limited_site(text)``."""
+
+    def make(text: str) -> Path:
+        folder = tmp_path_factory.mktemp("site")
+        shutil.copy(sample_site / "site.gpkg", folder)
+        settings = (sample_site / "site.toml").read_text(encoding="utf-8")
+        (folder / "site.toml").write_text(f"{settings}\n{text}\n", encoding="utf-8")
+        return folder
+
+    return make
+
+
+class Accounts:
+    """The command line on one database."""
+
+    def __init__(self, database: str):
+        self.database = database
+
+    def run(self, *words: object) -> subprocess.CompletedProcess[str]:
+        """Run ``robot-bridge`` with these words on the database."""
+        command = [sys.executable, "-m", "robot_bridge", *map(str, words), "--database", self.database]
+        return subprocess.run(command, capture_output=True, text=True, timeout=30, check=False)
+
+    def do(self, *words: object) -> str:
+        """Run what must succeed; return what it printed on standard output."""
+        done = self.run(*words)
+        assert done.returncode == 0, done.stderr
+        return done.stdout.strip()
+
+    def operator(self, name: str, role: str, *words: object) -> dict[str, dict[str, str]]:
+        """Make an operator; return what its connections are opened with."""
+        return bearing(self.do("operators", "add", name, "--role", role, *words))
+
+    def robot(self, name: str) -> dict[str, dict[str, str]]:
+        """Make a robot's token; return what its connections are opened with."""
+        return bearing(self.do("robots", "token", name))
+
+
+def bearing(token: str) -> dict[str, dict[str, str]]:
+    """Return the options of a connection that carries ``token``."""
+    return {"additional_headers": {"Authorization": f"Bearer {token}"}}
+
+
+@pytest.fixture(scope="module")
+def accounts_of():
+    """The command line on a bridge's database: ``accounts_of(bridge)``."""
+    return lambda bridge: Accounts(bridge.database)
+
+
+@pytest.fixture(scope="session")
+def close_code():
+    """Wait for the end of a connection: ``close_code(wire)`` is (code, reason, seconds it took)."""
+    from websockets.exceptions import ConnectionClosed
+
+    def wait(wire, seconds: float = 5.0):
+        began = time.monotonic()
+        with pytest.raises(ConnectionClosed) as caught:
+            while True:
+                wire.connection.recv(began + seconds - time.monotonic())
+        received = caught.value.rcvd
+        return (
+            received.code if received else None,
+            received.reason if received else "",
+            time.monotonic() - began,
+        )
+
+    return wait
+
+
+@pytest.fixture(scope="session")
+def refused():
+    """Return the status and the text with which a WebSocket was not opened."""
+    from websockets.exceptions import InvalidStatus
+
+    def attempt(connect):
+        with pytest.raises(InvalidStatus) as caught:
+            connect()
+        response = caught.value.response
+        return response.status_code, bytes(response.body).decode()
+
+    return attempt

@@ -1,0 +1,230 @@
+"""Accounts, the audit log and sessions on a real database."""
+
+from __future__ import annotations
+
+import asyncio
+
+import pytest
+
+from robot_bridge.access import accounts, audit, session_rows
+from robot_bridge.access.account_book import AccountBook
+from robot_bridge.access.audit import Entry
+from robot_bridge.access.errors import AccessError
+from robot_bridge.access.journal import Journal
+from robot_bridge.access.session_rows import SessionRow
+from robot_bridge.access.tokens import TokenKind, digest
+from robot_bridge.errors import StoreError
+from robot_bridge.messages import MessageError, Role
+
+
+async def test_a_token_opens_until_it_is_revoked_or_expires(database):
+    book = AccountBook(database)
+    token = await database.run(accounts.add_operator, "Ada", Role.SUPERVISOR, 100.0, 200.0)
+    assert await book.refresh()
+    grant = book.find(token)
+    assert (grant.owner, grant.role, grant.kind) == ("Ada", Role.SUPERVISOR, TokenKind.OPERATOR)
+    assert grant.fault(199.0) is None
+    assert "expired" in grant.fault(200.0)
+    await database.run(accounts.revoke_operator, "Ada", 150.0)
+    assert await book.refresh()
+    assert "revoked" in book.find(token).fault(151.0)
+
+
+async def test_only_a_tokens_hash_is_in_the_database(database, tmp_path):
+    token = await database.run(accounts.add_operator, "Ada", Role.VIEWER, 100.0)
+    robot = await database.run(accounts.issue_robot_token, "r1", 100.0)
+    files = [file.read_bytes() for file in tmp_path.iterdir()]
+    assert any(digest(token).encode() in content for content in files)
+    assert not any(secret.encode() in content for content in files for secret in (token, robot))
+
+
+async def test_a_new_token_takes_the_place_of_the_old(database):
+    book = AccountBook(database)
+    old = await database.run(accounts.add_operator, "Ada", Role.VIEWER, 100.0)
+    new = await database.run(accounts.rotate_operator, "Ada", 101.0)
+    robots = [await database.run(accounts.issue_robot_token, "r1", 100.0 + n) for n in range(2)]
+    await book.refresh()
+    assert [book.find(token).fault(102.0) is None for token in (old, new, *robots)] == [
+        False,
+        True,
+        False,
+        True,
+    ]
+
+
+async def test_what_changed_is_noticed_and_nothing_else(database):
+    book = AccountBook(database)
+    assert await book.refresh()
+    assert not await book.refresh()
+    changes = [
+        (accounts.add_operator, "Ada", Role.VIEWER, 100.0),
+        (accounts.set_role, "Ada", Role.OPERATOR),
+        (accounts.rotate_operator, "Ada", 101.0),
+        (accounts.issue_robot_token, "r1", 102.0),
+        (accounts.revoke_robot_token, "r1", 103.0),
+        (accounts.revoke_operator, "Ada", 103.0),
+    ]
+    for change in changes:
+        await database.run(*change)
+        assert await book.refresh(), change
+        assert not await book.refresh()
+
+
+async def test_doors_that_were_closed_once_stay_closed(database):
+    book = AccountBook(database)
+    await book.refresh()
+    assert book.is_open(TokenKind.OPERATOR)
+    await database.run(accounts.add_operator, "Ada", Role.SUPERVISOR, 100.0)
+    await database.run(accounts.revoke_operator, "Ada", 101.0)
+    await book.refresh()
+    assert not book.is_open(TokenKind.OPERATOR)
+    assert book.is_open(TokenKind.ROBOT)
+    assert not book.has_operator(102.0)
+
+
+@pytest.mark.parametrize("name", ["", "  ", "a\nb", "x" * 129, "\x00"])
+async def test_a_name_that_cannot_be_an_operators_is_refused(database, name):
+    with pytest.raises(AccessError, match="cannot be used"):
+        await database.run(accounts.add_operator, name, Role.VIEWER, 1.0)
+
+
+async def test_names_differ_by_more_than_capitals(database):
+    await database.run(accounts.add_operator, "Ada", Role.VIEWER, 1.0)
+    with pytest.raises(AccessError, match=r"'Ada' is there already.*operators rotate"):
+        await database.run(accounts.add_operator, "ADA", Role.VIEWER, 1.0)
+    await database.run(accounts.add_operator, "'; drop table operators; --", Role.VIEWER, 1.0)
+    assert len(await database.run(accounts.all_operators)) == 2
+
+
+@pytest.mark.parametrize(
+    "work",
+    [
+        lambda c: accounts.rotate_operator(c, "Bob", 1.0),
+        lambda c: accounts.revoke_operator(c, "Bob", 1.0),
+        lambda c: accounts.set_role(c, "Bob", Role.VIEWER),
+    ],
+)
+async def test_an_operator_that_is_not_known_is_named_with_those_that_are(database, work):
+    await database.run(accounts.add_operator, "Ada", Role.VIEWER, 1.0)
+    with pytest.raises(AccessError, match="'Bob' is not known; known are: Ada"):
+        await database.run(work)
+
+
+async def test_a_robots_name_is_checked(database):
+    with pytest.raises(MessageError, match="cannot be used"):
+        await database.run(accounts.issue_robot_token, "r 1", 1.0)
+    with pytest.raises(AccessError, match="has no token"):
+        await database.run(accounts.revoke_robot_token, "r1", 1.0)
+
+
+# --- the audit log --------------------------------------------------------------------------------------
+
+
+async def written(database, **filters):
+    return await database.run(lambda c: audit.newest(c, 1000, **filters))
+
+
+async def test_what_is_noted_is_written_in_order_and_found_again(database, clock):
+    journal = Journal(database, clock)
+    for number in range(5):
+        clock.now += 1
+        journal.note("Ada" if number % 2 else "Bob", f"step {number}", done=number != 3)
+    await journal.flush()
+    entries = await written(database)
+    assert [entry.action for entry in entries] == [f"step {n}" for n in (4, 3, 2, 1, 0)]
+    assert [entry.done for entry in entries] == [True, False, True, True, True]
+    assert [e.action for e in await written(database, who="Ada")] == ["step 3", "step 1"]
+    assert [e.action for e in await written(database, since=clock.now - 1)] == ["step 4", "step 3"]
+    assert [e.action for e in await written(database, before=entries[3].id)] == ["step 0"]
+
+
+async def test_what_is_too_long_or_no_text_is_cut_and_not_lost(database):
+    entry = Entry(1.0, "x" * 500, "y" * 99, True, detail="z" * 10_000, subject="\ud800\0")
+    await database.run(audit.add, [entry])
+    (found,) = await written(database)
+    assert (len(found.who), len(found.action), len(found.detail)) == (128, 32, 2000)
+    assert found.subject == "?�"
+
+
+class Outage:
+    """A database that can be away."""
+
+    def __init__(self, database):
+        self.database, self.away = database, False
+
+    async def run(self, work, *arguments):
+        if self.away:
+            raise StoreError("away")
+        return await self.database.run(work, *arguments)
+
+
+async def test_what_is_noted_while_the_database_is_away_is_written_later(database, clock, monkeypatch):
+    monkeypatch.setattr("robot_bridge.access.journal.RETRY_AFTER", 0.01)
+    outage = Outage(database)
+    journal = Journal(outage, clock)
+    running = asyncio.create_task(journal.run())
+    outage.away = True
+    journal.note("Ada", "first")
+    await asyncio.sleep(0.05)
+    journal.note("Ada", "second")
+    await asyncio.sleep(0.05)
+    assert await written(database) == []
+    outage.away = False
+    await asyncio.sleep(0.2)
+    running.cancel()
+    assert [entry.action for entry in await written(database)] == ["second", "first"]
+
+
+async def test_a_long_outage_costs_no_memory_and_the_oldest_are_counted_as_lost(
+    database, monkeypatch, caplog
+):
+    monkeypatch.setattr("robot_bridge.access.journal.LARGEST_BACKLOG", 10)
+    journal = Journal(database)
+    for number in range(25):
+        journal.note("Ada", str(number))
+    await journal.flush()
+    assert [int(entry.action) for entry in await written(database)] == list(range(24, 14, -1))
+    assert "15 pieces of the audit log were lost" in caplog.text
+
+
+async def test_one_piece_that_the_database_refuses_keeps_none_of_the_others_back(database, caplog):
+    journal = Journal(database)
+    session = SessionRow("id", "Ada", None, "viewer", "here", 1.0)
+    journal.note("Ada", "before")
+    journal.began(session)
+    journal.began(session)
+    journal.note("Ada", "after")
+    for _ in range(3):
+        try:
+            await journal.flush()
+            break
+        except StoreError:
+            continue
+    assert [entry.action for entry in await written(database)] == ["after", "before"]
+    assert "1 pieces of the audit log were lost" in caplog.text
+
+
+# --- sessions -------------------------------------------------------------------------------------------
+
+
+async def test_a_session_can_be_ended_by_how_its_id_begins(database):
+    for id in ("aa11", "aa22", "bb33"):
+        await database.run(session_rows.begin, SessionRow(id, "Ada", None, "viewer", "here", 1.0))
+    for id in ("aa", "", "cc", "%"):
+        with pytest.raises(AccessError, match="sessions list"):
+            await database.run(session_rows.end, id, 2.0, "why")
+    await database.run(session_rows.end, "bb", 2.0, "why")
+    assert await database.run(session_rows.ended_among, ["aa11", "aa22", "bb33"]) == {"bb33": "why"}
+    with pytest.raises(AccessError):
+        await database.run(session_rows.end, "bb33", 3.0, "again")
+    left = await database.run(lambda c: session_rows.listed(c, everything=False, limit=9))
+    assert [session.id for session in left] == ["aa11", "aa22"]
+
+
+async def test_what_an_earlier_gateway_left_open_is_ended_and_old_ones_are_forgotten(database):
+    await database.run(session_rows.begin, SessionRow("aa", "Ada", None, "viewer", "here", 1.0))
+    await database.run(session_rows.end_all, 5.0, "the gateway ended")
+    (session,) = await database.run(lambda c: session_rows.listed(c, everything=True, limit=9))
+    assert (session.ended_at, session.reason) == (5.0, "the gateway ended")
+    await database.run(session_rows.forget_ended, 6.0)
+    assert await database.run(lambda c: session_rows.listed(c, everything=True, limit=9)) == []

@@ -1,0 +1,157 @@
+"""A site's certificate authority and the gateway's certificate, looked at with OpenSSL."""
+
+from __future__ import annotations
+
+import ssl
+import stat
+import subprocess
+
+import pytest
+
+from robot_bridge.access import certificates
+from robot_bridge.access.errors import AccessError
+from robot_bridge.access.tls import ServerFiles, ServerTls, server_files
+
+
+@pytest.fixture
+def files(tmp_path):
+    return certificates.create(tmp_path / "tls", ["gateway.example.org", "localhost"], ["127.0.0.1", "::1"])
+
+
+def openssl(*words):
+    return subprocess.run(["openssl", *map(str, words)], capture_output=True, text=True, check=False).stdout
+
+
+def test_openssl_trusts_the_gateway_through_the_site_alone(files):
+    for name in (["-verify_hostname", "localhost"], ["-verify_ip", "127.0.0.1"], ["-verify_ip", "::1"]):
+        said = openssl(
+            "verify", "-x509_strict", "-purpose", "sslserver", "-CAfile", files.ca, *name, files.certificate
+        )
+        assert said.strip().endswith("OK"), said
+    wrong = openssl("verify", "-CAfile", files.ca, "-verify_hostname", "other.example.org", files.certificate)
+    assert not wrong.strip().endswith("OK")
+    assert not openssl("verify", files.certificate).strip().endswith("OK")
+
+
+def test_the_authority_signs_servers_and_no_further_authorities(files):
+    ca = openssl("x509", "-in", files.ca, "-noout", "-text")
+    assert "CA:TRUE, pathlen:0" in ca
+    assert "Certificate Sign, CRL Sign" in ca
+    server = openssl("x509", "-in", files.certificate, "-noout", "-text")
+    assert "CA:FALSE" in server
+    assert "TLS Web Server Authentication" in server
+    assert certificates.names_of(files.certificate) == [
+        "gateway.example.org",
+        "localhost",
+        "127.0.0.1",
+        "::1",
+    ]
+
+
+def test_keys_can_be_read_by_their_owner_alone(files):
+    assert [stat.S_IMODE(file.stat().st_mode) for file in (files.ca_key, files.key)] == [0o600, 0o600]
+
+
+def test_renewing_changes_key_and_certificate_and_keeps_authority_and_names(files):
+    before = [file.read_bytes() for file in (files.ca, files.ca_key, files.certificate, files.key)]
+    names = certificates.names_of(files.certificate)
+    until = certificates.renew(files.folder, days=30)
+    after = [file.read_bytes() for file in (files.ca, files.ca_key, files.certificate, files.key)]
+    assert [a == b for a, b in zip(before, after, strict=True)] == [True, True, False, False]
+    assert certificates.names_of(files.certificate) == names
+    assert until == certificates.valid_until(files.certificate)
+    assert openssl("verify", "-CAfile", files.ca, files.certificate).strip().endswith("OK")
+    assert stat.S_IMODE(files.key.stat().st_mode) == 0o600
+
+
+def test_certificates_that_are_trusted_already_are_not_overwritten(files):
+    before = files.ca.read_bytes()
+    with pytest.raises(AccessError, match="tls renew"):
+        certificates.create(files.folder, ["localhost"], [])
+    assert files.ca.read_bytes() == before
+
+
+@pytest.mark.parametrize(
+    ("names", "addresses", "says"),
+    [
+        ([], [], "give --name HOST, or --ip ADDRESS"),
+        (["192.168.1.4"], [], "give it as --ip 192.168.1.4"),
+        (["a b"], [], "is no host name"),
+        (["a..b"], [], "is no host name"),
+        ([], ["gateway"], "is no IP address"),
+    ],
+)
+def test_what_is_no_name_is_named(tmp_path, names, addresses, says):
+    with pytest.raises(AccessError, match=says):
+        certificates.create(tmp_path / "tls", names, addresses)
+    assert not (tmp_path / "tls").exists()
+
+
+def test_a_folder_without_an_authority_cannot_be_renewed(tmp_path):
+    with pytest.raises(AccessError, match=r"ca\.pem cannot be read"):
+        certificates.renew(tmp_path)
+
+
+def test_a_gateway_needs_both_files_and_they_must_belong_together(files, tmp_path):
+    with pytest.raises(AccessError, match="give both"):
+        server_files(files.certificate, None)
+    assert server_files(None, None) is None
+    other = certificates.create(tmp_path / "other", ["localhost"], [])
+    with pytest.raises(AccessError, match="belong to each other"):
+        ServerTls(ServerFiles(files.certificate, other.key))
+    with pytest.raises(AccessError, match=r"none\.pem cannot be read"):
+        ServerTls(ServerFiles(tmp_path / "none.pem", files.key))
+    files.key.write_text("no key")
+    with pytest.raises(AccessError, match="cannot be used"):
+        ServerTls(ServerFiles(files.certificate, files.key))
+
+
+def test_an_encrypted_key_is_refused_and_nobody_is_asked_for_a_password(files):
+    subprocess.run(
+        [
+            "openssl",
+            "pkey",
+            "-in",
+            files.key,
+            "-aes256",
+            "-passout",
+            "pass:x",
+            "-out",
+            files.key.with_suffix(".enc"),
+        ],
+        check=True,
+    )
+    with pytest.raises(AccessError, match="encrypted"):
+        ServerTls(ServerFiles(files.certificate, files.key.with_suffix(".enc")))
+
+
+def test_a_new_certificate_that_cannot_be_used_changes_nothing(files, caplog):
+    tls = ServerTls(ServerFiles(files.certificate, files.key))
+    good = files.key.read_bytes()
+    files.key.write_text("no key")
+    assert not tls.reload()
+    assert "the certificate in use stays" in caplog.text
+    files.key.write_bytes(good)
+    assert tls.reload()
+
+
+def test_old_versions_and_weak_ciphers_are_off(files):
+    context = ServerTls(ServerFiles(files.certificate, files.key)).context
+    assert context.minimum_version == ssl.TLSVersion.TLSv1_2
+    names = [cipher["name"] for cipher in context.get_ciphers()]
+    assert names
+    assert all(
+        name.startswith(("TLS_", "ECDHE-")) and ("GCM" in name or "CHACHA20" in name) for name in names
+    )
+
+
+def test_a_certificate_that_is_about_to_expire_is_warned_of(files, caplog):
+    certificates.renew(files.folder, days=5)
+    ServerTls(ServerFiles(files.certificate, files.key))
+    assert "tls renew" in caplog.text
+
+
+def test_a_key_that_others_can_read_is_warned_of(files, caplog):
+    files.key.chmod(0o644)
+    ServerTls(ServerFiles(files.certificate, files.key))
+    assert "chmod 600" in caplog.text
