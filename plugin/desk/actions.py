@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from qgis.PyQt.QtCore import QObject
-from qgis.PyQt.QtGui import QIcon
+from qgis.PyQt.QtCore import QObject, Qt
+from qgis.PyQt.QtGui import QIcon, QKeySequence
 from qgis.PyQt.QtWidgets import QAction
 
 ICONS = Path(__file__).parents[2] / "resources" / "icons"
+EMERGENCY_KEYS = ("F10", "Pause")
+"""Either is enough; QGIS uses neither."""
 
 
 class Actions(QObject):
@@ -26,6 +28,11 @@ class Actions(QObject):
         self.follow = self._made("fleet_follow", "Follow", "follow.svg", checkable=True)
         self.abort = self._made("fleet_abort", "Abort robot", "abort.svg")
         self.abort_all = self._made("fleet_abort_all", "ABORT ALL", "abort_all.svg")
+        self.emergency = self._made("fleet_emergency_stop", "EMERGENCY STOP", "emergency_stop.svg")
+        self.emergency.setShortcuts([QKeySequence(key) for key in EMERGENCY_KEYS])
+        self.emergency.setShortcutContext(Qt.ShortcutContext.ApplicationShortcut)
+        self.emergency.setAutoRepeat(False)
+        self.clear_emergency = self._made("fleet_clear_emergency", "Clear emergency stop …", "cancel.svg")
         self._explain()
 
     def all(self) -> list[QAction]:
@@ -41,6 +48,7 @@ class Actions(QObject):
             self.follow,
             self.abort,
             self.abort_all,
+            self.emergency,
         ]
 
     def _made(self, name: str, text: str, icon: str, *, checkable: bool = False) -> QAction:
@@ -65,3 +73,8 @@ class Actions(QObject):
         self.follow.setToolTip("Keep the selected robot in view")
         self.abort.setToolTip("The selected robot gives up its task at once")
         self.abort_all.setToolTip("Every robot gives up its task, at once and without a question")
+        self.emergency.setToolTip(
+            f"Every robot stops now, and none can be sent anywhere until a supervisor clears it "
+            f"({' or '.join(EMERGENCY_KEYS)})"
+        )
+        self.clear_emergency.setToolTip("Let robots be sent again; takes a supervisor, and asks first")

@@ -9,6 +9,7 @@ from qgis.PyQt.QtWidgets import (
     QAction,
     QFrame,
     QGridLayout,
+    QHBoxLayout,
     QLabel,
     QPushButton,
     QSizePolicy,
@@ -23,6 +24,7 @@ from .command_log import CommandLog
 from .connection_panel import ConnectionPanel
 from .desk import Desk
 from .draft_panel import DraftPanel
+from .emergency_banner import EmergencyBanner
 from .robot_table import RobotTable
 
 STOP_STYLE = (
@@ -30,6 +32,12 @@ STOP_STYLE = (
     " border-radius: 4px; padding: 7px; }"
     "QPushButton:hover { background: #D93636; }"
     "QPushButton:pressed { background: #8E0000; }"
+)
+EMERGENCY_STYLE = (
+    "QPushButton { background: #FFC400; color: #7F0000; font-weight: bold; border: 2px solid #C62828;"
+    " border-radius: 4px; padding: 6px; }"
+    "QPushButton:hover { background: #FFD54A; }"
+    "QPushButton:pressed { background: #E0A800; }"
 )
 
 
@@ -48,8 +56,10 @@ class FleetDock(QgsDockWidget):
         rows = QVBoxLayout(body)
         rows.setContentsMargins(8, 6, 8, 8)
         rows.setSpacing(6)
+        self.banner = EmergencyBanner(desk, actions.clear_emergency)
         rows.addWidget(self.connection_panel)
         rows.addWidget(_line())
+        rows.addWidget(self.banner)
         split = QSplitter(Qt.Orientation.Vertical)
         split.setChildrenCollapsible(False)
         split.addWidget(self._upper(actions))
@@ -57,7 +67,10 @@ class FleetDock(QgsDockWidget):
         split.setStretchFactor(0, 3)
         split.setStretchFactor(1, 2)
         rows.addWidget(split, 1)
-        rows.addWidget(_stop_button(actions.abort_all))
+        stops = QHBoxLayout()
+        stops.addWidget(_stop_button(actions.abort_all, STOP_STYLE))
+        stops.addWidget(_stop_button(actions.emergency, EMERGENCY_STYLE))
+        rows.addLayout(stops)
         self.setWidget(body)
         body.setMinimumWidth(420)
         self.setToggleVisibilityAction(actions.panel)
@@ -114,11 +127,11 @@ def tool_button(action: QAction) -> QToolButton:
     return button
 
 
-def _stop_button(action: QAction) -> QPushButton:
+def _stop_button(action: QAction, style: str) -> QPushButton:
     button = QPushButton(action.icon(), action.text())
-    button.setObjectName("fleet_abort_all_button")
+    button.setObjectName(f"{action.objectName()}_button")
     button.setToolTip(action.toolTip())
-    button.setStyleSheet(STOP_STYLE)
+    button.setStyleSheet(style)
     button.clicked.connect(action.trigger)
     return button
 

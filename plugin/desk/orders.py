@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from qgis.PyQt.QtCore import QObject, pyqtSignal
 
-from ...robot_bridge.messages import Abort, AbortAll, Send, to_json
+from ...robot_bridge.messages import Abort, AbortAll, ClearEmergencyStop, EmergencyStop, Send, to_json
 from ..errors import NotSentError
 from ..wire.outbox import Answer, Order
 from .drafts import Draft
@@ -23,6 +23,7 @@ class Pending:
     words: str
     asked_at: float
     draft: Draft | None = None
+    stops: bool = False
     told_slow: bool = False
 
 
@@ -68,7 +69,35 @@ class Orders(QObject):
         :raises NotSentError: when it cannot be sent.
         """
         command = str(uuid.uuid4())
-        return self._put(command, AbortAll.method, to_json(AbortAll(command)), "ABORT ALL", None)
+        order = Order(command, AbortAll.method, to_json(AbortAll(command)), self._clock())
+        return self._put(order, "ABORT ALL")
+
+    @property
+    def awaits_stop(self) -> bool:
+        """Whether an emergency stop was asked for that the gateway has not answered yet."""
+        return any(pending.stops for pending in self._pending.values())
+
+    def emergency_stop(self) -> str:
+        """Ask for every robot to stop, and for none to be sent until that is cleared; return its id.
+
+        :raises NotSentError: when it cannot be sent.
+        """
+        stop = str(uuid.uuid4())
+        key = self._put(
+            Order(stop, EmergencyStop.method, to_json(EmergencyStop(stop)), self._clock(), lasting=True),
+            "EMERGENCY STOP",
+        )
+        self._pending[key].stops = True
+        return key
+
+    def clear_emergency(self, stop: str, reason: str) -> str:
+        """Ask for robots to be let go again and return the order's key.
+
+        :raises NotSentError: when it cannot be sent.
+        """
+        params = to_json(ClearEmergencyStop(reason or None, stop))
+        order = Order(str(uuid.uuid4()), ClearEmergencyStop.method, params, self._clock())
+        return self._put(order, "Clear emergency stop")
 
     def answered(self, answer: Answer) -> None:
         """Take in what became of an order."""
@@ -78,8 +107,11 @@ class Orders(QObject):
         if answer.error is not None:
             self.refused.emit(f"{pending.words}: {answer.error}", pending.draft)
             return
-        commands = (answer.result or {}).get("commands")
-        if commands is None:
+        result = answer.result or {}
+        commands = result.get("commands")
+        if "in_force" in result:
+            self.accepted.emit(f"{pending.words}: {'in force' if result['in_force'] else 'done'}")
+        elif commands is None:
             self.accepted.emit(f"{pending.words}: queued")
         else:
             self.accepted.emit(f"{pending.words}: sent to {len(commands)} robots")
@@ -97,13 +129,13 @@ class Orders(QObject):
 
     def _command(self, robot: str, op: str, params: dict, words: str, draft: Draft | None) -> str:
         command = str(uuid.uuid4())
-        return self._put(command, Send.method, to_json(Send(command, robot, op, params)), words, draft)
+        order = Order(command, Send.method, to_json(Send(command, robot, op, params)), self._clock())
+        return self._put(order, words, draft)
 
-    def _put(self, key: str, method: str, params: dict, words: str, draft: Draft | None) -> str:
-        order = Order(key, method, params, self._clock())
+    def _put(self, order: Order, words: str, draft: Draft | None = None) -> str:
         try:
             self._submit(order)
         except NotSentError as error:
             raise NotSentError(f"{words} was NOT sent: {error}") from error
-        self._pending[key] = Pending(words, order.asked_at, draft)
-        return key
+        self._pending[order.key] = Pending(words, order.asked_at, draft)
+        return order.key

@@ -14,12 +14,13 @@ from .desk import PULL_EVERY_MS, Desk
 from .glyphs import state_icon
 from .picture import STATES, RobotView
 
-COLUMNS = ("Robot", "State", "Task", "Speed", "Batt.", "Age", "Link")
-WIDEST = ("robot-0", "offline", "", "0.0 m/s", "100%", "00.0 s", "websocket")
+COLUMNS = ("Robot", "State", "Task", "Speed", "Batt.", "Age", "Link", "Latency")
+WIDEST = ("robot-0", "offline", "", "0.0 m/s", "100%", "00.0 s", "websocket", "0000 ms")
 TASK = COLUMNS.index("Task")
 _FLAGS = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
 # A number on Qt 5, an enum on Qt 6; a model has to hand out the number.
 TO_THE_RIGHT = int(getattr(_FLAGS, "value", _FLAGS))
+TO_THE_RIGHT_COLUMNS = ("Speed", "Batt.", "Age", "Latency")
 SORT_ROLE = Qt.ItemDataRole.UserRole
 REFRESH_EVERY = 500 // PULL_EVERY_MS
 
@@ -57,7 +58,7 @@ class RobotTableModel(QAbstractTableModel):
             return STATE_COLOURS[view.state]
         if role == Qt.ItemDataRole.ToolTipRole:
             return self._tip(view)
-        if role == Qt.ItemDataRole.TextAlignmentRole and column in ("Speed", "Batt.", "Age"):
+        if role == Qt.ItemDataRole.TextAlignmentRole and column in TO_THE_RIGHT_COLUMNS:
             return TO_THE_RIGHT
         return None
 
@@ -99,6 +100,8 @@ class RobotTableModel(QAbstractTableModel):
             return "" if report.v is None else f"{report.v:.1f} m/s"
         if column == "Batt.":
             return "" if report.battery is None else f"{report.battery:.0%}"
+        if column == "Latency":
+            return "" if report.latency is None else f"{report.latency * 1000:.0f} ms"
         return f"{view.age:.1f} s" if column == "Age" else report.link
 
     def _sort_value(self, view: RobotView, column: str) -> object:
@@ -107,6 +110,7 @@ class RobotTableModel(QAbstractTableModel):
             "Speed": view.report.v,
             "Batt.": view.report.battery,
             "Age": view.age,
+            "Latency": view.report.latency,
         }
         if column in numbers:
             return -1.0 if numbers[column] is None else float(numbers[column])

@@ -1,0 +1,48 @@
+"""Asks whether an emergency stop is really to be cleared."""
+
+from __future__ import annotations
+
+from qgis.PyQt.QtCore import Qt, pyqtSignal
+from qgis.PyQt.QtWidgets import QDialog, QDialogButtonBox, QLabel, QLineEdit, QVBoxLayout, QWidget
+
+from ...robot_bridge.messages import EmergencyReport
+from .emergency_banner import in_words
+
+
+class ClearDialog(QDialog):
+    """Shows how the stop stands and asks for a reason; ``confirmed`` tells the stop's id and the reason."""
+
+    confirmed = pyqtSignal(str, str)
+
+    def __init__(self, report: EmergencyReport, parent: QWidget | None = None):
+        super().__init__(parent)
+        self.setObjectName("fleet_clear_dialog")
+        self.setWindowTitle("Clear the emergency stop?")
+        self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        self._stop = report.stop or ""
+        self._reason = QLineEdit()
+        self._reason.setObjectName("fleet_clear_reason")
+        self._reason.setPlaceholderText("Why robots may drive again, for the log")
+        self._reason.setMaxLength(500)
+        buttons = QDialogButtonBox()
+        clear = buttons.addButton("Clear emergency stop", QDialogButtonBox.ButtonRole.AcceptRole)
+        clear.setObjectName("fleet_clear_confirm")
+        clear.setAutoDefault(False)
+        keep = buttons.addButton("Keep it in force", QDialogButtonBox.ButtonRole.RejectRole)
+        keep.setObjectName("fleet_clear_keep")
+        keep.setDefault(True)
+        buttons.accepted.connect(self.accept)
+        buttons.rejected.connect(self.reject)
+        self.accepted.connect(lambda: self.confirmed.emit(self._stop, self._reason.text().strip()))
+        rows = QVBoxLayout(self)
+        for text in (
+            in_words(report, asked=False, connected=True),
+            "Cleared, robots can be sent again. None sets off by itself: what they were doing was aborted.",
+        ):
+            label = QLabel(text)
+            label.setWordWrap(True)
+            label.setTextFormat(Qt.TextFormat.PlainText)
+            rows.addWidget(label)
+        rows.addWidget(self._reason)
+        rows.addWidget(buttons)
+        self.setMinimumWidth(440)
