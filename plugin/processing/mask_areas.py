@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 
-import numpy as np
 from qgis.core import (
     QgsExpression,
     QgsExpressionContext,
@@ -17,7 +16,7 @@ from qgis.core import (
 from ...robot_bridge.robotmap.exporters.masks import MaskArea
 from ..sites.feature_filter import FeatureFilter
 from ..sites.placing import PlacingError, SitePlacing
-from ..sites.shapes import Shape, shapes_of
+from ..sites.shapes import Shape, polygons_of, shapes_of
 from .errors import ParameterError
 
 Speed = Callable[[QgsFeature], float]
@@ -58,7 +57,7 @@ def areas_of(
             shapes, notes = [], [f"cannot be transformed into the site's CRS ({error}); it is left out"]
         warnings += [f"{name}: {note}" for note in notes]
         areas += [
-            MaskArea([placing.to_site(ring) for ring in rings], name, limit) for rings in _polygons(shapes)
+            MaskArea([placing.to_site(ring) for ring in rings], name, limit) for rings in polygons_of(shapes)
         ]
     return areas, warnings
 
@@ -90,14 +89,3 @@ def _shapes(feature: QgsFeature, placing) -> tuple[Sequence[Shape], list[str]]:
     if geometry.isNull() or geometry.isEmpty():
         return [], ["has no geometry; it is left out"]
     return shapes_of(placing.to_metres(geometry))
-
-
-def _polygons(shapes: Sequence[Shape]) -> list[list[np.ndarray]]:
-    """Return the rings of each polygon: courtyards follow the ring that they are in."""
-    polygons: list[list[np.ndarray]] = []
-    for shape in shapes:
-        if shape.courtyard and polygons:
-            polygons[-1].append(shape.points)
-        else:
-            polygons.append([shape.points])
-    return polygons

@@ -9,6 +9,7 @@ from qgis.core import QgsMapLayer
 from qgis.PyQt.QtCore import QAbstractTableModel, QModelIndex, Qt, pyqtSignal
 from qgis.PyQt.QtGui import QColor
 
+from ...robot_bridge.robotmap.templates import NAMED
 from ..sites.roles import FURNITURE, OBSTACLE_ROLES, ORTHOPHOTO, ROAD_CENTRELINE, LayerSetup
 from .measure import Measure
 from .picture import COLOURS
@@ -48,8 +49,9 @@ EXPLANATIONS = {
     SEMANTICS: "Expression for the label, such as 'building,' || \"name\"; of a road its surface",
     OUTDOOR: "Expression for true or false; empty: true",
     WIDTH: "Expression for the metres across, of a road or of furniture that is points",
-    TEMPLATE: "Expression for the shape that a point of furniture stands for, such as 'bench' or "
-    "'rectangle 2 0.5'; empty: an octagon of its width",
+    TEMPLATE: "Expression for the shape that a point of furniture stands for: "
+    f"{', '.join(map(repr, NAMED))}, 'circle 0.6', 'square 1' or 'rectangle 2 0.5'; empty: an octagon of its "
+    "width",
     ROTATION: "Expression for the degrees clockwise that the template is turned; empty: 0",
     RESULT: "What is published of the layer",
 }

@@ -9,7 +9,7 @@ from qgis.core import QgsFeedback
 
 from .ground_reading import check_ground_sources, read_areas, read_centrelines
 from .obstacle_source import ObstacleSource
-from .placing import Bounds, SitePlacing
+from .placing import Bounds, SitePlacing, widened
 from .reading import check_sources, read_outlines
 from .roles import KEEPOUT, ROAD_CENTRELINE, ROAD_SURFACE
 from .site_content import SiteContent
@@ -44,7 +44,7 @@ def read_content(
 
     :raises LayerReadingError: when a layer has no known place on the site or an expression is not one.
     """
-    near = _widened(bounds) if bounds is not None else None
+    near = widened(bounds, BEYOND_M) if bounds is not None else None
     obstacles = read_outlines(sources.obstacles, site, near, default_height, feedback)
     centrelines = read_centrelines(sources.centrelines, site, default_width, feedback)
     surfaces = read_areas(sources.surfaces, site, ROAD_SURFACE, feedback)
@@ -67,8 +67,3 @@ def check_content_sources(sources: SiteSources, site: SitePlacing) -> None:
     check_ground_sources(sources.centrelines, site, ROAD_CENTRELINE)
     check_ground_sources(sources.surfaces, site, ROAD_SURFACE)
     check_ground_sources(sources.keepouts, site, KEEPOUT)
-
-
-def _widened(bounds: Bounds) -> Bounds:
-    x_min, y_min, x_max, y_max = bounds
-    return x_min - BEYOND_M, y_min - BEYOND_M, x_max + BEYOND_M, y_max + BEYOND_M

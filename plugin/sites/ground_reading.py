@@ -16,7 +16,7 @@ from .obstacle_source import ObstacleSource
 from .parts import parts_of
 from .placing import LayerPlacing, PlacingError, SitePlacing
 from .roles import KEEPOUT, ROAD_CENTRELINE, ROAD_SURFACE
-from .shapes import SAGITTA_M, Shape, shapes_of
+from .shapes import SAGITTA_M, polygons_of, shapes_of
 from .soundness import lines_with_length
 
 DEFAULT_WIDTH_M = 3.5
@@ -85,8 +85,8 @@ def read_areas(
         layer = _GroundLayer(source, site, role)
         for feature, geometry in layer.features(reading, feedback):
             shapes, notes = shapes_of(geometry)
-            polygons = _polygons(shapes)
-            if any(not _closed(shape.points) for shape in shapes):
+            polygons = polygons_of(shapes)
+            if any(not shape.closed for shape in shapes):
                 notes.append("has a line, which is no area; it is left out")
             label = layer.label(feature, notes)
             reading.items += [
@@ -165,17 +165,3 @@ def _lines(geometry: QgsGeometry, notes: list[str]) -> list[np.ndarray]:
     lines, line_notes = lines_with_length(parts.lines)
     notes += line_notes
     return lines
-
-
-def _polygons(shapes: Sequence[Shape]) -> list[list[np.ndarray]]:
-    polygons: list[list[np.ndarray]] = []
-    for shape in shapes:
-        if shape.courtyard:
-            polygons[-1].append(shape.points)
-        elif _closed(shape.points):
-            polygons.append([shape.points])
-    return polygons
-
-
-def _closed(points: np.ndarray) -> bool:
-    return bool(len(points) > 3 and (points[0] == points[-1]).all())

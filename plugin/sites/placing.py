@@ -107,6 +107,12 @@ class LayerPlacing:
         return xy if self.frame is None else self.frame.to_site(xy)
 
 
+def widened(bounds: Bounds, by: float) -> Bounds:
+    """Return ``bounds`` with ``by`` metres more on each side."""
+    x_min, y_min, x_max, y_max = bounds
+    return x_min - by, y_min - by, x_max + by, y_max + by
+
+
 def corners_of(bounds: Sequence[float]) -> np.ndarray:
     """Return the four corners of (x_min, y_min, x_max, y_max) as (4, 2)."""
     x_min, y_min, x_max, y_max = bounds

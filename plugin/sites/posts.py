@@ -17,6 +17,9 @@ from .shapes import NO_PLACE, Shape, Shapes
 POST_ACROSS_M = 0.5
 """How far across a piece of furniture is that is drawn as a point and says nothing of its size."""
 
+REACH_M = 100.0
+"""How far the shape of a point can reach from it: a triangle around the largest circle there is."""
+
 
 class Posts:
     """Makes shapes of points by the expressions of one layer: by template, else as an octagon of a width.

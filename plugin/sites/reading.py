@@ -13,8 +13,8 @@ from .feature_filter import FeatureFilter
 from .feature_values import FeatureValues
 from .layer_rules import LayerRules
 from .obstacle_source import ObstacleSource
-from .placing import Bounds, LayerPlacing, PlacingError, SitePlacing
-from .posts import Posts
+from .placing import Bounds, LayerPlacing, PlacingError, SitePlacing, widened
+from .posts import REACH_M, Posts
 from .ramps import normal_extra
 from .roles import OBSTACLE_ROLES, RAMP, STAIRS
 from .shapes import Shape, Shapes, shapes_of
@@ -93,7 +93,9 @@ class _LayerReader:
         )
         self._posts = Posts(self._rules, source.expressions)
         self._placing: LayerPlacing = site.of_layer(source.name, source.crs)
-        self._area: QgsRectangle | None = self._placing.area_of(window) if window else None
+        self._window = window
+        self._area = self._placing.area_of(window) if window else None
+        self._around = self._placing.area_of(widened(window, REACH_M)) if window else None
         self._estimated: list[int] = []
         self._odd_for_role: list[int] = []
 
@@ -107,10 +109,14 @@ class _LayerReader:
         if geometry.isNull() or geometry.isEmpty():
             reading.warnings.append(self._named(feature, "has no geometry; it is left out"))
             return
-        if not self._may_touch(geometry.boundingBox()):
+        is_points = geometry.type() == QgsWkbTypes.GeometryType.PointGeometry
+        if not _may_touch(geometry.boundingBox(), self._around if is_points else self._area):
             return
         try:
-            shapes, notes = self._shapes(feature, self._placing.to_metres(geometry))
+            metres = self._placing.to_metres(geometry)
+            shapes, notes = (
+                self._posts_in(feature, metres) if is_points else shapes_of(metres, self.source.role)
+            )
         except PlacingError as error:
             shapes, notes = [], [f"cannot be transformed into the site's CRS ({error}); it is left out"]
         if shapes:
@@ -137,16 +143,19 @@ class _LayerReader:
                 f"obstacles ({_features(self._odd_for_role)})"
             )
 
-    def _shapes(self, feature: QgsFeature, geometry: QgsGeometry) -> Shapes:
-        if geometry.type() != QgsWkbTypes.GeometryType.PointGeometry:
-            return shapes_of(geometry, self.source.role)
-        return self._posts.of(feature, geometry)
+    def _posts_in(self, feature: QgsFeature, points: QgsGeometry) -> Shapes:
+        """Return the shapes of ``points``; nothing where none of them reaches into the window."""
+        posts = self._posts.of(feature, points)
+        reaching = any(self._reaches_in(self._placing.to_site(post.points)) for post in posts.shapes)
+        return posts if reaching or not posts.shapes else Shapes([], [])
 
-    def _may_touch(self, box: QgsRectangle) -> bool:
-        """Tell whether a feature with this bounding box must be looked at."""
-        if self._area is None or box.isNull() or not box.isFinite():
+    def _reaches_in(self, points: np.ndarray) -> bool:
+        if self._window is None:
             return True
-        return self._area.intersects(box)
+        x_min, y_min, x_max, y_max = self._window
+        return bool(
+            (points.max(axis=0) >= (x_min, y_min)).all() and (points.min(axis=0) <= (x_max, y_max)).all()
+        )
 
     def _add(self, feature: QgsFeature, shapes: Sequence[Shape], reading: Reading) -> list[str]:
         source = f"{self.source.name}:{feature.id()}"
@@ -180,6 +189,13 @@ class _LayerReader:
         return f"Layer {self.source.name}, feature {feature.id()}: {note}"
 
 
+def _may_touch(box: QgsRectangle, area: QgsRectangle | None) -> bool:
+    """Tell whether a feature with this bounding box must be looked at."""
+    if area is None or box.isNull() or not box.isFinite():
+        return True
+    return area.intersects(box)
+
+
 def _extras(shape: Shape, points: np.ndarray, estimated: bool, notes: list[str]) -> dict[str, str]:
     """Return what else ``shape`` has to say, whose ``points`` are (n, 2) in the site frame."""
     if shape.z is not None:
@@ -189,8 +205,7 @@ def _extras(shape: Shape, points: np.ndarray, estimated: bool, notes: list[str])
 
 def _odd(shape: Shape, role: str) -> bool:
     """Tell whether a layer of ``role`` should not hold this shape."""
-    ring = bool(len(shape.points) > 2 and (shape.points[0] == shape.points[-1]).all())
-    return (role == STAIRS and ring) or (role == RAMP and not ring)
+    return (role == STAIRS and shape.closed) or (role == RAMP and not shape.closed)
 
 
 def _features(ids: Sequence[int]) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -29,6 +30,11 @@ class Shape(NamedTuple):
     shape_type: ShapeType
     courtyard: bool = False
     z: np.ndarray | None = None
+
+    @property
+    def closed(self) -> bool:
+        """Whether it is a ring."""
+        return bool(len(self.points) > 3 and (self.points[0] == self.points[-1]).all())
 
 
 class Shapes(NamedTuple):
@@ -66,6 +72,17 @@ def shapes_of(geometry: QgsGeometry, role: str = "") -> Shapes:
         return Shapes([*shapes, Shape(risers, ShapeType.STAIRS)], [*notes, *bent])
     opened = ShapeType.OPEN_CURVE if curved else ShapeType.OPEN_POLYGON
     return Shapes([*shapes, *(Shape(line, opened) for line in lines)], notes)
+
+
+def polygons_of(shapes: Sequence[Shape]) -> list[list[np.ndarray]]:
+    """Return the rings of each polygon among ``shapes``, its outer ring first; lines are passed over."""
+    polygons: list[list[np.ndarray]] = []
+    for shape in shapes:
+        if shape.courtyard:
+            polygons[-1].append(shape.points)
+        elif shape.closed:
+            polygons.append([shape.points])
+    return polygons
 
 
 def _with_heights(ramps: list[Shape], geometry: QgsGeometry) -> list[Shape]:

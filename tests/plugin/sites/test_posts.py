@@ -85,6 +85,13 @@ def test_what_is_not_understood_is_named_and_the_thing_stays(furniture, read, va
     assert warning.startswith(f"Layer things, feature 1: {said}")
 
 
+def test_a_thing_beside_the_window_is_read_where_it_reaches_in(furniture, read):
+    things = [("10.8 5", "bench"), ("11 5", "bench"), ("109 5", "circle 100 3"), ("300 5", "bnech")]
+    reading = read(furniture(*things), window=(0, 0, 10, 10))
+    assert [row.source for row in reading.rows] == ["things:1", "things:3"]
+    assert reading.warnings == []
+
+
 @pytest.mark.parametrize("what", ["template", "rotation", "width"])
 def test_what_is_no_expression_is_refused(furniture, read, what):
     with pytest.raises(ExpressionError, match=f"The {what} expression '1 \\+' for the layer things"):
