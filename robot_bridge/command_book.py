@@ -54,7 +54,7 @@ class CommandBook:
         check: Callable[[Command], None],
     ) -> None:
         self._database = database
-        self._tolerance = tolerance
+        self.tolerance = tolerance
         self._clock = clock
         self._changed = changed
         self._outbox_changed = outbox_changed
@@ -233,11 +233,11 @@ class CommandBook:
         if not ack.ok:
             return [command.step(CommandState.FAILED, now, robot, ack.reason)]
         if may_become(command.report.state, CommandState.ACKNOWLEDGED):
-            taken = command.step(CommandState.ACKNOWLEDGED, now, robot).judged(self._tolerance)
+            taken = command.step(CommandState.ACKNOWLEDGED, now, robot).judged(self.tolerance)
             mine = self._open.of(robot)
             return [taken, *ended_by(command, mine, now, "the robot acknowledged the Abort")]
         if command.arrival is None:
-            arrival = judge(command.message, self._tolerance)
+            arrival = judge(command.message, self.tolerance)
             return [command.noted(now, robot, "acknowledged again", arrival)]
         return []
 
@@ -250,7 +250,7 @@ class CommandBook:
     def _restored(self, stored: StoredCommand) -> OpenCommand:
         command = opened(stored)
         if stored.report.state is CommandState.ACKNOWLEDGED:
-            command.arrival = judge(command.message, self._tolerance, driven=stored.driven, under_way=True)
+            command.arrival = judge(command.message, self.tolerance, driven=stored.driven, under_way=True)
         return command
 
     async def _save(self, steps: list[OpenCommand]) -> None:

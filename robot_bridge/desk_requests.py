@@ -27,6 +27,7 @@ from .messages import (
     GetObservations,
     GetPositions,
     GetSessions,
+    GetTrajectory,
     ReviewObservation,
     Role,
     Send,
@@ -34,6 +35,7 @@ from .messages import (
     to_json,
 )
 from .snapshots import positions
+from .trajectories.reading import get_trajectory
 
 Json = dict[str, Any]
 
@@ -131,9 +133,14 @@ async def _get_audit(fleet: Fleet, request: GetAudit, _caller: Caller) -> Json:
     return await supervision.get_audit(fleet.database, request)
 
 
+async def _get_trajectory(fleet: Fleet, request: GetTrajectory, _caller: Caller) -> Json:
+    return to_json(await get_trajectory(fleet.database, request))
+
+
 SERVICES: dict[type[DeskRequest], Service] = {
     GetPositions: Service(Role.VIEWER, _get_positions),
     GetCommands: Service(Role.VIEWER, _get_commands),
+    GetTrajectory: Service(Role.VIEWER, _get_trajectory),
     GetObservations: Service(Role.VIEWER, _get_observations),
     GetImage: Service(Role.VIEWER, _get_image),
     ReviewObservation: Service(Role.OPERATOR, _review_observation),

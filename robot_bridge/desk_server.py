@@ -114,6 +114,7 @@ class DeskSession:
         )
 
     async def _do(self, request: DeskRequest) -> dict[str, Any]:
+        self._fleet.tally.desk[request.method] += 1
         if isinstance(request, Hello):
             return self._hello(request)
         if isinstance(request, Subscribe):

@@ -48,6 +48,7 @@ from .messages import (
     check_robot_name,
     to_json,
 )
+from .monitoring.tally import Tally
 from .observation_book import ObservationBook
 from .places import check_places, places_of
 from .planning import Planner, StraightPlanner
@@ -155,6 +156,7 @@ class Fleet:
         self._answering = Answering(site, database, self.robots, self._book, planner or StraightPlanner())
         self._tracks = GroundTracks()
         self.holds = Holds()
+        self.tally = Tally()
         self._database_id = ""
         self._unsaved: set[str] = set()
         self._outboxes: dict[str, asyncio.Event] = {}
@@ -192,6 +194,7 @@ class Fleet:
             why; MessageError for what is wrong in itself.
         """
         now = self._clock()
+        self.tally.requests[link, type(request).__name__] += 1
         if isinstance(request, Ready):
             return await self._receive_ready(robot, link, request, id)
         if isinstance(request, SendGPS):
@@ -332,6 +335,19 @@ class Fleet:
         """Tell ``listener`` nothing more."""
         self._listeners.discard(listener)
 
+    @property
+    def listeners(self) -> int:
+        """Return how many operators' sessions are told what happens."""
+        return len(self._listeners)
+
+    async def site_changed(self) -> None:
+        """Go by the site's newest facts and settings from now on, and tell operators of them."""
+        report = self.site.report
+        self.robots.limit(report.stale_after, report.lost_after)
+        self._book.tolerance = report.reached_tolerance
+        await self.observations.restore()
+        self.announce("site", report.id, to_json(report))
+
     # --- time -----------------------------------------------------------------------------------------
 
     def age(self) -> None:
@@ -426,6 +442,7 @@ class Fleet:
 
     def _command_changed(self, command: CommandReport) -> None:
         self.robots.assign(command.robot, self._book.busy_with(command.robot))
+        self.tally.steps[command.state.value] += 1
         self.emergency.take(command)
         self.announce("command", command.command, to_json(command))
 

@@ -45,6 +45,10 @@ class Robots:
         self._robots: dict[str, Robot] = {}
         self.revision = 0
 
+    def limit(self, stale_after: float, lost_after: float) -> None:
+        """Judge liveness by other limits from now on, in seconds."""
+        self._stale_after, self._lost_after = stale_after, lost_after
+
     def __contains__(self, name: str) -> bool:
         return name in self._robots
 

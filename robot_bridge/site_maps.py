@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Sequence
+from typing import NamedTuple
 
 from .errors import RefusedError
 from .messages import ObservationReport, SiteReport
@@ -15,15 +16,27 @@ from .sites.settings import SiteSettings
 from .sites.site import Site
 
 
+class Drawn(NamedTuple):
+    """What maps are made of: read at once, so that no map is half of one publication and half of the next."""
+
+    site: Site
+    objects: ObservedObjects
+
+
 class SiteMaps:
     """Serves a published site to the fleet."""
 
     def __init__(self, site: Site) -> None:
         self._site = site
         self._earth = Earth(site.frame)
-        self._objects = ObservedObjects([], site.settings.observations.object_radius_m)
-        self._whole_map: tuple[ObservedObjects, bytes] | None = None
+        self._drawn = Drawn(site, ObservedObjects([], site.settings.observations.object_radius_m))
+        self._whole_map: tuple[Drawn, bytes] | None = None
         self._making = threading.Lock()
+
+    def take_over(self, site: Site) -> None:
+        """Serve ``site`` from now on, another publication with the same frame."""
+        self._site = site
+        self._drawn = Drawn(site, self._drawn.objects)
 
     @property
     def settings(self) -> SiteSettings:
@@ -55,18 +68,20 @@ class SiteMaps:
         """Return the map of the whole site in the binary format."""
         # Of a hundred robots that ask at once the first has it made, and the others wait.
         with self._making:
-            objects, made = self._objects, self._whole_map
-            if made is None or made[0] is not objects:
-                made = self._whole_map = (objects, encode(objects.join(self._site.whole_map())))
+            drawn, made = self._drawn, self._whole_map
+            if made is None or made[0] is not drawn:
+                made = self._whole_map = (drawn, encode(drawn.objects.join(drawn.site.whole_map())))
             return made[1]
 
     def map_around(self, x: float, y: float, area: float) -> bytes:
         """Return the map of a square of ``area`` square metres centred on (x, y) in the binary format."""
-        return encode(self._objects.join(self._site.map_around(x, y, area)))
+        drawn = self._drawn
+        return encode(drawn.objects.join(drawn.site.map_around(x, y, area)))
 
     def show(self, objects: Sequence[ObservationReport]) -> None:
         """Draw accepted objects, and no others, on the maps from now on."""
-        self._objects = ObservedObjects(objects, self._site.settings.observations.object_radius_m)
+        site = self._site
+        self._drawn = Drawn(site, ObservedObjects(objects, site.settings.observations.object_radius_m))
 
     def place_on_earth(
         self, lat: float, lon: float, heading: float | None

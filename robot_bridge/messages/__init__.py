@@ -82,6 +82,7 @@ from .robots import (
     Start,
     Stopped,
 )
+from .service import Stopping
 from .stopping import (
     AbortTask,
     ClearEmergencyStop,
@@ -89,6 +90,7 @@ from .stopping import (
     EmergencyStop,
 )
 from .supervision import AuditReport, EndSession, GetAudit, GetSessions, SessionReport
+from .trajectories import GetTrajectory, Trajectory, TrajectoryPlace
 
 __all__ = [
     "ANSWERS",
@@ -124,6 +126,7 @@ __all__ = [
     "GetPosIni",
     "GetPositions",
     "GetSessions",
+    "GetTrajectory",
     "Hello",
     "MessageError",
     "ObservationReport",
@@ -152,8 +155,11 @@ __all__ = [
     "SiteReport",
     "Start",
     "Stopped",
+    "Stopping",
     "Subscribe",
     "TargetPosition",
+    "Trajectory",
+    "TrajectoryPlace",
     "check_command_id",
     "check_finite",
     "check_robot_name",

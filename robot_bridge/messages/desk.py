@@ -10,6 +10,7 @@ from .checks import MessageError, check_command_id, check_finite
 from .observations import GetImage, GetObservations, ReviewObservation
 from .stopping import AbortTask, ClearEmergencyStop, EmergencyStop, check_reason
 from .supervision import EndSession, GetAudit, GetSessions
+from .trajectories import GetTrajectory
 
 PROTOCOL_VERSION = 1
 LONGEST_EXPIRY = 366 * 86400.0
@@ -247,6 +248,7 @@ DeskRequest = (
     | GetSessions
     | EndSession
     | GetAudit
+    | GetTrajectory
 )
 
 DESK_REQUESTS: dict[str, type[DeskRequest]] = {
@@ -268,5 +270,6 @@ DESK_REQUESTS: dict[str, type[DeskRequest]] = {
         GetSessions,
         EndSession,
         GetAudit,
+        GetTrajectory,
     )
 }

@@ -2,7 +2,15 @@
 
 from __future__ import annotations
 
-from ..messages import CommandReport, DeskRequest, ObservationReport
+from ..messages import (
+    CommandReport,
+    DeskRequest,
+    GetTrajectory,
+    ObservationReport,
+    SiteReport,
+    Stopping,
+    Trajectory,
+)
 from ..messages.desk import (
     AbortAll,
     GetCommands,
@@ -34,6 +42,7 @@ RESULTS: dict[type[DeskRequest], type] = {
     GetSessions: Sessions,
     EndSession: SessionReport,
     GetAudit: Audit,
+    GetTrajectory: Trajectory,
 }
 """What each request of an operator is answered with."""
 
@@ -42,5 +51,7 @@ NOTIFICATIONS: dict[str, type] = {
     "command": CommandReport,
     "observation": ObservationReport,
     "emergency": EmergencyReport,
+    "site": SiteReport,
+    "stopping": Stopping,
 }
 """What operators are told without asking, by method."""

@@ -5,26 +5,43 @@ from __future__ import annotations
 import json
 import re
 import sqlite3
+import subprocess
+import sys
+import urllib.error
+import urllib.request
 from pathlib import Path
 
+import jsonschema
 import pytest
 from bridge_programs import wait_until
 from bridge_wires import RefusedError
 
 from robot_bridge import jsonrpc
-from robot_bridge.messages import ANSWERS, DESK_REQUESTS, REQUESTS
+from robot_bridge.messages import ANSWERS, DESK_REQUESTS, PAYLOADS, REQUESTS
+from robot_bridge.schemas.documents import documents
+from robot_bridge.schemas.tables import NOTIFICATIONS
 from robot_bridge.wire import decode_answer, decode_desk_request, decode_request
 
 ROOT = Path(__file__).resolve().parents[2]
 GUIDE = (ROOT / "docs" / "integrator.md").read_text(encoding="utf-8")
 BLOCKS = re.findall(r"^```(\w+) ([\w -]+)\n(.*?)^```$", GUIDE, re.DOTALL | re.MULTILINE)
-NOT_SERVED = {"SendGPS", "SendImage", "GetPath", "GetPosIni", "GetPosEnd", "SetObject", "SetPosIni"}
+UUID = re.compile(r"[0-9a-f]{8}(-[0-9a-f]{4}){3}-[0-9a-f]{12}")
 
 
 def blocks(kind):
     """Return the blocks whose info string begins with ``kind``, as (the rest of it, JSON value)."""
     found = [(info.split()[1:], text) for _, info, text in BLOCKS if info.split()[0] == kind]
     return [(rest[0] if rest else "", json.loads(text)) for rest, text in found]
+
+
+def unnamed(value):
+    """Return a JSON value with one id in place of every UUID."""
+    return json.loads(UUID.sub("an id", json.dumps(value)))
+
+
+def accepts(path, value) -> bool:
+    """Tell whether the served schema at ``path`` accepts a JSON value."""
+    return jsonschema.Draft202012Validator(json.loads(documents()[path])).is_valid(value)
 
 
 def shape(value):
@@ -51,11 +68,19 @@ def bridge(start_bridge, sample_site):
 @pytest.mark.parametrize(("op", "params"), blocks("robot-params"))
 def test_what_a_robot_says_is_understood(op, params):
     decode_request(op, params)
+    assert accepts(f"robot/{op}.json", params)
+
+
+@pytest.mark.parametrize(("op", "params"), blocks("robot-params-with-payload"))
+def test_what_a_robot_says_with_a_payload_is_understood(op, params):
+    decode_request(op, params, b"image")
+    assert accepts(f"robot/{op}.json", params)
 
 
 @pytest.mark.parametrize(("op", "params"), blocks("gateway-params"))
 def test_what_the_gateway_says_is_what_it_can_say(op, params):
     decode_answer(op, params)
+    assert accepts(f"gateway/{op}.json", params)
 
 
 @pytest.mark.parametrize("frame", [frame for _, frame in blocks("robot-hears")])
@@ -63,16 +88,38 @@ def test_what_a_robot_hears_is_a_frame_that_the_reference_robot_understands(fram
     message = jsonrpc.decode(json.dumps(frame))
     if isinstance(message, jsonrpc.Call):
         decode_answer(message.method, message.params)
+        assert accepts(f"gateway/{message.method}.json", message.params or {})
+    elif message.error is None:
+        assert accepts("gateway/OpAck.json", message.result)
+
+
+@pytest.mark.parametrize("frame", [frame for _, frame in blocks("robot-sends") if "method" in frame])
+def test_what_a_robot_sends_is_as_its_schema_says_unless_it_is_shown_as_wrong(frame):
+    refused = {t["id"] for _, t in blocks("robot-hears") if "error" in t}
+    is_right = frame.get("id") not in refused
+    assert accepts(f"robot/{frame['method']}.json", frame.get("params", {})) is is_right
 
 
 @pytest.mark.parametrize("frame", [frame for _, frame in blocks("desk-sends")])
 def test_what_a_desk_sends_is_understood(frame):
     message = jsonrpc.decode(json.dumps(frame))
     decode_desk_request(message.method, message.params)
+    assert accepts(f"desk/{message.method}.json", message.params or {})
+
+
+@pytest.mark.parametrize("frame", [frame for _, frame in blocks("desk-hears") if "error" not in frame])
+def test_what_a_desk_hears_is_as_its_schema_says(frame):
+    if "method" in frame:
+        assert accepts(f"news/{frame['method']}.json", frame["params"])
+        return
+    (asked,) = (sent["method"] for _, sent in blocks("desk-sends") if sent["id"] == frame["id"])
+    assert accepts(f"result/{asked}.json", frame["result"])
 
 
 def test_every_operation_and_method_has_an_example_on_each_wire():
-    assert {op for op, _ in blocks("robot-params")} == set(REQUESTS)
+    said = {op for op, _ in blocks("robot-params") + blocks("robot-params-with-payload")}
+    assert said == set(REQUESTS)
+    assert {op for op, _ in blocks("robot-params-with-payload")} == set(REQUESTS) & set(PAYLOADS)
     assert {op for op, _ in blocks("gateway-params")} == set(ANSWERS) - {"SetMap"}
     said = {frame.get("method") for _, frame in blocks("robot-sends")} - {None}
     assert said == set(REQUESTS) - {"OpAck"}
@@ -80,13 +127,7 @@ def test_every_operation_and_method_has_an_example_on_each_wire():
     assert heard == set(ANSWERS) - {"OpAck"}
     assert {frame["method"] for _, frame in blocks("desk-sends")} == set(DESK_REQUESTS)
     told = {frame.get("method") for _, frame in blocks("desk-hears")} - {None}
-    assert told == {"positions", "command"}
-
-
-def test_what_is_not_served_yet_is_named_and_nothing_else():
-    named = re.findall(r"^Not (?:served|sent) yet.*: ([\w, ]+)\.$", GUIDE, re.MULTILINE)
-    assert set(", ".join(named).split(", ")) == NOT_SERVED
-    assert not NOT_SERVED & (set(REQUESTS) | set(ANSWERS))
+    assert told == set(NOTIFICATIONS)
 
 
 def test_every_error_code_is_explained():
@@ -112,7 +153,7 @@ def test_the_sql_story_goes_as_it_is_told(bridge):
     for language, info, text in BLOCKS:
         if info == "result":
             told = text.strip().splitlines()
-            assert ["|".join(map(str, row)) for row in rows] == told
+            assert unnamed(["|".join(map(str, row)) for row in rows]) == unnamed(told)
         if language != "sql":
             continue
         if info.endswith("after-send"):
@@ -127,18 +168,23 @@ def test_the_sql_story_goes_as_it_is_told(bridge):
 
 
 def test_the_websocket_story_goes_as_it_is_told(bridge):
-    told = [frame for _, frame in blocks("robot-hears")]
+    told = [frame for kind, frame in blocks("robot-hears") if kind != "answer"]
+    answers = [frame for kind, frame in blocks("robot-hears") if kind == "answer"]
     robot, desk = bridge.robot("r1"), bridge.desk()
     for _, frame in blocks("robot-sends"):
         if "method" in frame:
             robot.connection.send(json.dumps(frame))
         if "method" in frame and "id" in frame:
             (wanted,) = [t for t in told if t.get("id") == frame["id"] and "method" not in t]
-            assert answer_frame(robot, frame["id"]) == {
-                k: wanted[k] for k in ("result", "error") if k in wanted
-            }
+            assert unnamed(answer_frame(robot, frame["id"])) == unnamed(
+                {k: wanted[k] for k in ("result", "error") if k in wanted}
+            )
+        if frame.get("method") == "SendGPS":
+            give_a_track(robot, desk)
+    for frame in answers:
+        assert robot.wait_for(frame["method"])["params"] == frame["params"]
     commands = {frame["method"]: frame.get("params", {}) for frame in told if "method" in frame}
-    for op in ("SetPosEnd", "SetPath", "Abort"):
+    for op in ("SetPosEnd", "SetPath", "SetPosIni", "Abort"):
         desk.send(f"command-{op}", "r1", op, **commands[op])
         heard = robot.wait_for(op)
         assert heard.get("params", {}) == commands[op]
@@ -146,6 +192,17 @@ def test_the_websocket_story_goes_as_it_is_told(bridge):
         assert desk.wait_for_step(f"command-{op}", "failed")["steps"][-1]["reason"] == "battery empty"
     for op in ("Start", "SetMap"):
         assert shape(robot.wait_for(op).get("params", {})) == shape(commands[op])
+
+
+def give_a_track(robot, desk):
+    """Send the robot what it asks for later: where its track begins and ends."""
+    robot.tell("SendPos", {"x": 20.0, "y": 8.0, "theta": 0.0, "v": 0.0})
+    desk.send("track-begin", "r1", "SetPosIni", x=20.0, y=8.0, theta=0.0)
+    desk.send("track-end", "r1", "SetPosEnd", x=45.0, y=20.0, theta=1.57, cone=False)
+    for op in ("SetPosIni", "SetPosEnd"):
+        robot.say(robot.wait_for(op)["id"])
+    for command in ("track-begin", "track-end"):
+        desk.until(lambda command=command: desk.commands[command]["state"] in ("acknowledged", "reached"))
 
 
 def answer_frame(wire, id):
@@ -163,7 +220,9 @@ def test_the_desks_story_goes_as_it_is_told(bridge):
     desk = bridge.desk()
     heard = []
     desk._hear = heard.append
+    tell_what_is_seen(robot)
     told = [frame for _, frame in blocks("desk-hears")]
+    wait_until(lambda: bridge.sql("select id from trajectories"))
     for _, frame in blocks("desk-sends"):
         desk.connection.send(json.dumps(frame))
         (wanted,) = [t for t in told if t.get("id") == frame["id"]]
@@ -173,9 +232,30 @@ def test_the_desks_story_goes_as_it_is_told(bridge):
         if "error" in wanted or frame["method"] == "hello":
             assert answered == {k: wanted[k] for k in answered}
         assert shape(answered) == shape({k: wanted[k] for k in answered})
-    for method in ("positions", "command"):
+    for method in sorted(NOTIFICATIONS):
         (wanted,) = [t for t in told if t.get("method") == method]
         assert shape(next(h for h in heard if h["method"] == method)) == shape(wanted)
+
+
+def tell_what_is_seen(robot):
+    """Tell of the cone of the examples, with its image."""
+    robot.ask("SetObject", {"x": 31.5, "y": 9.25, "object": "cone-7", "label": "traffic cone"})
+    image = {"x": 24.0, "y": 8.0, "object": "cone-7", "image": "/9j/4AAQSkZJRg=="}
+    robot.ask("SendImage", image)
+
+
+def test_the_schemas_are_served_as_they_are_written(bridge, tmp_path):
+    subprocess.run([sys.executable, "-m", "robot_bridge", "schemas", tmp_path], check=True, timeout=60)
+    base = bridge.address.replace("ws://", "http://")
+    with urllib.request.urlopen(f"{base}/schemas/", timeout=10) as index:
+        assert index.headers["Content-Type"] == "application/json"
+        paths = json.load(index)["documents"]
+    assert len(paths) > 40
+    for path in [*paths, "index.json"]:
+        with urllib.request.urlopen(f"{base}/schemas/{path}", timeout=10) as served:
+            assert served.read() == (tmp_path / path).read_bytes()
+    with pytest.raises(urllib.error.HTTPError, match="404"):
+        urllib.request.urlopen(f"{base}/schemas/robot/Fly.json", timeout=10)
 
 
 def test_the_reference_robots_command_lines_have_options_that_exist():
