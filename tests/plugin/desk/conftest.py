@@ -7,12 +7,14 @@ import itertools
 import json
 import threading
 import time
+from dataclasses import replace
 
 import pytest
 from fleet_supervisor.robot_bridge.messages import (
     CommandReport,
     CommandState,
     CommandStep,
+    EmergencyReport,
     RobotReport,
     RobotState,
     SiteReport,
@@ -67,6 +69,7 @@ class SmallGateway:
         self.commands: dict[str, CommandReport] = {}
         self.requests: list[tuple[str, dict]] = []
         self.refuse: dict[str, str] = {}
+        self.emergency = EmergencyReport()
         self.mute: set[str] = set()
         """Methods that are taken in and never answered."""
         self.raw: str | None = None
@@ -105,6 +108,11 @@ class SmallGateway:
         values = {**vars(known), "state": state, "steps": steps, **more}
         self.commands[command] = CommandReport(**values)
         self._tell("command", to_json(self.commands[command]))
+
+    def stand(self, **how) -> None:
+        """Tell how an emergency stop stands."""
+        self.emergency = replace(self.emergency, **how)
+        self._tell("emergency", to_json(self.emergency))
 
     def _tell(self, method: str, params: dict) -> None:
         text = json.dumps({"jsonrpc": "2.0", "method": method, "params": params})
@@ -153,9 +161,12 @@ class SmallGateway:
         if method in self.refuse:
             return {**answer, "error": {"code": -32000, "message": self.refuse[method]}}
         if method == "hello":
-            return {**answer, "result": {"protocol": self.protocol, "site": to_json(self.site)}}
+            facts = {"site": to_json(self.site), "emergency": to_json(self.emergency)}
+            return {**answer, "result": {"protocol": self.protocol, **facts}}
         if method == "send":
             return {**answer, "result": to_json(self._queue(**params))}
+        if method in ("emergency_stop", "clear_emergency_stop"):
+            return {**answer, "result": to_json(self._stop_or_clear(method, params))}
         if method == "abort_all":
             queued = [self._queue(f"abort-{name}", name, "Abort") for name in self.robots]
             return {**answer, "result": {"commands": [to_json(command) for command in queued]}}
@@ -163,6 +174,16 @@ class SmallGateway:
             newest_first = list(reversed(self.commands.values()))
             return {**answer, "result": {"commands": [to_json(command) for command in newest_first]}}
         return {**answer, "result": {}}
+
+    def _stop_or_clear(self, method: str, params: dict) -> EmergencyReport:
+        if method == "clear_emergency_stop":
+            self.emergency = replace(self.emergency, in_force=False)
+        elif self.emergency.stop != params["command"]:
+            robots = sorted(self.robots)
+            self.emergency = EmergencyReport(
+                True, params["command"], 1_700_000_000.0, "anna", robots=len(robots), waiting=robots
+            )
+        return self.emergency
 
     def _queue(self, command: str, robot: str, op: str, params: dict | None = None) -> CommandReport:
         if command not in self.commands:
@@ -249,9 +270,7 @@ class Window(QMainWindow):
         return QPoint(round(at.x()), round(at.y()))
 
     def click(self, x, y, button=Qt.MouseButton.LeftButton) -> None:
-        QTest.mouseClick(
-            self.canvas.viewport(), button, Qt.KeyboardModifier.NoModifier, self.pixel(x, y)
-        )
+        QTest.mouseClick(self.canvas.viewport(), button, Qt.KeyboardModifier.NoModifier, self.pixel(x, y))
 
 
 @pytest.fixture
