@@ -24,7 +24,7 @@ walls between or inside buildings, lines joined, fewer corners, no short segment
 says how many obstacles and segments there were before and after. Walls between buildings, corners and short
 segments need the Python package shapely 2.</p>
 <p><b>Format</b>: text; binary (the text compressed, with a check sum), which needs the Python package
-zstandard; compact (about a third of binary, whole centimetres), which needs cbor2 too. The file
+zstandard; compact (about a third of binary, whole centimetres), which needs cbor2 instead. The file
 <i>docs/robot-map.md</i> of the project describes them, and exports from a script.</p>
 <p>Broken geometry is repaired where that is safe and left out where it is not. Each time a warning names the
 layer and the feature; the export goes on.</p>

@@ -3,8 +3,9 @@
 offset  bytes  what
 0       4      magic, ``RMAP``
 4       1      version of the envelope, 1
-5       1      codec of the body: 1 is the text in UTF-8, 2 the map in columns of CBOR; both under zstd
-6       2      0, reserved
+5       1      codec of the body: 1 is the text in UTF-8 under zstd, 2 the map in columns of CBOR under LZMA
+6       1      version of the codec: 0 for codec 1, 2 for codec 2
+7       1      0, reserved
 8       8      length of the text in bytes, little-endian
 16      32     SHA-256 of the text
 48             body
@@ -14,11 +15,13 @@ from __future__ import annotations
 
 import hashlib
 import struct
+from collections.abc import Callable
 from itertools import zip_longest
-from typing import Any
+from typing import NamedTuple
 
 from .columnar import pack_map, unpack_map
-from .errors import BinaryError, MissingCodecError, RobotMapError
+from .compression import by_lzma, by_zstd, from_lzma, from_zstd
+from .errors import BinaryError, RobotMapError
 from .model import RobotMap
 from .text import read_text, write_text
 
@@ -28,11 +31,20 @@ CODEC_TEXT, CODEC_COLUMNS = 1, 2
 LARGEST_TEXT = 256 << 20
 """bytes of text that a reader accepts unless told otherwise."""
 
-_ENVELOPE = struct.Struct("<4sBBHQ32s")
-_LEVELS = {CODEC_TEXT: 12, CODEC_COLUMNS: 19}
+_ENVELOPE = struct.Struct("<4sBBBBQ32s")
 _SPARE = 4096
 """bytes that the columns may have more than the text: an empty map is mostly their heads."""
-_LARGEST_WINDOW = 1 << 27
+
+
+class _Codec(NamedTuple):
+    """The version of a body's layout, what compresses it, and what returns it up to a length."""
+
+    version: int
+    compress: Callable[[bytes], bytes]
+    decompress: Callable[[bytes, int], bytes]
+
+
+_CODECS = {CODEC_TEXT: _Codec(0, by_zstd, from_zstd), CODEC_COLUMNS: _Codec(2, by_lzma, from_lzma)}
 
 
 def encode(content: RobotMap | str, codec: int = CODEC_TEXT) -> bytes:
@@ -42,10 +54,10 @@ def encode(content: RobotMap | str, codec: int = CODEC_TEXT) -> bytes:
     before codec 2. Codec 2 is about a third of that size and is for who asks for it.
 
     Raises BinaryError for a text that is too long, or that codec 2 cannot give back byte for byte: one with
-    comments or with more than centimetres. Raises MissingCodecError without zstandard, or without cbor2 for
-    codec 2; TextError where codec 2 is to carry a text that is no map.
+    comments or with more than centimetres. Raises MissingCodecError without zstandard for codec 1, without
+    cbor2 for codec 2; TextError where codec 2 is to carry a text that is no map.
     """
-    if codec not in _LEVELS:
+    if codec not in _CODECS:
         raise BinaryError(f"codec check: codec {codec!r} is not known, 1 and 2 are")
     text = content if isinstance(content, str) else write_text(content)
     raw = _utf_8(text)
@@ -57,9 +69,10 @@ def encode(content: RobotMap | str, codec: int = CODEC_TEXT) -> bytes:
     body = raw
     if codec == CODEC_COLUMNS:
         body = _columns(read_text(content) if isinstance(content, str) else content, text, len(raw))
-    compressed = _zstandard().ZstdCompressor(level=_LEVELS[codec]).compress(body)
-    digest = hashlib.sha256(raw).digest()
-    return _ENVELOPE.pack(MAGIC, VERSION, codec, 0, len(raw), digest) + bytes(compressed)
+    head = _ENVELOPE.pack(
+        MAGIC, VERSION, codec, _CODECS[codec].version, 0, len(raw), hashlib.sha256(raw).digest()
+    )
+    return head + _CODECS[codec].compress(body)
 
 
 def decode(content: bytes, limit: int = LARGEST_TEXT) -> RobotMap:
@@ -77,7 +90,7 @@ def decode_text(content: bytes, limit: int = LARGEST_TEXT) -> str:
 
 
 def _text(content: bytes, length: int, digest: bytes) -> str:
-    raw = _decompress(content[_ENVELOPE.size :], length)
+    raw = from_zstd(content[_ENVELOPE.size :], length)
     _check_text(raw, length, digest)
     try:
         return raw.decode()
@@ -86,7 +99,7 @@ def _text(content: bytes, length: int, digest: bytes) -> str:
 
 
 def _unpacked(content: bytes, length: int, digest: bytes) -> tuple[RobotMap, str]:
-    body = _decompress(content[_ENVELOPE.size :], length + _SPARE)
+    body = from_lzma(content[_ENVELOPE.size :], length + _SPARE)
     if len(body) > length + _SPARE:
         raise BinaryError(f"size check: the body unpacks to more than its text of {length} bytes")
     robot_map = unpack_map(body, length)
@@ -142,35 +155,16 @@ def _check_envelope(content: bytes, limit: int) -> tuple[int, int, bytes]:
             f"envelope check: {len(content)} bytes are there, the envelope has {_ENVELOPE.size}; "
             "the file is cut off, get it once more"
         )
-    _, version, codec, reserved, length, digest = _ENVELOPE.unpack_from(content)
+    _, version, codec, layout, reserved, length, digest = _ENVELOPE.unpack_from(content)
     if version != VERSION or reserved:
         raise BinaryError(f"version check: version {version}.{reserved} is not known, {VERSION}.0 is")
-    if codec not in _LEVELS:
+    if codec not in _CODECS:
         raise BinaryError(f"codec check: codec {codec} is not known, 1 and 2 are")
+    if layout != _CODECS[codec].version:
+        raise BinaryError(
+            f"version check: version {layout} of codec {codec} is not known, {_CODECS[codec].version} is; "
+            "export the map once more"
+        )
     if length > limit:
         raise BinaryError(f"size check: {length} bytes of text are declared, the limit is {limit}")
     return codec, length, digest
-
-
-def _decompress(body: bytes, length: int) -> bytes:
-    zstandard = _zstandard()
-    decompressor = zstandard.ZstdDecompressor(max_window_size=_LARGEST_WINDOW)
-    try:
-        # One byte more than declared shows a body that holds too much, and no more than that is allocated.
-        with decompressor.stream_reader(body) as reader:
-            return bytes(reader.read(length + 1))
-    except zstandard.ZstdError as error:
-        raise BinaryError(
-            f"body check: zstd cannot read it ({error}); the file is altered, get it once more"
-        ) from None
-
-
-def _zstandard() -> Any:
-    try:
-        import zstandard
-    except ImportError:
-        raise MissingCodecError(
-            "the binary format needs the Python package zstandard, which is not installed here; "
-            "install it (python3 -m pip install zstandard), or write the map as text"
-        ) from None
-    return zstandard

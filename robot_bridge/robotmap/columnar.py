@@ -11,13 +11,14 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from .bodies import backwards, firsts_of, forwards, rows_of
 from .columns import differences, pack, unpack
 from .errors import BinaryError
-from .head_table import table_of, with_numbers, without_numbers
+from .head_table import Heads, marks_in, table_of, with_numbers, without_numbers
 from .labels import escape, read_ext, unescape, write_ext
 from .model import Border, Obstacle, RobotMap, ShapeType
+from .paths import LOOSE, Paths, paths_of, segments_of, step_counts
 from .plain_cbor import dumps, loads
-from .runs import LOOSE, Runs, run_lengths, runs_of, segments_of
 
 _SHORTEST_OBSTACLE = len("obstacle;\n0;1;0;;\n#\n")
 _SHORTEST_SEGMENT = len("0;0;\n0;0;\n0;0;;\n#\n")
@@ -27,7 +28,7 @@ _LARGEST_ID = 10**18
 
 
 class _Columns(NamedTuple):
-    """The items of the array."""
+    """The items of the array; a body is what obstacles that only stand elsewhere have in common."""
 
     meta: str
     x_min: int
@@ -38,19 +39,22 @@ class _Columns(NamedTuple):
     tails: str
     obstacles: int
     segments: int
-    forms: bytes
-    counts: bytes
+    bodies: int
     ids: bytes
     head: bytes
+    others: bytes
     numbers: bytes
+    body: bytes
+    starts: bytes
+    kinds: bytes
+    counts: bytes
+    steps: bytes
     varies: bytes
     tail: bytes
     heights: bytes
-    starts: bytes
-    steps: bytes
 
 
-_KINDS = (str, *[int] * 4, *[str] * 2, *[int] * 2, *[bytes] * 10)
+_KINDS = (str, *[int] * 4, *[str] * 2, *[int] * 3, *[bytes] * 12)
 
 
 def pack_map(robot_map: RobotMap) -> bytes:
@@ -62,17 +66,12 @@ def pack_map(robot_map: RobotMap) -> bytes:
     counts = np.array([len(o.a) for o in obstacles], dtype=np.int64)
     if any(abs(o.id) > _LARGEST_ID for o in obstacles):
         raise BinaryError("codec check: codec 2 has no room for an id as large as one here; use codec 1")
-    ids = np.array([o.id for o in obstacles], dtype=np.int64)
-    runs = runs_of(
+    paths = paths_of(
         _centimetres([o.a for o in obstacles], 2), _centimetres([o.b for o in obstacles], 2), counts
     )
-    shape_types = np.array([int(o.shape_type) for o in obstacles], dtype=np.int64)
-    lines, numbers = without_numbers([_head(o) for o in obstacles], ids)
-    heads, head = table_of(lines)
-    tails, tail = table_of([line for o in obstacles for line in _tails(o)])
-    height = _centimetres([o.height for o in obstacles], 1)[:, 0]
-    tail, tail_varies = _once_where_equal(tail, counts)
-    height, height_varies = _once_where_equal(height, counts)
+    lines = without_numbers([_head(o) for o in obstacles], counts)
+    heads, head = table_of(lines.lines)
+    tails, bodies = _bodies(obstacles, paths, counts)
     x_min, y_min, x_max, y_max = _centimetres([np.array(robot_map.border)], 1)[:, 0].tolist()
     columns = _Columns(
         meta="\n".join(f"{key} {' '.join(value.split())}" for key, value in robot_map.meta.items()),
@@ -84,18 +83,41 @@ def pack_map(robot_map: RobotMap) -> bytes:
         tails="\n".join(tails),
         obstacles=len(obstacles),
         segments=int(counts.sum()),
-        forms=pack(runs.forms * 8 + shape_types),
-        counts=pack(counts),
-        ids=pack(differences(ids) - 1),
-        head=pack(head),
-        numbers=pack(differences(numbers - ids)),
-        varies=pack(tail_varies + 2 * height_varies),
-        tail=pack(tail),
-        heights=pack(differences(height)),
-        starts=pack(np.diff(runs.starts, axis=0, prepend=0).T.ravel()),
-        steps=pack(runs.steps.T.ravel()),
+        ids=pack(differences(np.array([o.id for o in obstacles], dtype=np.int64)) - 1),
+        head=pack(differences(head)),
+        others=pack(lines.others),
+        numbers=pack(lines.numbers),
+        starts=pack(differences(paths.starts).ravel()),
+        **bodies,
     )
     return dumps(columns)
+
+
+def _bodies(
+    obstacles: Sequence[Obstacle], paths: Paths, counts: NDArray[Any]
+) -> tuple[list[str], dict[str, Any]]:
+    """Return the table of tails, and the items that say of what body each obstacle is and what bodies are."""
+    tails, tail = table_of([line for o in obstacles for line in _tails(o)])
+    height = _centimetres([o.height for o in obstacles], 1)[:, 0]
+    kinds = paths.forms * 8 + np.array([int(o.shape_type) for o in obstacles], dtype=np.int64)
+    lengths = step_counts(paths.forms, counts)
+    each = np.ones(len(counts), dtype=np.int64)
+    first, body = firsts_of(
+        [(kinds, each), (paths.steps, lengths), (height, counts), (tail, counts)], len(counts)
+    )
+    own = rows_of(first, counts)
+    tail, tail_varies = _once_where_equal(tail[own], counts[first])
+    height, height_varies = _once_where_equal(height[own], counts[first])
+    return tails, {
+        "bodies": len(first),
+        "body": pack(backwards(body)),
+        "kinds": pack(kinds[first]),
+        "counts": pack(counts[first]),
+        "steps": pack(paths.steps[rows_of(first, lengths)].ravel()),
+        "varies": pack(tail_varies + 2 * height_varies),
+        "tail": pack(tail),
+        "heights": pack(differences(height)),
+    }
 
 
 def unpack_map(content: bytes, text_length: int) -> RobotMap:
@@ -105,28 +127,68 @@ def unpack_map(content: bytes, text_length: int) -> RobotMap:
     MissingCodecError without cbor2.
     """
     columns = _checked(loads(content, len(_Columns._fields)), text_length)
-    k, n = columns.obstacles, columns.segments
-    kinds, counts = unpack(columns.forms, k, "forms"), unpack(columns.counts, k, "counts")
-    forms, shape_types = kinds >> 3, kinds & 7
-    _require(((counts >= 0) & (counts <= n)).all() and counts.sum() == n, "counts do not add up")
-    _require(((forms >= 0) & (forms <= LOOSE)).all(), "a form is unknown")
-    _require(((forms == LOOSE) | (counts > 0)).all(), "a run has no points")
-    _require(((shape_types >= 1) & (shape_types <= 6)).all(), "a shape type is unknown")
-    varies = unpack(columns.varies, k, "varies")
-    tail = _for_each(columns.tail, counts, (varies & 1) > 0, "tail", plain=True)
-    height = _for_each(columns.heights, counts, (varies & 2) > 0, "heights", plain=False)
-    a, b = segments_of(_runs(columns, forms, counts), counts)
-    _require(max(_largest(a), _largest(height)) <= _FARTHEST, "a number is too large")
-    heads, tails = columns.heads.split("\n"), columns.tails.split("\n")
-    head = unpack(columns.head, k, "head")
-    _check_text_size(((heads, head), (tails, tail)), text_length)
-    ids = np.cumsum(unpack(columns.ids, k, "ids") + 1)
-    numbers = np.cumsum(unpack(columns.numbers, k, "numbers")) + ids
-    lines = with_numbers([heads[place] for place in head.tolist()], numbers)
+    bodies = _Bodies.of(columns)
+    body, counts = bodies.body, bodies.counts[bodies.body]
+    _require(counts.sum() == columns.segments, "counts do not add up")
+    own = rows_of(body, bodies.counts)
+    tail, height = bodies.tail[own], bodies.heights[own]
+    forms = bodies.kinds >> 3
+    steps = bodies.steps[rows_of(body, step_counts(forms, bodies.counts))]
+    starts = np.cumsum(unpack(columns.starts, 2 * len(body), "starts").reshape(-1, 2), axis=0)
+    a, b = segments_of(Paths(forms[body], starts, steps), counts)
+    _require(max(_largest(a), _largest(b), _largest(height)) <= _FARTHEST, "a number is too large")
+    tails = columns.tails.split("\n")
+    lines = _lines(columns, counts, (tails, tail), text_length)
+    ids = np.cumsum(unpack(columns.ids, len(body), "ids") + 1)
     parts = _Parts(a / 100, b / 100, height / 100, tail, [_tail_read(line) for line in tails])
     border = Border(*(value / 100 for value in columns[1:5]))
+    shape_types = (bodies.kinds & 7)[body]
     obstacles = _obstacles(ids.tolist(), shape_types.tolist(), counts, lines, parts)
     return RobotMap(border, tuple(obstacles), _meta(columns.meta))
+
+
+class _Bodies(NamedTuple):
+    """What the columns say of bodies, checked, and of what body each obstacle is."""
+
+    body: NDArray[Any]
+    kinds: NDArray[Any]
+    counts: NDArray[Any]
+    steps: NDArray[Any]
+    tail: NDArray[Any]
+    heights: NDArray[Any]
+
+    @classmethod
+    def of(cls, columns: _Columns) -> _Bodies:
+        back, m, n = unpack(columns.body, columns.obstacles, "body"), columns.bodies, columns.segments
+        _require((back >= 0).all() and (back == 0).sum() == m, "bodies do not add up")
+        body = forwards(back)
+        _require((body >= 0).all(), "a body is in no table")
+        kinds, counts = unpack(columns.kinds, m, "kinds"), unpack(columns.counts, m, "counts")
+        forms, shape_types = kinds >> 3, kinds & 7
+        _require(((counts >= 0) & (counts <= n)).all() and counts.sum() <= n, "counts do not add up")
+        _require(((forms >= 0) & (forms <= LOOSE)).all(), "a form is unknown")
+        _require(((forms == LOOSE) | (counts > 0)).all(), "a path has no points")
+        _require(((shape_types >= 1) & (shape_types <= 6)).all(), "a shape type is unknown")
+        varies = unpack(columns.varies, m, "varies")
+        tail = _for_each(columns.tail, counts, (varies & 1) > 0, "tail", plain=True)
+        heights = _for_each(columns.heights, counts, (varies & 2) > 0, "heights", plain=False)
+        steps = unpack(columns.steps, 2 * int(step_counts(forms, counts).sum()), "steps").reshape(-1, 2)
+        return cls(body, kinds, counts, steps, tail, heights)
+
+
+def _lines(
+    columns: _Columns, counts: NDArray[Any], tails: tuple[list[str], NDArray[Any]], text_length: int
+) -> list[str]:
+    """Return what follows the counts of each obstacle, having seen that all labels have room in the text."""
+    table = columns.heads.split("\n")
+    head = np.cumsum(unpack(columns.head, columns.obstacles, "head"))
+    _check_text_size(((table, head), tails), text_length)
+    marked = [table[place] for place in head.tolist()]
+    numbers, others = marks_in(marked)
+    heads = Heads(
+        marked, unpack(columns.numbers, numbers, "numbers"), unpack(columns.others, others, "others")
+    )
+    return with_numbers(heads, counts)
 
 
 def _centimetres(values: Sequence[NDArray[Any]], axes: int) -> NDArray[Any]:
@@ -174,13 +236,6 @@ def _for_each(
     return np.repeat(values if plain else np.cumsum(values), repeats)
 
 
-def _runs(columns: _Columns, forms: NDArray[Any], counts: NDArray[Any]) -> Runs:
-    lengths = run_lengths(forms, counts)
-    steps = int(lengths.sum()) - len(lengths)
-    starts = unpack(columns.starts, 2 * len(lengths), "starts").reshape(2, -1).T
-    return Runs(forms, np.cumsum(starts, axis=0), unpack(columns.steps, 2 * steps, "steps").reshape(2, -1).T)
-
-
 def _largest(values: NDArray[Any]) -> int:
     """Return the largest absolute value; that of the least int64 is its own."""
     return max(int(values.max()), -int(values.min())) if values.size else 0
@@ -190,7 +245,7 @@ def _checked(items: list[int | str | bytes], text_length: int) -> _Columns:
     columns = _Columns(*items)  # type: ignore[arg-type]
     for name, value, kind in zip(_Columns._fields, items, _KINDS, strict=True):
         _require(type(value) is kind, f"{name} is not of type {kind.__name__}")
-    _require(min(columns.obstacles, columns.segments) >= 0, "a count is negative")
+    _require(min(columns.obstacles, columns.segments, columns.bodies) >= 0, "a count is negative")
     _require(max(abs(value) for value in columns[1:5]) <= _FARTHEST, "the border is too large")
     _require(columns.x_min < columns.x_max and columns.y_min < columns.y_max, "the border has no inside")
     if columns.obstacles * _SHORTEST_OBSTACLE + columns.segments * _SHORTEST_SEGMENT > text_length:

@@ -79,6 +79,13 @@ def test_every_end_that_is_no_corner_of_the_line_lies_on_the_border(line):
     assert (corner | on_border).all()
 
 
+@pytest.mark.parametrize("first", [0.0, -0.0, 0.0004, -0.0004])
+@pytest.mark.parametrize("last", [0.0, -0.0, 0.0004, -0.0004])
+def test_a_wall_along_an_axis_is_kept_whatever_the_sign_of_its_zeros(first, last):
+    for line in ([(first, -3), (last, 3)], [(-3, first), (3, last)]):
+        assert length(*segments(build_map(outlines(row(line)), WINDOW))) == 6
+
+
 @pytest.mark.parametrize("sign", [(1, 1), (1, -1), (-1, 1), (-1, -1)])
 def test_the_stub_of_a_segment_in_a_corner_is_no_wall_along_the_border(sign):
     across = np.array([(-10.03, -5.94), (-9.98, -6.03)]) * sign
