@@ -12,9 +12,9 @@ from ...messages import check_robot_name
 
 LARGEST_PARAMS = 64 << 10
 """Bytes of a request's parameters."""
-LARGEST_PAYLOAD = 16 << 20
-"""Bytes of a request's payload; the site's settings may allow an image less."""
-MOST_WAITING = 10_000
+LARGEST_PAYLOAD = 15 << 20
+"""Bytes of a request's payload, less than the largest packet of a MariaDB as it is installed (16 MiB)."""
+MOST_WAITING = 2_000
 """Requests of one robot that wait for the gateway; more are refused until it has dealt with some."""
 MOST_PAYLOADS = 64
 """Of those, requests with a payload."""

@@ -2,6 +2,10 @@
 
 The views are those of a locked account, and keep rows apart by ``user()``, which is who connected;
 ``current_user()`` would be the locked account. A trigger writes the robot's name into its requests.
+
+The view of SA is bound to the index on ``robot``: a robot's own condition would else be tried on other
+robots' rows too before the view's, and a warning such as *Truncated incorrect INTEGER value: ...* would show
+it what they hold.
 """
 
 from __future__ import annotations
@@ -128,9 +132,9 @@ class MariaDbAccounts(AccountKeeper):
 
     def _make_gateway(self, name: str, password: str) -> None:
         account, base = self._account(name), self._quoted(self._database())
-        self._make_user(
-            account, password, "", f"grant execute on procedure {base}.end_stuck_robots to {account}"
-        )
+        routines = ("procedure {}.end_stuck_robots", "function {}.forsaken")
+        grants = [f"grant execute on {routine.format(base)} to {account}" for routine in routines]
+        self._make_user(account, password, "", *grants)
         self._grant_tables(account)
 
     def _make_user(self, account: str, password: str, options: str, *grants: str) -> None:
@@ -213,8 +217,8 @@ create or replace definer = {keeper} sql security definer view {side}.rr as
     select robot, op, params, payload from {base}.rr where robot = {me} and binary robot = binary {me}
 
 create or replace definer = {keeper} sql security definer view {side}.sa as
-    select id, robot, op, params, payload, created_at, urgent from {base}.sa
-    where robot = {me} and binary robot = binary {me}
+    select id, robot, op, params, payload, created_at, urgent
+    from {base}.sa force index (ix_sa_robot) where robot = {me} and binary robot = binary {me}
 
 create or replace definer = {keeper} procedure {base}.end_stuck_robots(seconds int) sql security definer
 begin
@@ -229,5 +233,14 @@ begin
 end
 
 grant execute on procedure {base}.end_stuck_robots to {keeper}
+
+create or replace definer = {keeper} function {base}.forsaken(seconds int) returns int
+    reads sql data sql security definer
+    return (
+        select count(*) from information_schema.innodb_trx
+        where trx_mysql_thread_id = 0 and trx_started < now() - interval seconds second
+    )
+
+grant execute on function {base}.forsaken to {keeper}
 
 alter database {side} comment '{version}'"""

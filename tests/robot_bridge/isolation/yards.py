@@ -1,0 +1,167 @@
+"""A real database with the tables of the bridge and an account for each robot and for the gateway."""
+
+from __future__ import annotations
+
+import contextlib
+import subprocess
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+import psycopg
+import pymysql
+import sqlalchemy
+
+from robot_bridge.store import revisions
+from robot_bridge.store.database import run_once
+from robot_bridge.store.schema import metadata
+
+MINE, OTHER = ROBOTS = ("iso-1", "iso-2")
+GATEWAY = "iso-gateway"
+SECRET = "secret of another robot"
+
+
+class RefusedError(Exception):
+    """What the database says no to; ``code`` is PostgreSQL's SQLSTATE or MariaDB's number."""
+
+    def __init__(self, code: Any, text: str):
+        super().__init__(f"{code}: {text}")
+        self.code = code
+
+
+@dataclass
+class Yard:
+    """One database; ``side`` is the name of the one that robots connect to."""
+
+    server: Any
+    url: str
+    passwords: dict[str, str]
+    _open: dict[str, Session] = field(default_factory=dict)
+    _stack: contextlib.ExitStack = field(default_factory=contextlib.ExitStack)
+
+    @property
+    def kind(self) -> str:
+        return self.server.scheme
+
+    @property
+    def name(self) -> str:
+        return self.url.rsplit("/", 1)[1]
+
+    @property
+    def side(self) -> str:
+        return self.name if self.kind == "postgresql" else f"{self.name}_robots"
+
+    @property
+    def base(self) -> str:
+        """Where the tables are, as a statement names it."""
+        return "public" if self.kind == "postgresql" else self.name
+
+    @property
+    def admin(self) -> str:
+        return self.server.admin_url(self.url)
+
+    def address(self, account: str) -> str:
+        """Return the URL that ``account`` connects to."""
+        database = self.side if account in ROBOTS else self.name
+        return self.server.url(database, account, self.passwords[account])
+
+    @contextlib.contextmanager
+    def session(self, account: str) -> Iterator[Session]:
+        """A connection of its own for ``account``, or for ``admin``; each statement is a transaction."""
+        url = sqlalchemy.make_url(self.admin if account == "admin" else self.address(account))
+        if self.kind == "postgresql":
+            connection = psycopg.connect(url.render_as_string(hide_password=False), autocommit=True)
+        else:
+            connection = pymysql.connect(
+                host=url.host,
+                port=url.port,
+                user=url.username,
+                password=url.password,
+                database=url.database,
+                autocommit=True,
+            )
+        with contextlib.closing(connection):
+            yield Session(connection)
+
+    def of(self, account: str) -> Session:
+        """Return a connection of ``account`` that stays open for the next who asks."""
+        if account not in self._open:
+            self._open[account] = self._stack.enter_context(self.session(account))
+        return self._open[account]
+
+    def close(self) -> None:
+        """Close what :meth:`of` has opened."""
+        self._stack.close()
+        self._open.clear()
+
+    def sql(self, statement: str) -> list[tuple[Any, ...]]:
+        """Run a statement as the administrator."""
+        return self.of("admin").run(statement)
+
+    def fill(self) -> None:
+        """Put one row of each robot into RR and SA, and nothing else."""
+        for robot in ROBOTS:
+            self.of(robot).run(f"insert into rr (op, params) values ('GetMap', '{robot}: {SECRET}')")
+            self.sql(f"insert into sa (robot, op, params) values ('{robot}', 'Start', '{robot}: {SECRET}')")
+
+    def empty(self) -> None:
+        """Take every row out of RR and SA."""
+        for table in ("rr", "sa"):
+            self.sql(f"delete from {table}")
+
+    def content(self) -> dict[str, list[tuple[Any, ...]]]:
+        """Return every row of every table, and the names of the tables."""
+        return {name: self.sql(f"select * from {name}") for name in metadata.tables if name != "audit"}
+
+
+class Session:
+    """One connection."""
+
+    def __init__(self, connection: Any):
+        self._connection = connection
+
+    def run(self, statement: str) -> list[tuple[Any, ...]]:
+        """Return the rows of a statement; raises RefusedError."""
+        cursor = self._do(statement)
+        return [tuple(row) for row in cursor.fetchall()] if cursor.description else []
+
+    def change(self, statement: str) -> int:
+        """Return how many rows a statement changed; raises RefusedError."""
+        return self._do(statement).rowcount
+
+    def _do(self, statement: str) -> Any:
+        cursor = self._connection.cursor()
+        try:
+            cursor.execute(statement)
+        except psycopg.Error as error:
+            raise RefusedError(error.sqlstate, str(error)) from None
+        except pymysql.Error as error:
+            raise RefusedError(error.args[0], str(error)) from None
+        return cursor
+
+
+def command_line(*arguments: str) -> subprocess.CompletedProcess[str]:
+    """Run ``robot-bridge`` as an administrator does."""
+    return subprocess.run(
+        [sys.executable, "-m", "robot_bridge", *arguments], capture_output=True, text=True, check=False
+    )
+
+
+def make_yard(server: Any) -> Yard:
+    """Make the tables and the accounts by the commands that the operator's page names."""
+    yard = Yard(server, server.new_database(), {})
+    run_once(yard.url, revisions.create)
+    made = {name: ["robots", "add", name] for name in ROBOTS} | {GATEWAY: ["database", "account", GATEWAY]}
+    for name, command in made.items():
+        done = command_line(*command, "--database", yard.admin)
+        assert done.returncode == 0, done.stderr
+        yard.passwords[name] = done.stdout.strip()
+    return yard
+
+
+def remove_accounts(yard: Yard) -> None:
+    """Take the accounts away again: they belong to the server, which other tests use."""
+    for name in ROBOTS:
+        done = command_line("robots", "remove", name, "--database", yard.admin)
+        assert done.returncode == 0, done.stderr
