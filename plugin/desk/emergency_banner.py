@@ -34,6 +34,7 @@ class EmergencyBanner(QFrame):
         self._clear = QToolButton()
         self._clear.setObjectName("fleet_clear_emergency_button")
         self._clear.setDefaultAction(clear)
+        self._clear.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
         grid = QGridLayout(self)
         grid.setContentsMargins(8, 6, 8, 6)
         grid.addWidget(self._text, 0, 0)

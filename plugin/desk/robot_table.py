@@ -14,13 +14,15 @@ from .desk import PULL_EVERY_MS, Desk
 from .glyphs import state_icon
 from .picture import STATES, RobotView
 
-COLUMNS = ("Robot", "State", "Task", "Speed", "Batt.", "Age", "Link", "Latency")
-WIDEST = ("robot-0", "offline", "", "0.0 m/s", "100%", "00.0 s", "websocket", "0000 ms")
+COLUMNS = ("Robot", "State", "Task", "Speed", "Batt.", "Age", "Link", "Ping")
+WIDEST = ("robot-0", "offline", "", "0.0 m/s", "100%", "00.0 s", "ws", "000 ms")
 TASK = COLUMNS.index("Task")
 _FLAGS = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
 # A number on Qt 5, an enum on Qt 6; a model has to hand out the number.
 TO_THE_RIGHT = int(getattr(_FLAGS, "value", _FLAGS))
-TO_THE_RIGHT_COLUMNS = ("Speed", "Batt.", "Age", "Latency")
+SHORT = {"websocket": "ws"}
+"""Links whose names do not fit into a column."""
+TO_THE_RIGHT_COLUMNS = ("Speed", "Batt.", "Age", "Ping")
 SORT_ROLE = Qt.ItemDataRole.UserRole
 REFRESH_EVERY = 500 // PULL_EVERY_MS
 
@@ -100,9 +102,9 @@ class RobotTableModel(QAbstractTableModel):
             return "" if report.v is None else f"{report.v:.1f} m/s"
         if column == "Batt.":
             return "" if report.battery is None else f"{report.battery:.0%}"
-        if column == "Latency":
+        if column == "Ping":
             return "" if report.latency is None else f"{report.latency * 1000:.0f} ms"
-        return f"{view.age:.1f} s" if column == "Age" else report.link
+        return f"{view.age:.1f} s" if column == "Age" else SHORT.get(report.link, report.link)
 
     def _sort_value(self, view: RobotView, column: str) -> object:
         numbers = {
@@ -110,7 +112,7 @@ class RobotTableModel(QAbstractTableModel):
             "Speed": view.report.v,
             "Batt.": view.report.battery,
             "Age": view.age,
-            "Latency": view.report.latency,
+            "Ping": view.report.latency,
         }
         if column in numbers:
             return -1.0 if numbers[column] is None else float(numbers[column])
@@ -118,6 +120,8 @@ class RobotTableModel(QAbstractTableModel):
 
     def _tip(self, view: RobotView) -> str:
         lines = [f"{view.name}: {view.state.value}, last heard {view.age:.1f} s ago over {view.report.link}"]
+        if view.report.latency is not None:
+            lines.append(f"its link takes {view.report.latency * 1000:.1f} ms there and back")
         if view.has_pose:
             lines.append(f"at {view.report.x:.2f}, {view.report.y:.2f} m in the site frame")
         task = self._task_of(view.name)
@@ -171,7 +175,7 @@ class RobotTable(QTableView):
         header.setHighlightSections(False)
         header.setMinimumSectionSize(24)
         for column, texts in enumerate(zip(COLUMNS, WIDEST, strict=True)):
-            extra = 30 if column == 0 else 12
+            extra = 28 if column == 0 else 9
             self.setColumnWidth(column, max(map(metrics.horizontalAdvance, texts)) + extra)
         header.setSectionResizeMode(TASK, QHeaderView.ResizeMode.Stretch)
 

@@ -179,7 +179,7 @@ def test_what_is_not_stored_and_who_is_missing_is_said_in_words():
 
 def test_the_latency_of_each_link_stands_in_the_table(at_desk, gateway, make_robot, wait):
     table = at_desk.dock.table
-    column = [table.model().headerData(c, Qt.Orientation.Horizontal) for c in range(8)].index("Latency")
+    column = [table.model().headerData(c, Qt.Orientation.Horizontal) for c in range(8)].index("Ping")
     gateway.show(make_robot("r1", latency=0.0123), make_robot("r2"))
     wait(lambda: table.model().index(0, column).data() == "12 ms")
     assert table.model().index(1, column).data() == ""

@@ -149,7 +149,7 @@ def test_the_table_tells_what_is_known_of_each_robot(at_desk, gateway, make_robo
         "0.5 m/s",
         "80%",
     )
-    assert first["Link"] == "websocket"
+    assert first["Link"] == "ws"
     assert (third["Robot"], third["Speed"], third["Batt."], third["Link"]) == ("r3", "", "", "sql")
 
 
