@@ -32,6 +32,7 @@ from .preview_view import PreviewView
 from .rows import rows_of
 from .table_model import (
     BASE,
+    ESTIMATE,
     FILTER,
     HEIGHT,
     LAYER,
@@ -47,17 +48,18 @@ from .table_model import (
 )
 
 WIDTHS = {
-    LAYER: 125,
-    ROLE: 135,
-    FILTER: 110,
-    HEIGHT: 90,
-    BASE: 75,
-    SEMANTICS: 160,
-    OUTDOOR: 80,
-    WIDTH: 85,
-    TEMPLATE: 85,
+    LAYER: 120,
+    ROLE: 130,
+    FILTER: 90,
+    HEIGHT: 85,
+    ESTIMATE: 95,
+    BASE: 70,
+    SEMANTICS: 140,
+    OUTDOOR: 75,
+    WIDTH: 80,
+    TEMPLATE: 75,
     ROTATION: 80,
-    RESULT: 210,
+    RESULT: 200,
 }
 
 MOST_OF_TABLE = 370

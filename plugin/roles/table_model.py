@@ -20,6 +20,7 @@ TITLES = (
     "Role",
     "Filter",
     "Height [m]",
+    "Estimate [m]",
     "Foot [m]",
     "Label",
     "Outdoors",
@@ -28,11 +29,12 @@ TITLES = (
     "Turned [°]",
     "Comes to",
 )
-LAYER, ROLE, FILTER, HEIGHT, BASE, SEMANTICS, OUTDOOR, WIDTH, TEMPLATE, ROTATION, RESULT = range(11)
+LAYER, ROLE, FILTER, HEIGHT, ESTIMATE, BASE, SEMANTICS, OUTDOOR, WIDTH, TEMPLATE, ROTATION, RESULT = range(12)
 WHAT = {
     ROLE: "role",
     FILTER: "filter",
     HEIGHT: "height",
+    ESTIMATE: "estimate",
     BASE: "base",
     SEMANTICS: "semantics",
     OUTDOOR: "outdoor",
@@ -45,6 +47,7 @@ EXPLANATIONS = {
     ROLE: "What the layer is to robots and operators",
     FILTER: "Expression that is true of the features that count, such as \"amenity\" = 'bench'; empty: all",
     HEIGHT: "Expression for metres from the foot up; empty: the field height or height_m",
+    ESTIMATE: 'Expression for the height where it is not known, such as 3 * "levels"; marked as estimated',
     BASE: "Expression for metres above the ground where it begins, as of an arch; empty: 0",
     SEMANTICS: "Expression for the label, such as 'building,' || \"name\"; of a road its surface",
     OUTDOOR: "Expression for true or false; empty: true",
@@ -68,7 +71,7 @@ def role_name(role: str) -> str:
 def used_columns(role: str) -> tuple[int, ...]:
     """Return the columns of expressions that count for a layer of ``role``."""
     if role in OBSTACLE_ROLES:
-        columns = (FILTER, HEIGHT, BASE, SEMANTICS, OUTDOOR)
+        columns = (FILTER, HEIGHT, ESTIMATE, BASE, SEMANTICS, OUTDOOR)
         return (*columns, WIDTH, TEMPLATE, ROTATION) if role == FURNITURE else columns
     if role == ROAD_CENTRELINE:
         return (FILTER, SEMANTICS, WIDTH)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from qgis.core import QgsFeature
+from qgis.core import QgsExpression, QgsFeature
 
 from .layer_rules import LayerRules, as_flag, as_metres
 from .roles import RAMP, LayerExpressions
@@ -15,13 +15,15 @@ HEIGHT_FIELDS = ("height", "height_m")
 
 @dataclass(frozen=True)
 class Values:
-    """What a robot map says of one feature; ``estimated`` where ``height`` is the default.
+    """What a robot map says of one feature.
 
+    ``height`` is ``estimated`` where it is not told, and ``unknown`` where nothing but the default is left.
     ``base`` is how many metres above the ground it begins; ``height`` counts from there.
     """
 
     height: float
     estimated: bool
+    unknown: bool
     base: float
     semantics: str
     outdoor: bool
@@ -47,6 +49,7 @@ class FeatureValues:
         self._default_height = default_height
         self._rules = rules
         self._height = rules.rule("height", expressions.height or rules.column(*HEIGHT_FIELDS))
+        self._estimate = rules.rule("estimate", expressions.estimate)
         self._semantics = rules.rule("semantics", expressions.semantics)
         self._outdoor = rules.rule("outdoor", expressions.outdoor)
         self._base = rules.rule("base", expressions.base)
@@ -55,23 +58,26 @@ class FeatureValues:
         """Return the values of ``feature``; what is missing or not understood gets the default and a note."""
         self._rules.at(feature)
         notes: list[str] = []
-        height = 0.0 if self._is_ramp else self._height_of(notes)
+        height = 0.0 if self._is_ramp else self._height_of("height", self._height, notes)
+        estimate = self._height_of("estimate", self._estimate, notes) if height is None else None
         return Values(
-            height=self._default_height if height is None else height,
+            height=next(h for h in (height, estimate, self._default_height) if h is not None),
             estimated=height is None,
+            unknown=height is None and estimate is None,
             base=self._base_of(notes),
             semantics=self._semantics_of(notes),
             outdoor=self._outdoor_of(notes),
             notes=notes,
         )
 
-    def _height_of(self, notes: list[str]) -> float | None:
-        value = self._rules.value("height", self._height, notes)
+    def _height_of(self, what: str, rule: QgsExpression | None, notes: list[str]) -> float | None:
+        otherwise = "the estimate" if rule is self._height and self._estimate else "the default"
+        value = self._rules.value(what, rule, notes, otherwise=f"{otherwise} is used")
         if value is None or value == "":
             return None
         height = as_metres(value)
         if height is None or height < 0:
-            notes.append(f"its height {value!r} is not a number of metres of 0 or more; the default is used")
+            notes.append(f"its {what} {value!r} is not a number of metres of 0 or more; {otherwise} is used")
             return None
         return height
 

@@ -96,7 +96,7 @@ class _LayerReader:
         self._window = window
         self._area = self._placing.area_of(window) if window else None
         self._around = self._placing.area_of(widened(window, REACH_M)) if window else None
-        self._estimated: list[int] = []
+        self._unknown: list[int] = []
         self._odd_for_role: list[int] = []
 
     def read(self, feature: QgsFeature, reading: Reading) -> None:
@@ -129,12 +129,12 @@ class _LayerReader:
         reading.warnings.extend(self._rules.warnings)
         if role and role not in OBSTACLE_ROLES:
             reading.warnings.append(f"Layer {name}: its role is {role}, yet it is exported as obstacles")
-        if self._estimated:
-            count = len(self._estimated)
+        if self._unknown:
+            count = len(self._unknown)
             unknown = "1 height is" if count == 1 else f"{count} heights are"
             reading.warnings.append(
                 f"Layer {name}: {unknown} not known and estimated as {self._default_height:g} m "
-                f"({_features(self._estimated)})"
+                f"({_features(self._unknown)})"
             )
         if self._odd_for_role:
             wanted = "lines, one a riser" if role == STAIRS else "polygons"
@@ -160,8 +160,8 @@ class _LayerReader:
     def _add(self, feature: QgsFeature, shapes: Sequence[Shape], reading: Reading) -> list[str]:
         source = f"{self.source.name}:{feature.id()}"
         values = self._values.of(feature)
-        if values.estimated:
-            self._estimated.append(feature.id())
+        if values.unknown:
+            self._unknown.append(feature.id())
         if any(_odd(shape, self.source.role) for shape in shapes):
             self._odd_for_role.append(feature.id())
         notes, ext = list(values.notes), {}

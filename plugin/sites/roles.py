@@ -29,7 +29,8 @@ ROLE_PROPERTY = "fleet/role"
 class LayerExpressions:
     """QGIS expressions of one layer; an empty one leaves the choice to whoever exports.
 
-    ``height`` gives metres from the foot up (of one riser for stairs), ``semantics`` a label such as
+    ``height`` gives metres from the foot up (of one riser for stairs), ``estimate`` what they are taken for
+    where ``height`` says nothing, such as three for each storey; ``semantics`` a label such as
     ``building,A5`` (of a road its surface, of a keepout its name), ``outdoor`` true or false, ``width`` the
     metres of a road or across a point of furniture, ``base`` the metres above the ground where a thing
     begins. ``filter`` is true of the features that count. ``template`` names the shape that a point of
@@ -40,6 +41,7 @@ class LayerExpressions:
     semantics: str = ""
     outdoor: str = ""
     width: str = ""
+    estimate: str = ""
     base: str = ""
     filter: str = ""
     template: str = ""

@@ -355,7 +355,7 @@ def test_helsinki_is_published_by_its_profile_with_every_loss_named(qgis_process
     assert any(warning.startswith("Layer buildings, feature ") for warning in done.warnings)
     assert any("heights are not known and estimated as 3 m" in warning for warning in done.warnings)
     estimated = [row.height for row in site.outlines.rows() if row.ext == {"h": "est"}]
-    assert len(estimated) > 100 and set(estimated) == {3.0}
+    assert len(estimated) > 100 and {3.0, 1.5, 2.0, 12.0, 18.0} <= set(estimated)
 
 
 def test_the_papers_campus_in_local_metres_is_published_by_its_profile(qgis_process, data, tmp_path):

@@ -12,6 +12,7 @@ from fleet_supervisor.plugin.roles.roles_action import RolesAction
 from fleet_supervisor.plugin.roles.roles_dialog import RolesDialog
 from fleet_supervisor.plugin.roles.table_model import (
     BASE,
+    ESTIMATE,
     FILTER,
     HEIGHT,
     LAYER,
@@ -149,11 +150,11 @@ def test_an_expression_that_is_none_is_told_in_its_row(dialog, wait):
     [
         ("roads", "road_centreline", {ROLE, FILTER, SEMANTICS, WIDTH}),
         ("buildings", "keepout", {ROLE, FILTER, SEMANTICS}),
-        ("buildings", "obstacle", {ROLE, FILTER, HEIGHT, BASE, SEMANTICS, OUTDOOR}),
+        ("buildings", "obstacle", {ROLE, FILTER, HEIGHT, ESTIMATE, BASE, SEMANTICS, OUTDOOR}),
         (
             "trees",
             "furniture",
-            {ROLE, FILTER, HEIGHT, BASE, SEMANTICS, OUTDOOR, WIDTH, TEMPLATE, ROTATION},
+            {ROLE, FILTER, HEIGHT, ESTIMATE, BASE, SEMANTICS, OUTDOOR, WIDTH, TEMPLATE, ROTATION},
         ),
         ("roads", "", {ROLE}),
     ],

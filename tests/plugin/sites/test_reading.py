@@ -78,6 +78,24 @@ def test_an_expression_about_a_field_that_one_layer_lacks_is_one_warning_for_tha
     ]
 
 
+def test_a_height_that_is_not_known_is_estimated_by_the_layer_and_marked_and_only_then_by_default(
+    make_layer, read
+):
+    fields = "&field=height:string&field=levels:string"
+    houses = [("12", "4"), (NULL, "4"), ("high", "2"), ("", NULL), (NULL, "many")]
+    layer = make_layer("houses", fields=fields, features=[(LINE, *values) for values in houses])
+    set_expressions(layer, LayerExpressions(estimate='3 * "levels"'))
+    reading = read(layer, default_height=5.0)
+    assert heights(reading) == [12, 12, 6, 5, 5]
+    assert [row.ext for row in reading.rows] == [{}] + [{"h": "est"}] * 4
+    assert reading.warnings[0].startswith("Layer houses, feature 3: its height 'high' is not a number of")
+    assert reading.warnings[0].endswith("; the estimate is used")
+    assert reading.warnings[1].startswith("Layer houses, feature 5: the estimate expression fails: Cannot")
+    assert reading.warnings[2:] == [
+        "Layer houses: 2 heights are not known and estimated as 5 m (features 4, 5)"
+    ]
+
+
 def test_where_a_thing_begins_is_said_by_its_layer_else_by_the_general_expression(make_layer, read):
     fields = "&field=height:double&field=foot:string"
     feet = [(LINE, 1.0, foot) for foot in ("2.5", "2,5 m", "-0.5", "", NULL, "high")]
