@@ -65,7 +65,7 @@ async def answer(fleet: Fleet, request: DeskRequest, caller: Caller) -> Json:
     service = SERVICES[type(request)]
     if not caller.role.includes(service.role):
         raise ForbiddenError(
-            f"{request.method}: {caller.operator} is {caller.role.value}, and this takes a "
+            f"{request.method}: {caller.operator} is {caller.role.value}, and this takes "
             f"{service.role.value}; ask one, or have the role changed by 'robot-bridge operators role'"
         )
     return await service.answer(fleet, request, caller)

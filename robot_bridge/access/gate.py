@@ -16,7 +16,6 @@ from ..sites.limit_settings import LimitSettings
 from ..store.database import Database
 from . import session_rows
 from .account_book import AccountBook
-from .accounts import Grant
 from .buckets import Bucket
 from .guests import Guests
 from .journal import Journal
@@ -36,6 +35,7 @@ ENDED = 4004
 """Close code of a session that somebody ended."""
 MOST_ADDRESSES = 10_000
 PATHS = {TokenKind.ROBOT: "/robot", TokenKind.OPERATOR: "/desk"}
+OWNERS = {TokenKind.ROBOT: "a robot's", TokenKind.OPERATOR: "an operator's"}
 
 
 class Gate:
@@ -60,6 +60,7 @@ class Gate:
         self._database = database
         self._may_be_open = may_be_open
         self._clock = clock
+        self._reading = asyncio.Lock()
         self._read_at = 0.0
         self._failures: dict[str, Bucket] = {}
 
@@ -161,34 +162,38 @@ class Gate:
         return None
 
     async def _identify(self, visitor: Visitor, request: Request, kind: TokenKind) -> Identity | Response:
-        if self._is_open(kind):
-            return Identity(kind, None, None, new_id())
         token = bearer(request.headers.get("Authorization"))
-        if token is None:
-            return self._refuse(visitor, kind, "nobody", "no token came with the request")
         try:
-            grant = self.book.find(token) or await self._find_new(token)
+            if token is not None and self.book.find(token) is None:
+                await self._read_again()
         except StoreError as error:
             log.error("%s; a token could not be looked up", error)
             text = "The accounts cannot be read now: the database is away. Try again."
             return _later(visitor, http.HTTPStatus.SERVICE_UNAVAILABLE, text, 5)
+        if self._is_open(kind):
+            return Identity(kind, None, None, new_id())
+        if token is None:
+            return self._refuse(visitor, kind, "nobody", "no token came with the request")
+        grant = self.book.find(token)
         if grant is None:
             return self._refuse(visitor, kind, "nobody", "this token is not known")
         if grant.kind is not kind:
-            fault = f"this is the token of a {grant.kind.value}, and {PATHS[kind]} takes a {kind.value}'s"
+            fault = f"this token is {OWNERS[grant.kind]}, and {PATHS[kind]} takes {OWNERS[kind]}"
             return self._refuse(visitor, kind, grant.owner, fault)
         identity = Identity(kind, grant.owner, grant.token, new_id())
         if (wrong := self._fault(identity)) is not None:
             return self._refuse(visitor, kind, grant.owner, wrong)
         return identity
 
-    async def _find_new(self, token: str) -> Grant | None:
-        """Look for a token that may have been made a moment ago."""
-        if time.monotonic() - self._read_at < READ_AGAIN_AFTER:
-            return None
-        self._read_at = time.monotonic()
-        await self.book.refresh()
-        return self.book.find(token)
+    async def _read_again(self) -> None:
+        """Read the accounts for a token that may have been made a moment ago; once for all who knock."""
+        knocked = time.monotonic()
+        async with self._reading:
+            if self._read_at >= knocked:
+                return
+            await asyncio.sleep(max(0.0, self._read_at + READ_AGAIN_AFTER - knocked))
+            self._read_at = time.monotonic()
+            await self.book.refresh()
 
     def _fault(self, identity: Identity) -> str | None:
         if identity.token is None:

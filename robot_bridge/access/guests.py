@@ -73,7 +73,7 @@ class Guests:
             return
         log.warning("%s from %s: connection ended: %s", visitor.who, visitor.address, reason)
         self._journal.note(
-            identity.name or "",
+            identity.name or f"{identity.kind.value} without an account",
             "session ended",
             address=visitor.address,
             subject=identity.session,

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import shutil
-import subprocess
-import sys
 import time
 from pathlib import Path
 
@@ -48,40 +46,11 @@ def limited_site(sample_site, tmp_path_factory):
     return make
 
 
-class Accounts:
-    """The command line on one database."""
-
-    def __init__(self, database: str):
-        self.database = database
-
-    def run(self, *words: object) -> subprocess.CompletedProcess[str]:
-        """Run ``robot-bridge`` with these words on the database."""
-        command = [sys.executable, "-m", "robot_bridge", *map(str, words), "--database", self.database]
-        return subprocess.run(command, capture_output=True, text=True, timeout=30, check=False)
-
-    def do(self, *words: object) -> str:
-        """Run what must succeed; return what it printed on standard output."""
-        done = self.run(*words)
-        assert done.returncode == 0, done.stderr
-        return done.stdout.strip()
-
-    def operator(self, name: str, role: str, *words: object) -> dict[str, dict[str, str]]:
-        """Make an operator; return what its connections are opened with."""
-        return bearing(self.do("operators", "add", name, "--role", role, *words))
-
-    def robot(self, name: str) -> dict[str, dict[str, str]]:
-        """Make a robot's token; return what its connections are opened with."""
-        return bearing(self.do("robots", "token", name))
-
-
-def bearing(token: str) -> dict[str, dict[str, str]]:
-    """Return the options of a connection that carries ``token``."""
-    return {"additional_headers": {"Authorization": f"Bearer {token}"}}
-
-
 @pytest.fixture(scope="module")
 def accounts_of():
     """The command line on a bridge's database: ``accounts_of(bridge)``."""
+    from bridge_accounts import Accounts
+
     return lambda bridge: Accounts(bridge.database)
 
 
