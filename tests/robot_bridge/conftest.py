@@ -35,7 +35,7 @@ def impatient_site(sample_site, tmp_path_factory) -> Path:
 
 @pytest.fixture(scope="module")
 def start_bridge(tmp_path_factory):
-    """Start a gateway on a site: ``start_bridge(site)``; all that runs ends with the module."""
+    """Start a gateway: ``start_bridge(site)``, or ``start_bridge(site, url)``; all ends with the module."""
     from bridge_programs import Bridge
     from stage.processes import Processes
 
@@ -43,8 +43,8 @@ def start_bridge(tmp_path_factory):
     with Processes(folder / "logs") as processes:
         bridges = []
 
-        def start(site) -> Bridge:
-            bridge = Bridge(processes, site, folder / f"fleet-{len(bridges)}.db")
+        def start(site, database: str | None = None) -> Bridge:
+            bridge = Bridge(processes, site, database or f"sqlite:///{folder}/fleet-{len(bridges)}.db")
             bridges.append(bridge)
             bridge.start_gateway()
             return bridge
