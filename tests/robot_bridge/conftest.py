@@ -43,8 +43,9 @@ def start_bridge(tmp_path_factory):
     with Processes(folder / "logs") as processes:
         bridges = []
 
-        def start(site, database: str | None = None) -> Bridge:
+        def start(site, database: str | None = None, options=()) -> Bridge:
             bridge = Bridge(processes, site, database or f"sqlite:///{folder}/fleet-{len(bridges)}.db")
+            bridge.options += options
             bridges.append(bridge)
             bridge.start_gateway()
             return bridge
