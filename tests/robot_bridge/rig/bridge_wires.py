@@ -89,7 +89,8 @@ class Desk(Wire):
         self.commands: dict[str, dict[str, Any]] = {}
         self.observations: dict[int, dict[str, Any]] = {}
         self.snapshots: list[dict[str, Any]] = []
-        self.site = self.ask("hello", {"operator": operator})["site"]
+        self.hello = self.ask("hello", {"operator": operator})
+        self.site, self.emergency = self.hello["site"], self.hello["emergency"]
 
     def send(self, command: str, robot: str, op: str, **params: Any) -> dict[str, Any]:
         """Send a command and return its report."""
@@ -115,6 +116,8 @@ class Desk(Wire):
             self.robots.update({robot["robot"]: robot for robot in frame["params"]["robots"]})
         elif frame["method"] == "observation":
             self.observations[frame["params"]["observation"]] = frame["params"]
+        elif frame["method"] == "emergency":
+            self.emergency = frame["params"]
         elif frame["method"] == "command":
             self.commands[frame["params"]["command"]] = frame["params"]
 
