@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import logging
 import signal
 import sys
 from pathlib import Path
@@ -11,11 +10,12 @@ from typing import Annotated
 
 import typer
 
-from .commands import audit, operators, robot_tokens, robots, schemas, sessions, tls, trajectories
+from .commands import audit, operators, robot_tokens, robots, schemas, serve, sessions, tls, trajectories
 from .commands import database as databases
-from .commands.database_option import DEFAULT, DatabaseOption, PasswordFileOption, database_address
+from .commands.database_option import PasswordFileOption, database_address
 from .errors import BridgeError
 from .messages import MessageError, SetObject
+from .monitoring.logs import set_up_log
 from .robot.sightings import Thing
 from .robotmap.errors import RobotMapError
 from .sites.errors import SiteError
@@ -29,35 +29,10 @@ app.add_typer(trajectories.app, name="trajectories")
 app.add_typer(operators.app, name="operators")
 app.add_typer(sessions.app, name="sessions")
 app.add_typer(tls.app, name="tls")
+app.command()(serve.serve)
 app.command()(audit.audit)
 app.command()(schemas.schemas)
 robot_tokens.add_to(robots.app)
-
-
-@app.command()
-def serve(
-    site: Annotated[Path, typer.Option(help="Folder of a published site: site.toml and site.gpkg.")],
-    database: DatabaseOption = DEFAULT,
-    database_password_file: PasswordFileOption = None,
-    host: Annotated[
-        str, typer.Option(help="Address to listen on; beyond loopback with TLS and accounts.")
-    ] = "127.0.0.1",
-    port: Annotated[int, typer.Option(help="Port to listen on; 0 takes any.", min=0, max=65535)] = 8765,
-    certificate: Annotated[
-        Path | None, typer.Option(help="The gateway's certificate (PEM), for wss://.")
-    ] = None,
-    key: Annotated[Path | None, typer.Option(help="Its key (PEM).")] = None,
-) -> None:
-    """Serve one site to robots (/robot, and tables rr and sa) and to operators (/desk)."""
-    from .access.tls import server_files
-    from .gateway import GatewaySettings, run
-
-    async def work() -> None:
-        address = database_address(database, database_password_file)
-        settings = GatewaySettings(site, address, host, port, server_files(certificate, key))
-        await run(settings, _stop_event(), lambda address: print(f"listening on {address}", flush=True))
-
-    asyncio.run(work())
 
 
 @app.command()
@@ -145,8 +120,7 @@ def _stop_event() -> asyncio.Event:
 
 def main() -> None:
     """Run the command line; what cannot be done is said in one line and ends with status 1."""
-    logging.basicConfig(level=logging.WARNING, format="%(asctime)s %(levelname)s %(message)s")
-    logging.getLogger("websockets").setLevel(logging.CRITICAL)
+    set_up_log()
     try:
         app()
     except (BridgeError, SiteError, RobotMapError, MessageError) as error:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import dataclasses
+from collections import Counter
 from collections.abc import AsyncIterator, Callable, Coroutine, Iterable
 from typing import Any, TypeVar
 
@@ -67,6 +68,10 @@ class CommandBook:
         """Take up the commands that an earlier gateway left open."""
         for stored in await self._database.run(commands.still_open):
             self._open.put(self._restored(stored))
+
+    def count(self) -> Counter[CommandState]:
+        """Return how many open commands are in each state."""
+        return Counter(command.report.state for command in self._open)
 
     def busy_with(self, robot: str) -> str | None:
         """Return the id of the command that makes the robot drive, if any."""

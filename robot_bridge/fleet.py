@@ -10,6 +10,7 @@ import asyncio
 import logging
 import time
 import uuid
+from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Protocol
@@ -29,6 +30,7 @@ from .messages import (
     Answer,
     Command,
     CommandReport,
+    CommandState,
     MessageError,
     ObservationReport,
     Observed,
@@ -339,6 +341,10 @@ class Fleet:
     def listeners(self) -> int:
         """Return how many operators' sessions are told what happens."""
         return len(self._listeners)
+
+    def open_commands(self) -> Counter[CommandState]:
+        """Return how many commands with a step to come are in each state."""
+        return self._book.count()
 
     async def site_changed(self) -> None:
         """Go by the site's newest facts and settings from now on, and tell operators of them."""

@@ -9,7 +9,7 @@ import logging
 import socket
 import time
 from collections.abc import Callable, Coroutine
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from urllib.parse import parse_qs, urlsplit
 
@@ -25,19 +25,28 @@ from .access.tokens import TokenKind
 from .access.visitor import Visitor
 from .desk_server import DeskSession
 from .errors import StoreError
+from .farewell import say_farewell
 from .fleet import Fleet
 from .links.sql import SqlLink
 from .links.websocket import WebSocketLink
 from .messages import MessageError, check_robot_name
+from .monitoring.metrics import Metrics
+from .monitoring.tasks import Work, every, keep_all_going
 from .schemas.documents import served
 from .site_maps import SiteMaps
+from .site_watch import SiteWatch, stamp_of
 from .sites.publication import read_site
+from .status_pages import HEALTH, METRICS, StatusPages
 from .store.database import Database
+from .store.sole_gateway import SoleGateway
 
 log = logging.getLogger(__name__)
 
 AGE_INTERVAL = 0.25
 SAVE_INTERVAL = 1.0
+PRUNE_INTERVAL = 60.0
+CLOSE_WITHIN = 1.0
+"""seconds for each of the last words to the database, so that a gateway ends within five in all."""
 
 
 @dataclass(frozen=True)
@@ -45,56 +54,62 @@ class GatewaySettings:
     """What a gateway is started with; port 0 takes any free one."""
 
     site: Path
-    database: str | URL
+    database: URL
     host: str = "127.0.0.1"
     port: int = 8765
     tls: ServerFiles | None = None
 
 
-class Gateway:
-    """One site, one database, one port with ``/robot`` and ``/desk``."""
+@dataclass
+class Signals:
+    """What a gateway is told from outside while it runs: to end, and to read its settings anew."""
 
-    def __init__(self, fleet: Fleet, database: Database, gate: Gate, tls: ServerTls | None = None) -> None:
+    stop: asyncio.Event = field(default_factory=asyncio.Event)
+    reload: asyncio.Event = field(default_factory=asyncio.Event)
+
+
+class Gateway:
+    """One site, one database, one port with ``/robot``, ``/desk`` and pages about the gateway itself."""
+
+    def __init__(self, fleet: Fleet, gate: Gate, tls: ServerTls | None = None) -> None:
         self._fleet = fleet
-        self._database = database
         self._gate = gate
         self._tls = tls
         self._robots = WebSocketLink(fleet)
+        metrics = Metrics(fleet.tally)
+        fleet.database.observe = metrics.database.observe
+        self._status = StatusPages(fleet, metrics)
 
     async def serve(self, host: str, port: int) -> Server:
         """Listen for robots and operators; raises BridgeError when that cannot be done there."""
         context = self._tls.context if self._tls else None
         return await listen(self._gate, host, port, context, self._admit, self._connected)
 
-    async def watch(self) -> None:
-        """Keep liveness, trajectories, expiry and the SQL link going until cancelled."""
-        async with asyncio.TaskGroup() as tasks:
-            tasks.create_task(SqlLink(self._fleet, self._database).run())
-            tasks.create_task(self._age())
-            tasks.create_task(self._save())
-            tasks.create_task(self._gate.watch())
-            tasks.create_task(self._gate.journal.run())
-            if self._tls is not None:
-                tasks.create_task(self._tls.watch())
+    def works(self) -> dict[str, Work]:
+        """Return what keeps a gateway going: liveness, trajectories, expiry, the SQL link, accounts."""
+        fleet, tally = self._fleet, self._fleet.tally
+        works: dict[str, Work] = {
+            "sql link": SqlLink(fleet, fleet.database).run,
+            "liveness": lambda: every(AGE_INTERVAL, self._age, "liveness", tally),
+            "save": lambda: every(SAVE_INTERVAL, fleet.save, "save", tally),
+            "prune": lambda: every(PRUNE_INTERVAL, fleet.prune, "prune", tally),
+            "accounts": self._gate.watch,
+            "audit log": self._gate.journal.run,
+        }
+        if self._tls is not None:
+            works["certificates"] = self._tls.watch
+        return works
 
     async def _age(self) -> None:
-        while True:
-            self._fleet.age()
-            self._robots.measure()
-            await asyncio.sleep(AGE_INTERVAL)
-
-    async def _save(self) -> None:
-        while True:
-            await asyncio.sleep(SAVE_INTERVAL)
-            try:
-                await self._fleet.save()
-            except StoreError as error:
-                log.error("%s; positions are kept and stored later", error)
+        self._fleet.age()
+        self._robots.measure()
 
     async def _admit(self, visitor: Visitor, request: Request) -> Response | None:
         if (refusal := self._gate.refuse_page(visitor, request)) is not None:
             return refusal
         path = urlsplit(request.path).path
+        if path in (HEALTH, METRICS):
+            return await self._status_page(visitor, request, path)
         if (document := served(path)) is not None:
             response = visitor.respond(http.HTTPStatus.OK, document)
             del response.headers["Content-Type"]
@@ -109,6 +124,13 @@ class Gateway:
             return visitor.respond(http.HTTPStatus.BAD_REQUEST, f"{error}\n")
         kind = TokenKind.OPERATOR if path == "/desk" else TokenKind.ROBOT
         return await self._gate.admit(visitor, request, kind, name, self._largest_message(kind))
+
+    async def _status_page(self, visitor: Visitor, request: Request, path: str) -> Response:
+        if path == HEALTH:
+            return await self._status.health()
+        if not is_loopback(visitor.address) and (told := await self._gate.may_read(visitor, request)):
+            return told
+        return await self._status.metrics()
 
     def _largest_message(self, kind: TokenKind) -> int:
         largest = self._gate.limits.largest_message_bytes
@@ -126,30 +148,37 @@ class Gateway:
             await self._robots.serve(visitor, visitor.identity.name)
 
 
-async def run(settings: GatewaySettings, stop: asyncio.Event, started: Callable[[str], None]) -> None:
-    """Run a gateway until ``stop`` is set; ``started`` is called with its address, ``ws://host:port``.
+async def run(settings: GatewaySettings, signals: Signals, started: Callable[[str], None]) -> None:
+    """Run a gateway until it is told to stop; ``started`` is called with its address, ``ws://host:port``.
 
-    :raises BridgeError: when it may not listen there; SiteError and StoreError for its site and database.
+    :raises BridgeError: when it may not listen there, another gateway runs on its database, or it cannot go
+        on; SiteError and StoreError for its site and database.
     """
     tls = ServerTls(settings.tls) if settings.tls else None
+    stamp = await asyncio.to_thread(stamp_of, settings.site)
     site = await asyncio.to_thread(read_site, settings.site)
     async with contextlib.AsyncExitStack() as stack:
         database = Database(settings.database)
-        stack.push_async_callback(database.close)
+        stack.push_async_callback(database.close, CLOSE_WITHIN)
         await database.open()
+        sole = SoleGateway(settings.database)
+        await sole.take()
+        stack.push_async_callback(sole.release)
         gate = Gate(database, site.settings.limits, may_be_open=is_loopback(settings.host))
         await gate.open()
         accounts = gate.book.has_operator(time.time())
         check_reach(settings.host, tls=tls is not None, accounts=accounts)
-        fleet = Fleet(SiteMaps(site), database)
+        maps = SiteMaps(site)
+        fleet = Fleet(maps, database)
         await fleet.start()
-        stack.push_async_callback(fleet.finish_trajectories)
-        stack.push_async_callback(gate.close)
-        gateway = Gateway(fleet, database, gate, tls)
+        stack.push_async_callback(_save_last, fleet, gate)
+        gateway = Gateway(fleet, gate, tls)
         server = await gateway.serve(settings.host, settings.port)
-        stack.push_async_callback(_close, server)
+        stack.push_async_callback(say_farewell, server, fleet)
         started(_address(server, tls is not None))
-        await _until_stopped(gateway.watch(), stop)
+        watch = SiteWatch(settings.site, stamp, maps, fleet, signals.reload)
+        works = {**gateway.works(), "site": watch.run, "sole gateway": sole.hold}
+        await _until_stopped(keep_all_going(works, fleet.tally), signals.stop)
 
 
 async def _until_stopped(watch: Coroutine[None, None, None], stop: asyncio.Event) -> None:
@@ -163,10 +192,15 @@ async def _until_stopped(watch: Coroutine[None, None, None], stop: asyncio.Event
     await asyncio.gather(watching, return_exceptions=True)
 
 
-async def _close(server: Server) -> None:
-    server.close()
-    with contextlib.suppress(TimeoutError):
-        await asyncio.wait_for(server.wait_closed(), 3)
+async def _save_last(fleet: Fleet, gate: Gate) -> None:
+    """Store what waits; a database that does not answer must not keep the gateway from ending."""
+    try:
+        async with asyncio.timeout(CLOSE_WITHIN):
+            await fleet.finish_trajectories()
+            await gate.close()
+    except (StoreError, TimeoutError) as error:
+        reason = str(error) or "the database does not answer"
+        log.error("%s; the last positions are not stored", reason)
 
 
 def _robot_name(path: str) -> str | None:

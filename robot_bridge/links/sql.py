@@ -20,6 +20,8 @@ log = logging.getLogger(__name__)
 
 NAME = "sql"
 RETRY_AFTER = 1.0
+BEAT = "sql link"
+"""The name under which each look at the tables is noted."""
 
 
 class SqlLink:
@@ -37,7 +39,9 @@ class SqlLink:
         try:
             while True:
                 try:
-                    await wakeup.wait(found=await self.poll())
+                    found = await self.poll()
+                    self._fleet.tally.beat(BEAT)
+                    await wakeup.wait(found=found)
                 except StoreError as error:
                     log.error("link sql: %s; trying again in %g s", error, RETRY_AFTER)
                     self._seen_version = None
@@ -88,6 +92,7 @@ class SqlLink:
         except NotReadyError:
             return self._greet(row.robot)
         except (MessageError, RefusedError, DataRefusedError) as error:
+            self._fleet.tally.refused[NAME] += 1
             log.warning("link sql: request %d of robot %r: %s", row.id, row.robot, error)
             return _refusal(row, str(error))
         except StoreError:

@@ -157,6 +157,7 @@ class RobotSession:
             request = decode_request(call.method, call.params)
             outcome = await self._ask(request, call.id if isinstance(call.id, int) else None)
         except (MessageError, BridgeError) as error:
+            self._fleet.tally.refused[NAME] += 1
             log.warning("link websocket: robot %r: %s", self.robot, error)
             await self._connection.send(jsonrpc.error(call.id, error_code(error), str(error)))
             return

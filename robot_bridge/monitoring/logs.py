@@ -64,3 +64,4 @@ def set_up_log(form: LogFormat = "text", level: LogLevel = "warning", stream: Te
     logging.basicConfig(level=level.upper(), handlers=[handler], force=True)
     # Its errors are about peers that hang up; what matters of them the bridge says itself.
     logging.getLogger("websockets").setLevel(logging.CRITICAL)
+    logging.getLogger("alembic").setLevel(logging.WARNING)

@@ -5,26 +5,45 @@ from __future__ import annotations
 import asyncio
 import logging
 import time
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Mapping
 
 from ..errors import BridgeError, HopelessError
 from .tally import Tally
 
 log = logging.getLogger(__name__)
 
-FIRST_PAUSE, LONGEST_PAUSE = 0.25, 30.0
+Work = Callable[[], Awaitable[None]]
+
+FIRST_PAUSE, LONGEST_PAUSE = 0.25, 2.0
+"""seconds before something foreseen, such as a database that is away, is tried again."""
+LONGEST_PAUSE_UNFORESEEN = 30.0
 LAST_ATTEMPT = 20
-"""failures in a row, each soon after the one before, after which the process had better be started anew."""
+"""failures in a row that nobody foresaw, after which the process had better be started anew."""
 SOUND = 60.0
 """seconds of work without a failure after which earlier ones no longer count."""
+SAY_AGAIN_AFTER = 60.0
 
 
-async def keep_going(name: str, work: Callable[[], Awaitable[None]], tally: Tally) -> None:
+async def keep_all_going(works: Mapping[str, Work], tally: Tally) -> None:
+    """Run every work side by side, as :func:`keep_going`, until one of them is hopeless.
+
+    :raises HopelessError: when one of them cannot go on.
+    """
+    tasks = [asyncio.create_task(keep_going(name, work, tally), name=name) for name, work in works.items()]
+    try:
+        await asyncio.gather(*tasks)
+    finally:
+        for task in tasks:
+            task.cancel()
+        await asyncio.gather(*tasks, return_exceptions=True)
+
+
+async def keep_going(name: str, work: Work, tally: Tally) -> None:
     """Run ``work``, and again after a growing pause when it raises; returns when it returns.
 
     :raises HopelessError: when ``work`` raises it, or fails again and again for a reason nobody foresaw.
     """
-    pause, unforeseen = FIRST_PAUSE, 0
+    trouble = Trouble(name)
     while True:
         began = time.monotonic()
         try:
@@ -32,24 +51,51 @@ async def keep_going(name: str, work: Callable[[], Awaitable[None]], tally: Tall
         except HopelessError:
             raise
         except Exception as error:
-            if time.monotonic() - began > SOUND:
-                pause, unforeseen = FIRST_PAUSE, 0
             tally.failures[name] += 1
-            if isinstance(error, BridgeError):
-                log.error("%s: %s; trying again in %g s", name, error, pause)
-            else:
-                unforeseen += 1
-                log.exception("%s: unexpected %s; trying again in %g s", name, type(error).__name__, pause)
-            if unforeseen >= LAST_ATTEMPT:
-                raise HopelessError(
-                    f"{name} failed {unforeseen} times in a row, last with {type(error).__name__}: {error}; "
-                    "see the log, and report it"
-                ) from error
+            pause = trouble.take(error, lasted=time.monotonic() - began)
         await asyncio.sleep(pause)
-        pause = min(2 * pause, LONGEST_PAUSE)
 
 
-async def every(seconds: float, work: Callable[[], Awaitable[None]], name: str, tally: Tally) -> None:
+class Trouble:
+    """The failures of one work in a row: how long to wait after each, and which the log is told of."""
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+        self._pause = FIRST_PAUSE
+        self._unforeseen = 0
+        self._told = ("", 0.0)
+
+    def take(self, error: Exception, lasted: float) -> float:
+        """Log ``error`` and return the seconds to wait; ``lasted`` is how long the work went well before it.
+
+        :raises HopelessError: when it has failed too often for a reason nobody foresaw.
+        """
+        if lasted > SOUND:
+            self._pause, self._unforeseen = FIRST_PAUSE, 0
+        foreseen = isinstance(error, BridgeError)
+        self._unforeseen += 0 if foreseen else 1
+        pause = self._pause
+        self._pause = min(2 * pause, LONGEST_PAUSE if foreseen else LONGEST_PAUSE_UNFORESEEN)
+        self._tell(error, foreseen, pause)
+        if self._unforeseen >= LAST_ATTEMPT:
+            raise HopelessError(
+                f"{self._name} failed {self._unforeseen} times, last with {type(error).__name__}: {error}; "
+                "see the log, and report it"
+            ) from error
+        return pause
+
+    def _tell(self, error: Exception, foreseen: bool, pause: float) -> None:
+        text, told_at = self._told
+        now = time.monotonic()
+        if not foreseen:
+            name = type(error).__name__
+            log.exception("%s: unexpected %s; trying again in %g s", self._name, name, pause)
+        elif str(error) != text or now - told_at > SAY_AGAIN_AFTER:
+            log.error("%s: %s; trying again until it works", self._name, error)
+            self._told = (str(error), now)
+
+
+async def every(seconds: float, work: Work, name: str, tally: Tally) -> None:
     """Run ``work`` every so many seconds for ever, each success noted as a beat of ``name``."""
     while True:
         await asyncio.sleep(seconds)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import time
 from collections.abc import Callable
 from typing import Any, TypeVar
 
@@ -34,6 +35,8 @@ class Database:
         self._engine, self.dialect = open_engine(self.url, patience)
         self._worker = Worker(self._engine, self.dialect, shown(self.url), patience)
         self._watch: asyncio.Task[None] | None = None
+        self.observe: Callable[[float], None] = _pass_over
+        """Called with the seconds that each piece of work took, waiting included."""
 
     @property
     def where(self) -> str:
@@ -56,7 +59,11 @@ class Database:
         :raises UncertainError: when the connection was lost during the commit.
         :raises StoreError: when the database cannot be used; the transaction was not done.
         """
-        result: T = await self._submit(work, arguments, alone=False)
+        began = time.perf_counter()
+        try:
+            result: T = await self._submit(work, arguments, alone=False)
+        finally:
+            self.observe(time.perf_counter() - began)
         return result
 
     async def version(self) -> int | None:
@@ -70,11 +77,16 @@ class Database:
             return Listening(self._engine, channel, lambda: self._worker.backend)
         return Polling()
 
-    async def close(self) -> None:
-        """Close the connection and end the thread."""
+    @property
+    def waiting(self) -> int:
+        """Return how many pieces of work wait for the database."""
+        return self._worker.waiting
+
+    async def close(self, within: float = 2 * PATIENCE_S) -> None:
+        """Close the connection and end the thread; one that takes longer than ``within`` seconds is left."""
         if self._watch is not None:
             self._watch.cancel()
-        await asyncio.to_thread(self._worker.close, 2 * PATIENCE_S)
+        await asyncio.to_thread(self._worker.close, within)
 
     async def _submit(self, work: Callable[..., Any], arguments: tuple[Any, ...], *, alone: bool) -> Any:
         loop = asyncio.get_running_loop()
@@ -89,6 +101,10 @@ class Database:
         while True:
             await asyncio.sleep(WATCH_INTERVAL_S)
             self._worker.interrupt_if_stuck()
+
+
+def _pass_over(_seconds: float) -> None:
+    """Take no note."""
 
 
 def run_once(address: str | URL, work: Callable[..., T], *arguments: Any) -> T:

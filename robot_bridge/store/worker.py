@@ -60,6 +60,11 @@ class Worker:
             self._thread.start()
         self._jobs.put(job)
 
+    @property
+    def waiting(self) -> int:
+        """Return how many jobs wait."""
+        return self._jobs.qsize()
+
     def close(self, timeout: float) -> None:
         """Close the connection when all is done that was submitted, and end the thread."""
         if self._thread is not None:

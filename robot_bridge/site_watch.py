@@ -1,0 +1,110 @@
+"""The published site while the gateway runs: a new version, or changed settings, are taken over."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import logging
+from pathlib import Path
+
+from .errors import BridgeError
+from .fleet import Fleet, Outcome
+from .messages import RobotState, SetMap
+from .site_maps import SiteMaps
+from .sites.errors import SiteError
+from .sites.geopackage import GEOPACKAGE_FILE
+from .sites.publication import read_site
+from .sites.settings import SETTINGS_FILE
+from .sites.site import Site
+
+log = logging.getLogger(__name__)
+
+LOOK_INTERVAL = 1.0
+
+Stamp = tuple[tuple[int, int, int] | None, ...]
+
+
+def stamp_of(folder: Path) -> Stamp:
+    """Return what changes whenever one of the site's files is written or replaced."""
+    return tuple(_stamp(folder / name) for name in (SETTINGS_FILE, GEOPACKAGE_FILE))
+
+
+class SiteWatch:
+    """Looks at the folder of the site every second, and at once when ``reload`` is set.
+
+    ``seen`` is the stamp of the folder from before the site was read. A publication is taken over whole or
+    not at all: a folder that is half written, or wrong, leaves the gateway with what it serves.
+    """
+
+    def __init__(
+        self, folder: Path, seen: Stamp, maps: SiteMaps, fleet: Fleet, reload: asyncio.Event
+    ) -> None:
+        self._folder = folder
+        self._seen = seen
+        self._doubtful: Stamp | None = None
+        self._maps = maps
+        self._fleet = fleet
+        self._reload = reload
+
+    async def run(self) -> None:
+        """Take over what is published, until cancelled."""
+        while True:
+            with contextlib.suppress(TimeoutError):
+                await asyncio.wait_for(self._reload.wait(), LOOK_INTERVAL)
+            await self.look(asked=self._reload.is_set())
+
+    async def look(self, *, asked: bool = False) -> None:
+        """Look once; ``asked``: read the site even if it looks the same."""
+        self._reload.clear()
+        stamp = await asyncio.to_thread(stamp_of, self._folder)
+        if stamp == self._seen and not asked:
+            return
+        try:
+            site = await asyncio.to_thread(read_site, self._folder)
+            self._check(site)
+        except (SiteError, BridgeError) as error:
+            # Two files are replaced one after the other: what is wrong may be half of something right.
+            if stamp == self._doubtful or asked:
+                self._seen = stamp
+                log.error("%s; version %d is served on", error, self._maps.report.version)
+            self._doubtful = stamp
+            return
+        self._seen = stamp
+        await self._take_over(site)
+
+    def _check(self, site: Site) -> None:
+        old, new = self._maps.settings, site.settings
+        kept = (old.id, old.crs, old.origin, old.rotation_deg)
+        if (new.id, new.crs, new.origin, new.rotation_deg) != kept:
+            raise BridgeError(
+                f"{self._folder} now holds another site, or one with another frame: {new.id} in {new.crs}; "
+                "positions of the one are wrong in the other, so end the gateway and start it anew"
+            )
+
+    async def _take_over(self, site: Site) -> None:
+        old = self._maps.settings
+        if site.settings == old and site.version == old.version:
+            return
+        self._maps.take_over(site)
+        await self._fleet.site_changed()
+        log.info("site %s version %d is served now", site.id, site.version)
+        for table in ("gateway", "limits"):
+            if getattr(site.settings, table) != getattr(old, table):
+                log.warning("%s: [%s] takes effect when the gateway is started anew", SETTINGS_FILE, table)
+        if site.version != old.version:
+            await self._send_maps()
+
+    async def _send_maps(self) -> None:
+        """Send robots the new map, one by one; those that are offline get it with their next Ready."""
+        content = await asyncio.to_thread(self._maps.whole_map)
+        for name in self._fleet.robots.names():
+            if self._fleet.robots.get(name).state is not RobotState.OFFLINE:
+                await self._fleet.finish([Outcome(name, answer=SetMap(content))], [], acks=False)
+
+
+def _stamp(file: Path) -> tuple[int, int, int] | None:
+    try:
+        found = file.stat()
+    except OSError:
+        return None
+    return found.st_mtime_ns, found.st_size, found.st_ino
