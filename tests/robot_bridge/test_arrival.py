@@ -8,7 +8,7 @@ import math
 import pytest
 
 from robot_bridge.arrival import HEADING_TOLERANCE, STANDING_SPEED, AbortArrival, PathArrival, judge
-from robot_bridge.messages import Abort, SendPos, SetPath, SetPosEnd
+from robot_bridge.messages import Abort, SendPos, SetPath, SetPosEnd, SetPosIni
 
 TOLERANCE = 0.2
 
@@ -169,3 +169,28 @@ def test_a_robot_that_stands_on_its_path_costs_no_search_of_it(monkeypatch):
     monkeypatch.setattr(arrival._line, "feet", None)
     for k in range(100):
         assert arrival.deviation(pose(5.0 + 0.001 * k, 0.01)) is None
+
+
+@pytest.mark.parametrize(
+    ("x", "theta", "v", "arrived"),
+    [
+        (10.0, 1.0, 0.0, True),
+        (10.19, 1.1, 1.4, True),
+        (10.21, 1.0, 0.0, False),
+        (10.0, 1.2, 0.0, False),
+    ],
+)
+def test_a_beginning_is_reached_when_the_robot_says_it_is_there_standing_or_not(x, theta, v, arrived):
+    deviation = judge(SetPosIni(10.0, 5.0, 1.0), TOLERANCE).deviation(pose(x, 5.0, theta, v))
+    assert deviation == (pytest.approx(x - 10.0) if arrived else None)
+
+
+def test_a_beginning_without_a_heading_is_reached_in_any():
+    assert judge(SetPosIni(10.0, 5.0), TOLERANCE).deviation(pose(10.0, 5.0, 3.0)) == 0.0
+
+
+def test_a_path_that_ends_in_a_heading_is_reached_in_that_heading():
+    arrival = judge(SetPath([(0.0, 0.0), (4.0, 0.0)], theta=math.pi / 2), TOLERANCE)
+    walk(arrival, [(0.0, 0.0), (4.0, 0.0)])
+    assert arrival.deviation(pose(4.0, 0.0, 0.0)) is None
+    assert arrival.deviation(pose(4.0, 0.0, math.pi / 2)) == 0.0

@@ -21,6 +21,9 @@ from robot_bridge.messages import (
     CommandStep,
     GetCommands,
     GetMap,
+    GetPath,
+    GetPosEnd,
+    GetPosIni,
     GetPositions,
     Hello,
     MessageError,
@@ -29,10 +32,14 @@ from robot_bridge.messages import (
     RobotReport,
     RobotState,
     Send,
+    SendGPS,
+    SendImage,
     SendPos,
     SetMap,
+    SetObject,
     SetPath,
     SetPosEnd,
+    SetPosIni,
     SetPositions,
     SiteReport,
     Start,
@@ -58,6 +65,7 @@ from robot_bridge.wire import (
 metres = st.floats(-1e6, 1e6)
 ids = st.integers(1, 2**63 - 1)
 texts = st.text(max_size=40)
+words = st.text(st.characters(categories=["L", "N", "P"]), min_size=1, max_size=40)
 
 
 def through_json(values):
@@ -80,19 +88,43 @@ REQUEST_MESSAGES = st.one_of(
         status=st.none() | texts,
     ),
     st.builds(GetMap, x=metres, y=metres, area=st.floats(0.01, 1e9)),
+    st.builds(
+        SendGPS,
+        lat=st.floats(-90, 90),
+        lon=st.floats(-180, 180),
+        altitude=st.none() | metres,
+        heading=st.none() | st.floats(0, 360),
+        v=st.none() | metres,
+        accuracy=st.none() | st.floats(0, 100),
+    ),
+    st.sampled_from([GetPath(), GetPosIni(), GetPosEnd()]),
+    st.builds(
+        SetObject,
+        x=metres,
+        y=metres,
+        object=words,
+        label=st.none() | words,
+        height=st.none() | st.floats(0, 100),
+        radius=st.none() | st.floats(0.01, 50),
+        source=st.none() | words,
+    ),
+    st.builds(SendImage, image=st.binary(max_size=40), x=metres, y=metres, object=words, source=words),
 )
 ANSWER_MESSAGES = st.one_of(
     st.just(Start()),
     st.just(Abort()),
     st.builds(OpAck, id=ids, magic=ids, robot=texts),
     st.builds(SetPath, points=st.lists(st.tuples(metres, metres), min_size=2, max_size=6)),
+    st.builds(SetPosIni, x=metres, y=metres, theta=st.none() | metres),
     st.builds(SetPosEnd, x=metres, y=metres, theta=st.none() | metres, cone=st.booleans()),
 )
 
 
 @given(REQUEST_MESSAGES)
 def test_a_request_comes_out_of_json_as_it_went_in(request):
-    assert decode_request(type(request).__name__, through_json(to_json(request))) == request
+    op, params = type(request).__name__, through_json(params_of(request))
+    assert decode_request(op, params) == request
+    assert decode_request(op, through_json(to_json(request)), payload_of(request)) == request
 
 
 @given(ANSWER_MESSAGES)
@@ -174,6 +206,24 @@ WRONG_REQUESTS = [
     ("GetMap", {"x": math.nan, "y": 2, "area": 4}, "x is nan"),
     ("GetMap", [1, 2, 4], "params is list"),
     ("Alive", "now", "params is str"),
+    ("SendPos", {**GOOD_POSE, "accuracy": -1}, "accuracy is -1"),
+    ("SendPos", {**GOOD_POSE, "battery": math.nan}, "battery is nan"),
+    ("SendPos", {**GOOD_POSE, "theta_from": "guess"}, "$.theta_from"),
+    ("SendGPS", {"lat": 50}, "`lon`"),
+    ("SendGPS", {"lat": 90.5, "lon": 0}, "lat is 90.5; give a number from -90 to 90"),
+    ("SendGPS", {"lat": 0, "lon": -181}, "lon is -181"),
+    ("SendGPS", {"lat": math.nan, "lon": 0}, "lat is nan"),
+    ("SendGPS", {"lat": 0, "lon": 0, "heading": -90}, "heading is -90"),
+    ("SendGPS", {"lat": 0, "lon": 0, "altitude": math.inf}, "altitude is inf"),
+    ("SetObject", {"x": 1, "y": 2}, "`object`"),
+    ("SetObject", {"x": 1, "y": 2, "object": 7}, "$.object"),
+    ("SetObject", {"x": 1, "y": 2, "object": 129 * "a"}, "give 1 to 128 printable characters"),
+    ("SetObject", {"x": 1, "y": 2, "object": "a\nb"}, "object is 'a\\nb'"),
+    ("SetObject", {"x": 1, "y": 2, "object": "a", "radius": 0}, "radius is 0"),
+    ("SetObject", {"x": 1, "y": 2, "object": "a", "height": -1}, "height is -1"),
+    ("SetObject", {"x": math.inf, "y": 2, "object": "a"}, "x is inf"),
+    ("SendImage", {"x": 1, "y": 2, "object": "a", "image": "no base64!"}, "image is not base64"),
+    ("SendImage", {"image": "", "x": 1, "y": 2}, "`object`"),
 ]
 
 
@@ -190,6 +240,9 @@ WRONG_ANSWERS = [
     ("SetPosEnd", {"x": 1, "y": math.nan}, "y is nan"),
     ("SetPosEnd", {"x": 1, "y": 2, "theta": math.inf}, "theta is inf"),
     ("SetPosEnd", {"x": 1, "y": 2, "cone": "yes"}, "$.cone"),
+    ("SetPosIni", {"x": 1}, "`y`"),
+    ("SetPosIni", {"x": 1, "y": 2, "theta": math.nan}, "theta is nan"),
+    ("SetPath", {"points": [[1, 2], [3, 4]], "theta": math.inf}, "theta is inf"),
     ("SetPath", {}, "`points`"),
     ("SetPath", {"points": []}, "points holds 0 points"),
     ("SetPath", {"points": [[1, 2]]}, "points holds 1 points"),
@@ -217,6 +270,13 @@ WRONG_DESK_REQUESTS = [
     ("set_positions", {"positions": [{"robot": "r1", "x": 1}]}, "$.positions[0]"),
     ("set_positions", {"positions": [{"robot": "r1", "x": 1, "y": math.inf}]}, "y is inf"),
     ("get_commands", {"limit": 0}, "limit is 0"),
+    ("get_observations", {"state": "lost"}, "$.state"),
+    ("get_observations", {"limit": 0}, "limit is 0"),
+    ("get_observations", {"before": -1}, "before is -1"),
+    ("get_image", {}, "`observation`"),
+    ("review_observation", {"observation": 1}, "`accept`"),
+    ("review_observation", {"observation": 1, "accept": False, "height": 1}, "are for what is accepted"),
+    ("review_observation", {"observation": 1, "accept": True, "semantics": ""}, "semantics is ''"),
     ("get_commands", {"limit": 10_001}, "limit is 10001"),
 ]
 
