@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from .clipping import clip
 from .errors import WindowError
-from .model import Border, Obstacle, RobotMap, ShapeType
+from .model import CUT, Border, Obstacle, RobotMap, ShapeType
 from .outlines import Outlines
-from .segments import Segments, is_closed, oriented_segments, without_vanished
+from .segments import CLOSED_TYPES, Segments, is_closed, oriented_segments, without_vanished
 from .usable import Inspection, inspected
 from .window import Window
 
@@ -32,12 +32,12 @@ def build_map(
 ) -> RobotMap:
     """Return the map of ``outlines`` inside ``window``, or of all of them.
 
-    An outline that the window cuts becomes open chains, each an obstacle. Obstacles are grouped by the
-    first word of their semantics; the id of an outline is its row plus one in every window, further chains
-    of it get ids after the last row. ``ext`` names the source. Outlines that are no obstacle (fewer than two
-    different points, a ring that encloses nothing, coordinates that are not finite) are left out and rings
-    that do not close are closed, each with a warning if it lies in the window or nowhere at all. Raises
-    WindowError when there is neither a window nor an outline.
+    An outline that the window cuts becomes open chains, each an obstacle, marked by the extra ``cut`` where
+    it was a ring. Obstacles are grouped by the first word of their semantics; the id of an outline is its
+    row plus one in every window, further chains of it get ids after the last row. ``ext`` names the source.
+    Outlines that are no obstacle (fewer than two different points, a ring that encloses nothing, coordinates
+    that are not finite) are left out and rings that do not close are closed, each with a warning if it lies
+    in the window or nowhere at all. Raises WindowError when there is neither a window nor an outline.
     """
     found = inspected(outlines)
     if window is None:
@@ -166,10 +166,11 @@ def _obstacle(
         height=heights,
         outdoor=outdoor,
         segment_semantics=("",) * len(heights),
-        ext=_ext(outlines, outline),
+        ext=_ext(outlines, outline, cut=not closed and shape_type in CLOSED_TYPES),
     )
 
 
-def _ext(outlines: Outlines, outline: int) -> dict[str, str]:
+def _ext(outlines: Outlines, outline: int, cut: bool) -> dict[str, str]:
     source = {"src": outlines.source[outline]} if outlines.source[outline] else {}
-    return source if outlines.ext is None else {**source, **outlines.ext[outline]}
+    more = {} if outlines.ext is None else outlines.ext[outline]
+    return {**source, **more, **({CUT: "1"} if cut else {})}

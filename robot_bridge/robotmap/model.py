@@ -8,6 +8,9 @@ from typing import Any, NamedTuple
 
 from numpy.typing import NDArray
 
+CUT = "cut"
+"""The extra, of value ``1``, of a part of a ring that the border cut; its inside is on the left."""
+
 
 class ShapeType(IntEnum):
     """How an obstacle is represented: the integer ST of the paper, in the order of its text."""

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..model import Border, Obstacle, RobotMap, ShapeType
+from ..model import CUT, Border, Obstacle, RobotMap, ShapeType
 from .lines import Points, is_ring, lines_of, treads_of
 
 _WHOLE = (ShapeType.CLOSED_POLYGON, ShapeType.CLOSED_CURVE)
@@ -34,9 +34,9 @@ class Solid:
 def solids_of(robot_map: RobotMap) -> tuple[list[Solid], list[str]]:
     """Return the rings of a map, and a warning for each obstacle that should be one and is not.
 
-    A ring that the border cut is written as open chains, as a wall is. Chains that begin and end on the
-    border are taken for a cut ring when obstacles with the same first label are rings elsewhere in the map;
-    chains of one source belong together. Ramps are driven on and enclose nothing.
+    A ring that the border cut is written as open chains, as a wall is, and marked by the extra ``cut``;
+    chains of one source belong together. A map without extras cannot say it, for which there is a warning
+    where it matters. Ramps are driven on and enclose nothing.
     """
     solids, warnings = [], []
     for obstacle in robot_map.obstacles:
@@ -52,8 +52,9 @@ def solids_of(robot_map: RobotMap) -> tuple[list[Solid], list[str]]:
                 f"obstacle {obstacle.id} is a closed {_name(obstacle)} and its segments do not close: only "
                 "they are drawn; export the map once more"
             )
-    labels = {first_label(solid.obstacle) for solid in solids}
-    for group in _cut_groups(robot_map, labels).values():
+    if not any(obstacle.ext for obstacle in robot_map.obstacles):
+        warnings += _unmarked(robot_map, {first_label(solid.obstacle) for solid in solids})
+    for group in _cut_groups(robot_map).values():
         rings = _closed_along(robot_map.border, group)
         solids += rings
         if not rings:
@@ -76,18 +77,31 @@ def first_label(obstacle: Obstacle) -> str:
 Chain = tuple[Points, Obstacle]
 
 
-def _cut_groups(robot_map: RobotMap, labels: set[str]) -> dict[tuple[str, str], list[Chain]]:
-    """Return the chains that may be parts of cut rings, by label and source."""
+def _cut_groups(robot_map: RobotMap) -> dict[tuple[str, str], list[Chain]]:
+    """Return the chains that are parts of cut rings, by label and source."""
     groups: dict[tuple[str, str], list[Chain]] = defaultdict(list)
     for obstacle in robot_map.obstacles:
-        if obstacle.shape_type not in _CUT or first_label(obstacle) not in labels:
-            continue
-        lines = lines_of(obstacle)
-        ends = np.array([line[[0, -1]] for line in lines]).reshape(-1, 2)
-        if len(ends) and _on_border(robot_map.border, ends).all():
+        if obstacle.shape_type in _CUT and obstacle.ext.get(CUT) == "1":
             key = (first_label(obstacle), obstacle.ext.get("src", ""))
-            groups[key] += [(line, obstacle) for line in lines]
+            groups[key] += [(line, obstacle) for line in lines_of(obstacle)]
     return groups
+
+
+def _unmarked(robot_map: RobotMap, labels: set[str]) -> list[str]:
+    """Return a warning when chains look as if they were parts of cut rings with one of ``labels``."""
+    alike = [
+        obstacle.id
+        for obstacle in robot_map.obstacles
+        if obstacle.shape_type in _CUT
+        and first_label(obstacle) in labels
+        and all(_on_border(robot_map.border, line[[0, -1]]).all() for line in lines_of(obstacle))
+    ]
+    if not alike:
+        return []
+    return [
+        f"{len(alike)} obstacles, {alike[0]} the first, may be parts of rings that the border cut; a map "
+        "without extras does not say so and their inside is written as free; export the map with extras"
+    ]
 
 
 def _closed_along(border: Border, chains: list[Chain]) -> list[Solid]:
@@ -96,6 +110,8 @@ def _closed_along(border: Border, chains: list[Chain]) -> list[Solid]:
     From the end of each chain the border is followed counter-clockwise to the next beginning (Weiler and
     Atherton's clipping, 1977): an outline has its inside on the left.
     """
+    if not all(_on_border(border, line[[0, -1]]).all() for line, _ in chains):
+        return []
     round_trip = 2 * (border.x_max - border.x_min) + 2 * (border.y_max - border.y_min)
     starts = np.array([_along(border, line[0]) for line, _ in chains])
     ends = np.array([_along(border, line[-1]) for line, _ in chains])

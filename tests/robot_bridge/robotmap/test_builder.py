@@ -14,6 +14,7 @@ from robot_bridge.robotmap.builder import Window, build_map
 from robot_bridge.robotmap.errors import WindowError
 from robot_bridge.robotmap.model import Border, ShapeType
 from robot_bridge.robotmap.outlines import OutlineRow, Outlines
+from robot_bridge.robotmap.text import write_text
 
 SQUARE = [(0, 0), (10, 0), (10, 10), (0, 10), (0, 0)]
 POLYGON, CURVE, WALL = ShapeType.CLOSED_POLYGON, ShapeType.CLOSED_CURVE, ShapeType.OPEN_POLYGON
@@ -73,7 +74,16 @@ def test_a_chain_goes_on_across_the_point_where_its_ring_begins():
 def test_a_ring_cut_in_two_becomes_two_obstacles_with_different_ids_and_one_source():
     first, second = made(row(SQUARE), row(SQUARE, source="b:2"), window=Window(5, 5, 30, 4)).obstacles[:2]
     assert first.id == 1 and second.id not in (1, 2)
-    assert first.ext == second.ext == {"src": "buildings:1"}
+    assert first.ext == second.ext == {"src": "buildings:1", "cut": "1"}
+
+
+def test_only_rings_are_marked_as_cut_and_only_where_they_are_and_never_in_strict_text():
+    wall, ramp = row([(-20, 5), (20, 5)], WALL), row(SQUARE, ShapeType.RAMP, height=0)
+    robot_map = made(wall, row(SQUARE), ramp, window=Window(5, 5, 10, 4))
+    marked = {(o.shape_type, o.ext.get("cut")) for o in robot_map.obstacles}
+    assert marked == {(WALL, None), (WALL, "1"), (ShapeType.RAMP, "1")}
+    assert all("cut" not in o.ext for o in made(wall, row(SQUARE)).obstacles)
+    assert "cut" in write_text(robot_map) and "cut" not in write_text(robot_map, strict=True)
 
 
 def test_a_cut_curve_is_an_open_curve_and_a_whole_one_is_closed():

@@ -11,7 +11,7 @@ from robot_bridge.robotmap.exporters.grid import Grid
 from robot_bridge.robotmap.exporters.nav2 import scale_files, trinary_files
 from robot_bridge.robotmap.exporters.occupancy import occupancy_of
 from robot_bridge.robotmap.model import ShapeType
-from robot_bridge.robotmap.text import read_text
+from robot_bridge.robotmap.text import read_text, write_text
 
 FREE, OCCUPIED, UNKNOWN = 0, 100, -1
 NAV2_MAPS = ("depot", "depot_keepout", "depot_speed", "systest_map_circular")
@@ -88,6 +88,29 @@ def test_a_wall_from_border_to_border_has_free_space_on_both_sides(make_map, rea
     made = read_grid(make_map([([(-5, 5), (15, 6)], wall), (hut, {})], (0, 0, 10, 10)))
     assert made.at(5, 9) == made.at(5, 3) == FREE
     assert count_regions(made.cells == FREE) == 2
+
+
+def test_a_wall_named_as_the_buildings_are_has_free_space_on_both_sides(make_map, read_grid):
+    wall = {"shape_type": ShapeType.OPEN_POLYGON}
+    hut = [(1, 1), (2, 1), (2, 2), (1, 2), (1, 1)]
+    made = read_grid(make_map([([(-5, 5), (15, 6)], wall), (hut, {"source": "b:1"})], (0, 0, 10, 10)))
+    assert made.at(5, 9) == made.at(5, 3) == FREE
+
+
+def test_a_cut_building_is_not_free_inside_though_no_other_is_whole(make_map, read_grid):
+    made = read_grid(make_map([([(2, 2), (12, 2), (12, 8), (2, 8), (2, 2)], {})], (0, 0, 10, 10)))
+    assert made.at(6, 5) == UNKNOWN and made.at(1, 1) == FREE
+
+
+def test_a_strict_map_cannot_tell_cut_buildings_and_a_warning_says_so(make_map):
+    hut = [(1, 1), (2, 1), (2, 2), (1, 2), (1, 1)]
+    cut = [(2, 4), (12, 4), (12, 8), (2, 8), (2, 4)]
+    built = make_map([(hut, {}), (cut, {})], (0, 0, 10, 10))
+    assert occupancy_of(built, 0.1).warnings == ()
+    strict = read_text(write_text(built, strict=True))
+    (warning,) = occupancy_of(strict, 0.1).warnings
+    assert warning.startswith("1 obstacles, 2 the first, may be parts of rings that the border cut")
+    assert occupancy_of(read_text(write_text(make_map([(hut, {})], (0, 0, 10, 10)))), 0.1).warnings == ()
 
 
 def test_ramps_are_free_stairs_are_not_not_even_from_the_side(make_map, read_grid):
