@@ -61,17 +61,18 @@ def test_robots_stop_and_stay_where_they_are_over_a_restart_until_it_is_cleared(
     desk = watch(bridge)
     assert (desk.emergency["in_force"], desk.emergency["by"]) == (True, "Ada")
     desk.wait_for_robots("ws", "sql")
+    desk.until(lambda: all(desk.robots[robot]["pose_age"] < 0.3 for robot in places), 15)
     desk.until(lambda: desk.emergency["acknowledged"] == 2, 15)
     with pytest.raises(RefusedError, match="emergency stop is in force"):
         desk.ask("set_positions", {"positions": [{"robot": "ws", "x": 180.0, "y": 20.0}]})
     desk.listen(0.5)
-    assert all(abs(desk.robots[robot]["x"] - x) < 0.1 for robot, x in places.items())
+    assert {robot: desk.robots[robot]["x"] for robot in places} == pytest.approx(places, abs=0.1)
 
     cleared = desk.ask("clear_emergency_stop", {"reason": "track is free", "stop": "stop-0001"})
     assert (cleared["in_force"], cleared["cleared_by"]) == (False, "Ada")
     for robot, y in (("ws", 20.0), ("sql", 40.0)):
-        desk.send(f"then-{robot}", robot, "SetPosEnd", x=places[robot] + 3.0, y=y)
-        desk.wait_for_step(f"then-{robot}", "reached")
+        desk.send(f"onwards-{robot}", robot, "SetPosEnd", x=places[robot] + 3.0, y=y)
+        desk.wait_for_step(f"onwards-{robot}", "reached")
 
 
 def test_a_robot_that_connects_meanwhile_is_stopped_at_once_and_after_its_opack(bridge):
