@@ -14,12 +14,13 @@ JOBS ?= 3
 SIDE_BY_SIDE = $(if $(filter 0,$(JOBS)),,-n $(JOBS) --dist loadfile)
 PROFILE ?= default
 LINK ?=
-export PYTHON
+export PYTHON DESTDIR PREFIX PROGRAM
 
+.PHONY: install-service uninstall-service
 .PHONY: help setup demo test lint desktop screenshots install package clean bench
 
 help: ## list the targets
-	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-18s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
 setup: $(READY) ## install what is missing (QGIS, Xvfb, .venv); quick when nothing is
 
@@ -48,6 +49,12 @@ screenshots: $(READY) build/run ## make the pictures in docs/images, in real win
 
 install: $(READY) ## put the plugin into your QGIS profile (PROFILE=name, LINK=1 links this folder)
 	@$(RUN) scripts/install_plugin.py --profile "$(PROFILE)" $(if $(LINK),--link)
+
+install-service: ## put the gateway on this computer as a systemd service (DESTDIR=, PREFIX=/opt/robot-bridge)
+	@scripts/service.sh install
+
+uninstall-service: ## take that service away; settings and data stay
+	@scripts/service.sh uninstall
 
 package: $(READY) ## build the zip for plugins.qgis.org
 	@$(RUN) scripts/package.py

@@ -74,7 +74,7 @@ async def test_one_that_cannot_go_on_ends_them_all():
             ended.append(True)
 
     lost, _ = failing(1, HopelessError("another gateway took over"))
-    with pytest.raises(HopelessError, match="^another gateway took over$"):
+    with pytest.raises(HopelessError, match=r"^another gateway took over$"):
         await tasks.keep_all_going({"save": others, "lock": lost}, Tally())
     assert ended == [True]
 

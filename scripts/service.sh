@@ -1,0 +1,76 @@
+#!/bin/sh
+# Puts the gateway on this computer as the systemd service robot-bridge, or takes it away again.
+#
+#   scripts/service.sh install | uninstall
+#
+#   DESTDIR=/path   goes before every path, for packaging; nothing is started or asked of systemd then
+#   PREFIX=/path    where the program goes (default: /opt/robot-bridge)
+#   PROGRAM=no      leaves the program out
+set -eu
+cd "$(dirname "$0")/.."
+
+DESTDIR=${DESTDIR:-}
+PREFIX=${PREFIX:-/opt/robot-bridge}
+PROGRAM=${PROGRAM:-yes}
+UNIT=$DESTDIR/etc/systemd/system/robot-bridge.service
+USERS=$DESTDIR/usr/lib/sysusers.d/robot-bridge.conf
+SETTINGS=$DESTDIR/etc/robot-bridge/robot-bridge.env
+
+say() { printf 'service: %s\n' "$*"; }
+
+stop() {
+    printf 'service: error: %s\n' "$*" >&2
+    exit 1
+}
+
+may_write() {
+    [ -n "$DESTDIR" ] || [ "$(id -u)" -eq 0 ] || stop "this writes below /etc and $PREFIX: run it as root, or with sudo"
+}
+
+install_program() {
+    # Not the environment of this folder, which is for tests and may be anybody's.
+    python3 -c 'import sys; sys.exit(sys.version_info < (3, 11))' || stop "python3 is older than 3.11"
+    python3 -m venv "$DESTDIR$PREFIX" || stop "python3 cannot make an environment: install python3-venv"
+    say "installing the program into $DESTDIR$PREFIX"
+    "$DESTDIR$PREFIX/bin/python" -m pip install -q --disable-pip-version-check --upgrade \
+        '.[postgresql,mariadb,speed]' || stop "pip could not install it: see the lines above"
+}
+
+install_service() {
+    may_write
+    case $PREFIX in /*) ;; *) stop "PREFIX=$PREFIX is no absolute path" ;; esac
+    [ "$PROGRAM" = no ] || install_program
+    install -d "$(dirname "$UNIT")" "$(dirname "$USERS")"
+    sed "s|@PREFIX@|$PREFIX|g" resources/service/robot-bridge.service > "$UNIT"
+    install -m 644 resources/service/robot-bridge.sysusers "$USERS"
+    [ -n "$DESTDIR" ] || systemd-sysusers "$USERS"
+    install -d -m 750 "$(dirname "$SETTINGS")"
+    [ -e "$SETTINGS" ] || install -m 640 resources/service/robot-bridge.env "$SETTINGS"
+    if [ -z "$DESTDIR" ]; then
+        chgrp -R robot-bridge "$(dirname "$SETTINGS")"
+        install -d -m 750 -o robot-bridge -g robot-bridge /var/lib/robot-bridge
+        systemctl daemon-reload
+    fi
+    say "installed $UNIT"
+    say "publish a site into /var/lib/robot-bridge/site, or name its folder in $SETTINGS"
+    say "then start it, now and with the computer: systemctl enable --now robot-bridge"
+}
+
+uninstall_service() {
+    may_write
+    if [ -z "$DESTDIR" ] && [ -e "$UNIT" ]; then
+        systemctl disable --now robot-bridge || true
+    fi
+    rm -f "$UNIT" "$USERS"
+    if [ -e "$DESTDIR$PREFIX/pyvenv.cfg" ]; then
+        rm -rf "$DESTDIR$PREFIX"
+    fi
+    [ -n "$DESTDIR" ] || systemctl daemon-reload
+    say "removed; settings ($(dirname "$SETTINGS")), data (/var/lib/robot-bridge) and the account robot-bridge stay"
+}
+
+case ${1:-} in
+install) install_service ;;
+uninstall) uninstall_service ;;
+*) stop "say install or uninstall" ;;
+esac
