@@ -276,7 +276,8 @@ create trigger delete_own_answer instead of delete on for_robots.sa
     for each row execute function for_robots.delete_own_answer()
 
 create function for_robots.refuse_too_much() returns trigger
-    language plpgsql security definer set search_path = pg_catalog, pg_temp set enable_seqscan = off as $$
+    language plpgsql security definer
+    set search_path = pg_catalog, pg_temp set enable_seqscan = off set jit = off as $$
 begin
     if {waiting} <= (
         select count(*) from (select from public.rr where robot = session_user::text limit {waiting}) as w

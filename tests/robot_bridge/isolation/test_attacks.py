@@ -267,18 +267,19 @@ def test_a_request_is_only_so_long(yard):
 @pytest.mark.parametrize("at_once", [True, False])
 def test_a_robot_cannot_fill_the_disk_while_the_gateway_is_away(yard, at_once):
     many = {
-        "postgresql": "select 'Alive' from generate_series(1, {})",
+        "postgresql": f"select '{MINE}', 'Alive' from generate_series(1, {{}})",
         "mariadb": (
-            "with recursive n (i) as (select 1 union all select i + 1 from n where i < {}) select 'Alive' from n"
+            "with recursive n (i) as (select 1 union all select i + 1 from n where i < {}) "
+            f"select '{MINE}', 'Alive' from n"
         ),
     }[yard.kind]
     with yard.session(MINE) as session:
         if yard.kind == "mariadb":
             session.run("set session max_recursive_iterations = 10000")
         if not at_once:
-            session.run(f"insert into rr (op) {many.format(MOST_WAITING - 1)}")
+            session.run(f"insert into rr (robot, op) {many.format(MOST_WAITING - 1)}")
         with pytest.raises(RefusedError, match=f"{MOST_WAITING} requests wait already"):
-            session.run(f"insert into rr (op) {many.format(MOST_WAITING + 1 if at_once else 1)}")
+            session.run(f"insert into rr (robot, op) {many.format(MOST_WAITING + 1 if at_once else 1)}")
     # The other robots go on.
     assert yard.of(OTHER).change("insert into rr (op) values ('Alive')") == 1
 
