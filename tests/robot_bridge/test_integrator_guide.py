@@ -170,7 +170,7 @@ def test_the_sql_story_goes_as_it_is_told(bridge):
 
 
 def test_the_websocket_story_goes_as_it_is_told(bridge):
-    told = [frame for kind, frame in blocks("robot-hears") if kind != "answer"]
+    told = [frame for kind, frame in blocks("robot-hears") if kind == ""]
     answers = [frame for kind, frame in blocks("robot-hears") if kind == "answer"]
     robot, desk = bridge.robot("r1"), bridge.desk()
     for _, frame in blocks("robot-sends"):
@@ -194,6 +194,13 @@ def test_the_websocket_story_goes_as_it_is_told(bridge):
         assert desk.wait_for_step(f"command-{op}", "failed")["steps"][-1]["reason"] == "battery empty"
     for op in ("Start", "SetMap"):
         assert shape(robot.wait_for(op).get("params", {})) == shape(commands[op])
+
+
+def test_an_emergency_stop_comes_as_it_is_told(bridge):
+    ((_, wanted),) = [b for b in blocks("robot-hears") if b[0] == "at-once"]
+    robot, desk = bridge.robot("r1"), bridge.desk()
+    desk.ask("emergency_stop", {"command": wanted["id"].removeprefix("emergency-")})
+    assert robot.wait_for("Abort") == wanted
 
 
 def give_a_track(robot, desk):
