@@ -162,7 +162,11 @@ class Gate:
         return None
 
     async def _identify(self, visitor: Visitor, request: Request, kind: TokenKind) -> Identity | Response:
-        token = bearer(request.headers.get("Authorization"))
+        headers = request.headers.get_all("Authorization")
+        if len(headers) > 1:
+            text = "The request has several Authorization headers; send one.\n"
+            return visitor.respond(http.HTTPStatus.BAD_REQUEST, text)
+        token = bearer(headers[0]) if headers else None
         try:
             if token is not None and self.book.find(token) is None:
                 await self._read_again()

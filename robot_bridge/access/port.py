@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import http
 import logging
 import secrets
 import ssl
 from collections.abc import Awaitable, Callable
 from functools import partial
 from typing import Any, cast
+from urllib.parse import urlsplit
 
 from websockets.asyncio.server import Server, ServerConnection, serve
 from websockets.frames import CloseCode
@@ -40,7 +42,7 @@ async def listen(
             host,
             port,
             ssl=context,
-            process_request=cast("Any", doorman),
+            process_request=cast("Any", partial(_ask, doorman)),
             create_connection=cast("type[ServerConnection]", partial(Visitor, gate)),
             open_timeout=gate.limits.handshake_s,
             max_size=gate.limits.largest_message_bytes,
@@ -54,6 +56,27 @@ async def listen(
         raise BridgeError(
             f"cannot listen on {host}:{port}: {error.strerror or error}; choose another --port, or 0 for any"
         ) from error
+
+
+async def _ask(doorman: Doorman, visitor: Visitor, request: Request) -> Response | None:
+    """Ask whether a visitor is let in; who meets a fault of the gateway's stays outside."""
+    if not _is_path(request.path):
+        return visitor.respond(http.HTTPStatus.BAD_REQUEST, "The path of the request cannot be read.\n")
+    try:
+        return await doorman(visitor, request)
+    except Exception:
+        number = secrets.token_hex(4)
+        log.exception("somebody from %s: internal error %s", visitor.address, number)
+        text = f"Internal error {number}; the gateway's log says more under this number.\n"
+        return visitor.respond(http.HTTPStatus.INTERNAL_SERVER_ERROR, text)
+
+
+def _is_path(path: str) -> bool:
+    try:
+        urlsplit(path)
+    except ValueError:
+        return False
+    return path.isascii() and path.isprintable()
 
 
 async def _serve(handler: Handler, visitor: Visitor) -> None:

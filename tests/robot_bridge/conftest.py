@@ -34,6 +34,28 @@ def impatient_site(sample_site, tmp_path_factory) -> Path:
 
 
 @pytest.fixture(scope="module")
+def limited_site(sample_site, tmp_path_factory):
+    """Make a copy of the sample site with more lines in its site.toml: ``limited_site(text)``."""
+
+    def make(text: str) -> Path:
+        folder = tmp_path_factory.mktemp("site")
+        shutil.copy(sample_site / "site.gpkg", folder)
+        settings = (sample_site / "site.toml").read_text(encoding="utf-8")
+        (folder / "site.toml").write_text(f"{settings}\n{text}\n", encoding="utf-8")
+        return folder
+
+    return make
+
+
+@pytest.fixture(scope="module")
+def accounts_of():
+    """The command line on a bridge's database: ``accounts_of(bridge)``."""
+    from bridge_accounts import Accounts
+
+    return lambda bridge: Accounts(bridge.database)
+
+
+@pytest.fixture(scope="module")
 def start_bridge(tmp_path_factory):
     """Start a gateway: ``start_bridge(site)``, or ``start_bridge(site, url)``; all ends with the module."""
     from bridge_programs import Bridge

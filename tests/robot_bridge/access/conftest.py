@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import shutil
 import time
-from pathlib import Path
 
 import pytest
 
@@ -30,28 +28,6 @@ def clock():
             return self.now
 
     return Clock()
-
-
-@pytest.fixture(scope="module")
-def limited_site(sample_site, tmp_path_factory):
-    """Make a copy of the sample site with more lines in its site.toml: ``limited_site(text)``."""
-
-    def make(text: str) -> Path:
-        folder = tmp_path_factory.mktemp("site")
-        shutil.copy(sample_site / "site.gpkg", folder)
-        settings = (sample_site / "site.toml").read_text(encoding="utf-8")
-        (folder / "site.toml").write_text(f"{settings}\n{text}\n", encoding="utf-8")
-        return folder
-
-    return make
-
-
-@pytest.fixture(scope="module")
-def accounts_of():
-    """The command line on a bridge's database: ``accounts_of(bridge)``."""
-    from bridge_accounts import Accounts
-
-    return lambda bridge: Accounts(bridge.database)
 
 
 @pytest.fixture(scope="session")

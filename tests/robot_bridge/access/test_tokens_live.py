@@ -106,6 +106,25 @@ def test_too_many_wrong_tokens_are_answered_shortly_and_leave_few_traces(bridge,
     assert new_token(TokenKind.OPERATOR)[:12] not in "\n".join(lines).replace("fleet_op_guess", "")
 
 
+@pytest.mark.parametrize(
+    ("request_text", "status"),
+    [
+        ("GET /desk HTTP/1.1\r\nAuthorization: Bearer a\r\nAuthorization: Bearer b\r\n\r\n", b"400"),
+        ("GET /d\u00e4sk HTTP/1.1\r\n\r\n", b"400"),
+        ("GET //[ HTTP/1.1\r\n\r\n", b"400"),
+        ("GET /desk?token=fleet_op_x HTTP/1.1\r\n\r\n", b"4"),
+        ("GET /nothing HTTP/1.1\r\n\r\n", b"404"),
+    ],
+)
+def test_a_request_that_cannot_be_understood_is_answered_with_what_is_wrong(
+    bridge, ada, request_text, status
+):
+    from stage.fuzzing import knock
+
+    answer = knock("127.0.0.1", bridge.port, request_text.encode())
+    assert answer.split()[1].startswith(status), answer
+
+
 def test_a_robots_token_opens_no_desk_and_an_operators_no_robot(bridge, ada, r1):
     status, text = wait_for_patience(bridge, r1, "/desk")
     assert (status, text) == (
