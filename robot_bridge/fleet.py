@@ -225,7 +225,9 @@ class Fleet:
         """
         if outcomes or request_ids:
             rows = [row for outcome in outcomes for row in outcome.rows(acks=acks)]
-            await self._database.run(_finish, outcomes, rows, request_ids)
+            # A request whose answer a power cut undid is there again, and is dealt with again.
+            write = self._database.jot if request_ids else self._database.run
+            await write(_finish, outcomes, rows, request_ids)
         for outcome in outcomes:
             if outcome.answer is not None:
                 self._outbox_changed(outcome.robot)
@@ -237,7 +239,7 @@ class Fleet:
 
     async def outbox(self, robot: str, after: int, after_urgent: int = 0) -> list[AnswerRow]:
         """Return the robot's messages as :func:`.answers.read`, without those that must not be sent now."""
-        rows = await self._database.run(answers.read, robot, after, after_urgent)
+        rows = await self._database.read(answers.read, robot, after, after_urgent)
         return [row for row in rows if row.op not in HELD_BACK] if self.emergency.in_force else rows
 
     def outbox_event(self, robot: str) -> asyncio.Event:
@@ -257,7 +259,7 @@ class Fleet:
     async def look(self, link: str) -> list[requests.RequestRow]:
         """Return the oldest requests in RR, which stay there until :meth:`finish`; note what was read."""
         sent = self._undelivered(link)
-        rows, waiting = await self._database.run(_look, sorted(sent))
+        rows, waiting = await self._database.read(_look, sorted(sent))
         if sent - waiting:
             await self._book.delivered(sent - waiting)
         return rows

@@ -12,7 +12,7 @@ from ..fleet import Fleet, Outcome
 from ..messages import PAYLOADS, MessageError, OpAck, check_robot_name
 from ..store import requests
 from ..store.database import Database
-from ..store.requests import RequestRow
+from ..store.requests import AT_ONCE, RequestRow
 from ..store.wakeups import GATEWAY_CHANNEL
 from ..wire import decode_request, parse_params
 
@@ -58,6 +58,8 @@ class SqlLink:
         while rows := await self._fleet.look(NAME):
             found = True
             await self._deal_with_all(rows)
+            if len(rows) < AT_ONCE:
+                break
         self._seen_version = version
         return found
 

@@ -72,7 +72,7 @@ class SqlLink:
         await asyncio.sleep(RETRY_AFTER)
 
     async def _turn(self, agent: Agent) -> bool:
-        rows = await self._database.run(answers.read, self._robot)
+        rows = await self._database.read(answers.read, self._robot)
         read, acks = [], []
         for row in rows:
             own, ack = self._receive(agent, row)
@@ -100,7 +100,7 @@ class SqlLink:
         if not (outgoing or read):
             return
         try:
-            await self._database.run(_exchange, self._robot, read, outgoing)
+            await self._database.jot(_exchange, self._robot, read, outgoing)
         except StoreError:
             self._outgoing = [*outgoing, *self._outgoing][-100:]
             raise

@@ -12,7 +12,7 @@ from sqlalchemy import URL
 
 from . import revisions
 from .address import open_engine, read_address, shown
-from .engines.dialect import PATIENCE_S
+from .engines.dialect import PATIENCE_S, Mode
 from .wakeups import Listening, Polling, Wakeup
 from .worker import Job, Worker
 
@@ -59,16 +59,19 @@ class Database:
         :raises UncertainError: when the connection was lost during the commit.
         :raises StoreError: when the database cannot be used; the transaction was not done.
         """
-        began = time.perf_counter()
-        try:
-            result: T = await self._submit(work, arguments, alone=False)
-        finally:
-            self.observe(time.perf_counter() - began)
-        return result
+        return await self._timed(work, arguments, Mode.WRITE)
+
+    async def jot(self, work: Callable[..., T], *arguments: Any) -> T:
+        """As :meth:`run`, but a power cut may undo it, though never before what was done earlier."""
+        return await self._timed(work, arguments, Mode.JOT)
+
+    async def read(self, work: Callable[..., T], *arguments: Any) -> T:
+        """As :meth:`run`, for work that changes nothing; its statements may each see a newer state."""
+        return await self._timed(work, arguments, Mode.READ)
 
     async def version(self) -> int | None:
         """Return a number that changes when another connection wrote, or None where there is none."""
-        result: int | None = await self._submit(self.dialect.version, (), alone=True)
+        result: int | None = await self._submit(self.dialect.version, (), Mode.READ, alone=True)
         return result
 
     def wakeup(self, channel: str) -> Wakeup:
@@ -88,12 +91,22 @@ class Database:
             self._watch.cancel()
         await asyncio.to_thread(self._worker.close, within)
 
-    async def _submit(self, work: Callable[..., Any], arguments: tuple[Any, ...], *, alone: bool) -> Any:
+    async def _timed(self, work: Callable[..., T], arguments: tuple[Any, ...], mode: Mode) -> T:
+        began = time.perf_counter()
+        try:
+            result: T = await self._submit(work, arguments, mode)
+        finally:
+            self.observe(time.perf_counter() - began)
+        return result
+
+    async def _submit(
+        self, work: Callable[..., Any], arguments: tuple[Any, ...], mode: Mode, *, alone: bool = False
+    ) -> Any:
         loop = asyncio.get_running_loop()
         if self._watch is None:
             self._watch = loop.create_task(self._watch_over())
         future: asyncio.Future[Any] = loop.create_future()
-        self._worker.submit(Job(work, arguments, loop, future, alone))
+        self._worker.submit(Job(work, arguments, loop, future, mode, alone))
         return await future
 
     async def _watch_over(self) -> None:

@@ -9,6 +9,8 @@ from sqlalchemy import Connection, LargeBinary, Text, cast, delete, func, insert
 
 from .schema import rr
 
+AT_ONCE = 500
+
 
 class RequestRow(NamedTuple):
     """A row of RR as it was written, not yet understood."""
@@ -19,7 +21,7 @@ class RequestRow(NamedTuple):
     params: str | None
 
 
-def read(connection: Connection, limit: int = 500) -> list[RequestRow]:
+def read(connection: Connection, limit: int = AT_ONCE) -> list[RequestRow]:
     """Return the oldest requests."""
     # SQLite keeps bytes in a text column as bytes, and one row of them must not hold up the others.
     robot, op, params = (cast(column, Text) for column in (rr.c.robot, rr.c.op, rr.c.params))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import logging
 import threading
 import time
 from collections.abc import Callable, Sequence
@@ -14,7 +15,10 @@ from sqlalchemy import Connection, Engine
 from sqlalchemy.exc import DBAPIError, SQLAlchemyError
 
 from ..errors import DataRefusedError, StoreError, UncertainError
-from .engines.dialect import Dialect
+from .accounts.stuck import BLOCKING_S, end_stuck
+from .engines.dialect import Dialect, Mode
+
+log = logging.getLogger(__name__)
 
 LARGEST_GROUP = 64
 """Pieces of work in one transaction: a commit waits for the disk, and they may as well wait together."""
@@ -28,6 +32,7 @@ class Job(NamedTuple):
     arguments: tuple[Any, ...]
     loop: asyncio.AbstractEventLoop
     future: asyncio.Future[Any]
+    mode: Mode = Mode.WRITE
     alone: bool = False
 
 
@@ -131,16 +136,30 @@ class Worker:
             return False
         if self._dialect.deadlocked(error):
             return True
+        if self._dialect.kept_waiting(error):
+            return self._make_way()
         # The server was restarted since this connection was last used; on a new one it may well go on.
         patience = self._patience or took
         return error.connection_invalidated and not fresh and took < patience
+
+    def _make_way(self) -> bool:
+        """End the robots' transactions that may hold what the gateway waits for; tell whether that was done."""
+        try:
+            with self._connected().begin():
+                end_stuck(self._connected(), BLOCKING_S)
+        except SQLAlchemyError as error:
+            log.warning("database %s: %s", self._where, self._dialect.cause(error))
+            return False
+        finally:
+            self._rest()
+        return True
 
     def _attempt(self, jobs: Sequence[Job]) -> list[Any]:
         connection = self._connected()
         try:
             if jobs[0].alone:
                 return [job.work(connection, *job.arguments) for job in jobs]
-            transaction = connection.begin()
+            transaction = self._dialect.begin(connection, max(job.mode for job in jobs))
             results = [job.work(connection, *job.arguments) for job in jobs]
         except BaseException:
             self._roll_back(connection)

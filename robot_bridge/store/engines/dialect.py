@@ -2,15 +2,28 @@
 
 from __future__ import annotations
 
+from enum import IntEnum
 from typing import Any, ClassVar
 
-from sqlalchemy import URL, Connection, Engine
+from sqlalchemy import URL, Connection, Engine, Transaction
 from sqlalchemy.exc import DataError, DBAPIError, IntegrityError, SQLAlchemyError, StatementError
 
 CONNECT_TIMEOUT_S = 5
-LOCK_TIMEOUT_S = 5
+LOCK_TIMEOUT_S = 1
+"""How long the gateway waits for a lock before it has the robot that holds it ended (see :mod:`..accounts`)."""
 PATIENCE_S = 10
 """How long one statement may take: a server that is dead or frozen must not hold up the gateway for ever."""
+
+
+class Mode(IntEnum):
+    """What a transaction is for; of several that are done together the highest counts."""
+
+    READ = 1
+    """It changes nothing."""
+    JOT = 2
+    """What it changes may be lost in a power cut, though never before what was changed earlier."""
+    WRITE = 3
+    """What it changes outlives a power cut."""
 
 
 class Dialect:
@@ -27,6 +40,10 @@ class Dialect:
         """Return an engine on ``url``; raises ModuleNotFoundError when its driver is not installed."""
         raise NotImplementedError
 
+    def begin(self, connection: Connection, mode: Mode) -> Transaction:
+        """Begin a transaction."""
+        return connection.begin()
+
     def version(self, connection: Connection) -> int | None:
         """Return a number that changes when another connection wrote, or None where there is none."""
         return None
@@ -40,6 +57,10 @@ class Dialect:
 
     def deadlocked(self, error: DBAPIError) -> bool:
         """Tell whether the database gave up this transaction for another's sake: it may be repeated."""
+        return False
+
+    def kept_waiting(self, error: DBAPIError) -> bool:
+        """Tell whether somebody else held a lock for too long."""
         return False
 
     def refuses_data(self, error: SQLAlchemyError) -> bool:

@@ -14,6 +14,7 @@ from sqlalchemy.pool import NullPool
 from .dialect import CONNECT_TIMEOUT_S, LOCK_TIMEOUT_S, Dialect
 
 _DEADLOCK = 1213
+_LOCK_TIMEOUT = 1205
 _RECORD_CHANGED = 1020
 _REFUSALS = (1153, 1366, 4025)
 """Packet too large, text that is no text, a constraint: the driver takes these for other errors."""
@@ -50,6 +51,9 @@ class MariaDB(Dialect):
 
     def deadlocked(self, error: DBAPIError) -> bool:
         return _code(error) in (_DEADLOCK, _RECORD_CHANGED)
+
+    def kept_waiting(self, error: DBAPIError) -> bool:
+        return _code(error) == _LOCK_TIMEOUT
 
     def refuses_data(self, error: SQLAlchemyError) -> bool:
         return super().refuses_data(error) or _code(error) in _REFUSALS

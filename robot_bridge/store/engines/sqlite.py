@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import time
 from typing import Any
 
 import sqlalchemy
-from sqlalchemy import URL, Connection, Engine, event
+from sqlalchemy import URL, Connection, Engine, Transaction, event
+from sqlalchemy.exc import OperationalError
 from sqlalchemy.pool import NullPool
 
-from .dialect import PATIENCE_S, Dialect
+from .dialect import PATIENCE_S, Dialect, Mode
+
+LOCK_PAUSE_S = 0.0005
 
 
 class SQLite(Dialect):
@@ -19,22 +23,57 @@ class SQLite(Dialect):
     made_by_serve = True
 
     def engine(self, url: URL, patience: float | None) -> Engine:
-        timeout = PATIENCE_S if patience is None else patience
+        self._timeout = PATIENCE_S if patience is None else patience
         engine = sqlalchemy.create_engine(
             url,
-            connect_args={"timeout": timeout, "check_same_thread": False},
+            connect_args={"timeout": self._timeout, "check_same_thread": False},
             poolclass=NullPool,
             hide_parameters=True,
         )
         event.listen(engine, "connect", _prepare)
-        event.listen(engine, "begin", _begin_immediate)
+        event.listen(engine, "begin", self._begin)
         return engine
+
+    def begin(self, connection: Connection, mode: Mode) -> Transaction:
+        connection.info["mode"] = mode
+        return connection.begin()
 
     def version(self, connection: Connection) -> int | None:
         # Through the driver: SQLAlchemy would begin a transaction, and take the lock of all writers for it.
         driver = connection.connection.driver_connection
         assert driver is not None
         return int(driver.execute("PRAGMA data_version").fetchone()[0])
+
+    def _begin(self, connection: Connection) -> None:
+        mode = connection.info.get("mode", Mode.WRITE)
+        if mode is Mode.READ:
+            # Readers hold up nobody, and nobody holds them up.
+            connection.exec_driver_sql("BEGIN")
+            return
+        # A command that an operator was told is queued must outlive a power cut, not only a crash.
+        synchronous = "FULL" if mode is Mode.WRITE else "NORMAL"
+        if connection.info.get("synchronous") != synchronous:
+            connection.exec_driver_sql(f"PRAGMA synchronous = {synchronous}")
+            connection.info["synchronous"] = synchronous
+        self._lock(connection)
+
+    def _lock(self, connection: Connection) -> None:
+        """Take the lock of all writers as soon as it is free; SQLite itself would sleep up to 0.1 s."""
+        until = time.monotonic() + self._timeout
+        driver = connection.connection.driver_connection
+        assert driver is not None
+        driver.execute("PRAGMA busy_timeout = 0")
+        try:
+            while True:
+                try:
+                    connection.exec_driver_sql("BEGIN IMMEDIATE")
+                    return
+                except OperationalError as error:
+                    if "locked" not in str(error.orig) or time.monotonic() > until:
+                        raise
+                time.sleep(LOCK_PAUSE_S)
+        finally:
+            driver.execute(f"PRAGMA busy_timeout = {round(self._timeout * 1000)}")
 
 
 def _prepare(connection: Any, _record: Any) -> None:
@@ -44,14 +83,8 @@ def _prepare(connection: Any, _record: Any) -> None:
     connection.text_factory = _decode_leniently
     cursor = connection.cursor()
     cursor.execute("PRAGMA journal_mode = WAL")
-    # A command that an operator was told is queued must outlive a power cut, not only a crash.
-    cursor.execute("PRAGMA synchronous = FULL")
     cursor.close()
 
 
 def _decode_leniently(text: bytes) -> str:
     return text.decode(errors="replace")
-
-
-def _begin_immediate(connection: Connection) -> None:
-    connection.exec_driver_sql("BEGIN IMMEDIATE")
