@@ -40,18 +40,18 @@ class _Columns(NamedTuple):
     obstacles: int
     segments: int
     bodies: int
-    ids: bytes
-    head: bytes
-    others: bytes
-    numbers: bytes
-    body: bytes
     starts: bytes
-    kinds: bytes
-    counts: bytes
     steps: bytes
+    heights: bytes
     varies: bytes
     tail: bytes
-    heights: bytes
+    kinds: bytes
+    counts: bytes
+    body: bytes
+    head: bytes
+    ids: bytes
+    others: bytes
+    numbers: bytes
 
 
 _KINDS = (str, *[int] * 4, *[str] * 2, *[int] * 3, *[bytes] * 12)

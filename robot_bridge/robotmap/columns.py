@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import zlib
 from typing import Any
 
 import numpy as np
@@ -16,6 +15,8 @@ _VARIABLE = 0
 """The first byte of a column whose numbers have as many bytes as each needs."""
 _MOST_BYTES = 9
 """of one number; 63 bits."""
+_FEW_BYTES = 1.5
+"""of a number, on average: where planes and variable lengths become equally large once compressed."""
 
 
 def differences(values: NDArray[Any]) -> NDArray[Any]:
@@ -29,13 +30,14 @@ def pack(values: NDArray[Any]) -> bytes:
     A number v is written as 2v, or as -2v - 1 where it is negative, so that small ones have few bytes
     whatever their sign. Either each has the number of bytes that the first byte says and they stand in
     planes: the lowest byte of each, then the next byte of each, ...; or the first byte is 0, and each is
-    in bytes of seven bits, the lowest first, all but the last of them with 128 added (LEB128). What zlib
-    makes smaller is taken: planes are better for numbers that are all large, the other for small ones.
+    in bytes of seven bits, the lowest first, all but the last of them with 128 added (LEB128). Numbers that
+    need few bytes are compressed better in the second way, large ones in the first.
     """
     if not values.any():
         return b""
     unsigned = ((values << 1) ^ (values >> 63)).view(np.uint64)
-    return min(_in_planes(unsigned), _variable(unsigned), key=lambda column: len(zlib.compress(column)))
+    variable = _variable(unsigned)
+    return variable if len(variable) <= _FEW_BYTES * len(values) else _in_planes(unsigned)
 
 
 def unpack(column: bytes, count: int, name: str) -> NDArray[Any]:

@@ -291,8 +291,8 @@ def column(*numbers):
 def hostile(**changes):
     """The columns of a small map with some of them replaced, in an envelope."""
     robot_map = a_map(segments([(0, 0), (1, 0)], [(1, 0), (1, 1)]), segments([(3, 3)], [(4, 4)], id=2))
-    names = "meta x_min y_min x_max y_max heads tails obstacles segments bodies ids head others numbers body"
-    names = [*names.split(), "starts", "kinds", "counts", "steps", "varies", "tail", "heights"]
+    names = "meta x_min y_min x_max y_max heads tails obstacles segments bodies starts steps heights varies"
+    names = [*names.split(), "tail", "kinds", "counts", "body", "head", "ids", "others", "numbers"]
     items = dict(zip(names, cbor2.loads(pack_map(robot_map)), strict=True)) | changes
     return sealed(cbor2.dumps(list(items.values())), write_text(robot_map).encode())
 

@@ -70,12 +70,13 @@ def text_of(content):
         lzma.FORMAT_RAW, filters=[{"id": lzma.FILTER_LZMA1, "lc": 0, "lp": 0, "pb": 0, "dict_size": 1 << 22}]
     )
     items = cbor2.loads(unpacker.decompress(content[48:]))
-    names = ("kinds", "counts", "steps", "varies", "tail")
-    columns = {name: numbers(items[16 + k]) for k, name in enumerate(names)}
-    columns["heights"] = differences(items[21])
+    columns = {
+        name: (differences if name == "heights" else numbers)(items[11 + k])
+        for k, name in enumerate(("steps", "heights", "varies", "tail", "kinds", "counts"))
+    }
     bodies = [one_body(items, columns) for _ in range(items[9])]
-    ids, heads, others = differences(items[10], 1), differences(items[11]), numbers(items[12])
-    number_steps, backs, starts = numbers(items[13]), numbers(items[14]), numbers(items[15])
+    starts, backs, heads = numbers(items[10]), numbers(items[17]), differences(items[18])
+    ids, others, number_steps = differences(items[19], 1), numbers(items[20]), numbers(items[21])
     x, y, expected, used = 0, 0, 0, 0
     left, lower, right, upper = map(metres, items[1:5])
     out = [f"%{line}" for line in items[0].split("\n") if line]
