@@ -127,7 +127,7 @@ class EmergencyStops:
         written: it is in force all the same.
         """
         if request.command not in self._seen:
-            self._begin(StopRow(request.command, self._clock(), operator, request.reason or None))
+            self._begin(StopRow(request.command, self._clock(), operator, request.line))
         storing = asyncio.ensure_future(self._store_and_log())
         await asyncio.wait({storing}, timeout=STORED_WITHIN)
         return self.report()

@@ -63,5 +63,5 @@ def check_robot_name(name: str) -> str:
 
 def check_command_id(command: str) -> None:
     """Refuse an id that cannot tell one command from every other; raises MessageError."""
-    if not 8 <= len(command) <= 64:
+    if not (8 <= len(command) <= 64 and command.isprintable()):
         raise MessageError(f"command is {command!r}; give an id of 8 to 64 characters, say a UUID")

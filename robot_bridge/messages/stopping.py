@@ -12,9 +12,11 @@ LONGEST_REASON = 500
 
 
 def check_reason(reason: str | None) -> None:
-    """Refuse a reason that is too long for a line of the log; raises MessageError."""
-    if reason is not None and len(reason) > LONGEST_REASON:
-        raise MessageError(f"reason has {len(reason)} characters; give at most {LONGEST_REASON}")
+    """Refuse a reason that is no line of the log; raises MessageError."""
+    if reason is not None and not (len(reason) <= LONGEST_REASON and reason.isprintable()):
+        raise MessageError(
+            f"reason has {len(reason)} characters; give one line of at most {LONGEST_REASON} printable ones"
+        )
 
 
 @dataclass(frozen=True)
@@ -44,7 +46,8 @@ class AbortTask:
 class EmergencyStop:
     """Stop every robot now and let none be sent anywhere until a supervisor clears it.
 
-    ``command`` is an id that the operator's side invents: sent twice, done once.
+    ``command`` is an id that the operator's side invents: sent twice, done once. A reason that is no line of
+    the log is made one, since a stop is not refused for what is said about it.
     """
 
     method: ClassVar[str] = "emergency_stop"
@@ -53,7 +56,12 @@ class EmergencyStop:
 
     def __post_init__(self) -> None:
         check_command_id(self.command)
-        check_reason(self.reason)
+
+    @property
+    def line(self) -> str | None:
+        """The reason as one line of the log."""
+        text = (self.reason or "")[:LONGEST_REASON]
+        return "".join(c if c.isprintable() else " " for c in text).strip() or None
 
 
 @dataclass(frozen=True)

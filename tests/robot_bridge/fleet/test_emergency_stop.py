@@ -327,10 +327,25 @@ async def test_two_stops_without_a_database_are_both_stored_when_it_is_back(two,
 # --- what is not possible ---------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("make", [lambda: EmergencyStop("id"), lambda: EmergencyStop("stop-0001", "x" * 501)])
-def test_a_stop_without_an_id_of_its_own_or_with_a_novel_is_refused(make):
-    with pytest.raises(MessageError):
-        make()
+@pytest.mark.parametrize("id", ["id", "x" * 65, "stop\x000001"])
+def test_a_stop_without_an_id_of_its_own_is_refused(id):
+    with pytest.raises(MessageError, match="give an id of 8 to 64 characters"):
+        EmergencyStop(id)
+
+
+@pytest.mark.parametrize(
+    ("reason", "stored"),
+    [("smoke\nin\x00hall 3 ", "smoke in hall 3"), ("x" * 600, "x" * 500), ("\ud800", None), ("", None)],
+)
+async def test_a_stop_is_not_refused_for_what_is_said_about_it(two, control, reason, stored):
+    assert (await control.stop(reason=reason)).stored
+    assert [row[2] for row in control.rows()] == [stored]
+
+
+@pytest.mark.parametrize("reason", ["x" * 501, "two\nlines", "\x00"])
+def test_a_reason_that_is_no_line_of_the_log_is_refused(reason):
+    with pytest.raises(MessageError, match="give one line of at most 500 printable ones"):
+        ClearEmergencyStop(reason)
 
 
 async def test_nobody_makes_an_emergency_of_one_robot(two):
