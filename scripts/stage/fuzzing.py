@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import json
+import select
 import socket
 import time
 from typing import Any
@@ -156,12 +157,16 @@ class Conversation:
                 return
 
 
-def knock(host: str, port: int, request: bytes) -> bytes:
-    """Send what should be a request and return what is answered; raises AssertionError for a leak."""
+def knock(host: str, port: int, request: bytes, patience: float = 0.05) -> bytes:
+    """Send what should be a request and return what is answered; raises AssertionError for a leak.
+
+    What is not answered within ``patience`` seconds is taken for unfinished, and nothing more is sent.
+    """
     answer = b""
     with socket.create_connection((host, port), 5) as raw, contextlib.suppress(ConnectionError):
         raw.sendall(request)
-        raw.shutdown(socket.SHUT_WR)
+        if not select.select([raw], [], [], patience)[0]:
+            raw.shutdown(socket.SHUT_WR)
         while len(answer) < 65536 and (part := raw.recv(65536)):
             answer += part
     head = answer.partition(b"\r\n\r\n")[0]

@@ -121,7 +121,7 @@ def test_a_request_that_cannot_be_understood_is_answered_with_what_is_wrong(
 ):
     from stage.fuzzing import knock
 
-    answer = knock("127.0.0.1", bridge.port, request_text.encode())
+    answer = knock("127.0.0.1", bridge.port, request_text.encode(), 3)
     assert answer.split()[1].startswith(status), answer
 
 
