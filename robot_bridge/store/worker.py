@@ -143,7 +143,7 @@ class Worker:
         return error.connection_invalidated and not fresh and took < patience
 
     def _make_way(self) -> bool:
-        """End the robots' transactions that may hold what the gateway waits for; tell whether that was done."""
+        """End robots' transactions that may hold what the gateway waits for; tell whether that was done."""
         try:
             with self._connected().begin():
                 end_stuck(self._connected(), BLOCKING_S)

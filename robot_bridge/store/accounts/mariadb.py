@@ -226,7 +226,7 @@ begin
         select p.id from information_schema.processlist p
         join information_schema.innodb_trx t on t.trx_mysql_thread_id = p.id
         join mysql.tables_priv g on g.User = p.user and g.Db = {side_text} and g.Table_name = 'sa'
-        where t.trx_started < now() - interval seconds second
+        where t.trx_started <= now() - interval seconds second
     ) do
         kill connection stuck.id;
     end for;
@@ -238,7 +238,7 @@ create or replace definer = {keeper} function {base}.forsaken(seconds int) retur
     reads sql data sql security definer
     return (
         select count(*) from information_schema.innodb_trx
-        where trx_mysql_thread_id = 0 and trx_started < now() - interval seconds second
+        where trx_mysql_thread_id = 0 and trx_started <= now() - interval seconds second
     )
 
 grant execute on function {base}.forsaken to {keeper}

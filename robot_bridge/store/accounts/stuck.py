@@ -42,6 +42,9 @@ def _roll_back_forsaken(connection: Connection, seconds: int) -> None:
     """
     if not connection.execute(text("select forsaken(:seconds)"), {"seconds": seconds}).scalar_one():
         return
-    for row in connection.execute(text("xa recover format = 'sql'")).all():
+    found = connection.execute(text("xa recover format = 'sql'")).all()
+    # XA ROLLBACK is refused inside a transaction, and without autocommit there is always one.
+    statements = ["set autocommit = 1", *(f"xa rollback {row[3]}" for row in found), "set autocommit = 0"]
+    for statement in statements:
         with contextlib.suppress(DBAPIError):
-            connection.exec_driver_sql(f"xa rollback {row[3]}", execution_options={"no_parameters": True})
+            connection.exec_driver_sql(statement, execution_options={"no_parameters": True})

@@ -10,7 +10,7 @@ from sqlalchemy.exc import DataError, DBAPIError, IntegrityError, SQLAlchemyErro
 
 CONNECT_TIMEOUT_S = 5
 LOCK_TIMEOUT_S = 1
-"""How long the gateway waits for a lock before it has the robot that holds it ended (see :mod:`..accounts`)."""
+"""How long the gateway waits for a lock before it makes way (see :mod:`..accounts.stuck`)."""
 PATIENCE_S = 10
 """How long one statement may take: a server that is dead or frozen must not hold up the gateway for ever."""
 

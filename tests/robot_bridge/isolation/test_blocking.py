@@ -1,0 +1,121 @@
+"""What a robot locks holds up the gateway for a moment only, whatever limits the robot sets itself."""
+
+from __future__ import annotations
+
+import asyncio
+import time
+
+import pytest
+from yards import GATEWAY, MINE, OTHER, RefusedError
+
+from robot_bridge.messages import Abort
+from robot_bridge.store import answers, requests
+from robot_bridge.store.accounts.stuck import end_stuck
+from robot_bridge.store.database import Database, run_once
+
+NO_LIMITS = {
+    "postgresql": [
+        "set statement_timeout = 0",
+        "set lock_timeout = 0",
+        "set idle_in_transaction_session_timeout = 0",
+        "set session characteristics as transaction isolation level serializable",
+    ],
+    "mariadb": [
+        "set session max_statement_time = 0",
+        "set session idle_transaction_timeout = 0",
+        "set session transaction isolation level serializable",
+    ],
+}
+
+
+@pytest.fixture
+def greedy(yard):
+    """A robot's connection without any limits, in a transaction."""
+    with yard.session(MINE) as session:
+        for statement in NO_LIMITS[yard.kind]:
+            session.run(statement)
+        session.run("begin")
+        yield session
+
+
+async def gateways_turn(yard) -> float:
+    """Do what the gateway does, as it does it; return the seconds it took."""
+    database = Database(yard.address(GATEWAY))
+    began = time.monotonic()
+    try:
+        await database.run(requests.read)
+        for robot in (MINE, OTHER):
+            await database.run(answers.remove_kinds, robot, ["Start"])
+            await database.run(answers.add, robot, Abort())
+        return time.monotonic() - began
+    finally:
+        await database.close()
+
+
+@pytest.mark.parametrize(
+    "statement",
+    [
+        "delete from sa",
+        "delete from sa where op = 'nothing like this'",
+        "insert into rr (op) values ('Alive')",
+        "select * from sa",
+    ],
+)
+async def test_an_open_transaction_holds_up_the_gateway_for_two_seconds_at_most(yard, greedy, statement):
+    greedy.run(statement)
+    await asyncio.sleep(1.1)
+    assert await gateways_turn(yard) < 4
+    waiting = yard.sql("select robot, op from sa order by robot")
+    assert [row for row in waiting if row[1] == "Abort"] == [(MINE, "Abort"), (OTHER, "Abort")]
+
+
+async def test_a_lock_for_update_holds_it_up_no_longer(mariadb):
+    with mariadb.session(MINE) as session:
+        for statement in [*NO_LIMITS["mariadb"], "begin", "select * from sa for update"]:
+            session.run(statement)
+        await asyncio.sleep(1.1)
+        assert await gateways_turn(mariadb) < 4
+        with pytest.raises(RefusedError):
+            session.run("select 1")
+
+
+async def test_a_forsaken_xa_transaction_holds_it_up_no_longer(mariadb):
+    with mariadb.session(MINE) as session:
+        for statement in [
+            *NO_LIMITS["mariadb"],
+            "xa start 'a'",
+            "delete from sa",
+            "xa end 'a'",
+            "xa prepare 'a'",
+        ]:
+            session.run(statement)
+    await asyncio.sleep(1.1)
+    assert await gateways_turn(mariadb) < 4
+    assert mariadb.sql("xa recover") == []
+
+
+def test_a_robots_transaction_ends_when_it_takes_too_long(yard, greedy):
+    greedy.run("select * from sa")
+    time.sleep(1.1)
+    with yard.session("admin") as admin:
+        admin.run(
+            "select for_robots.end_stuck(30)" if yard.kind == "postgresql" else "call end_stuck_robots(30)"
+        )
+        assert len(greedy.run("select 1")) == 1
+        admin.run(
+            "select for_robots.end_stuck(1)" if yard.kind == "postgresql" else "call end_stuck_robots(1)"
+        )
+    with pytest.raises(RefusedError):
+        greedy.run("select 1")
+
+
+def test_others_transactions_are_left_alone(yard):
+    with yard.session("admin") as admin, yard.session(GATEWAY) as gateway:
+        gateway.run("begin")
+        gateway.run("select * from rr")
+        admin.run("begin")
+        admin.run("insert into bridge (name, value) values ('blocking', 'x')")
+        time.sleep(1.1)
+        run_once(yard.address(GATEWAY), end_stuck, 1)
+        assert gateway.run("select 1") == admin.run("select 1") == [(1,)]
+        admin.run("rollback")
