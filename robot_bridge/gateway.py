@@ -37,6 +37,7 @@ from .site_maps import SiteMaps
 from .site_watch import SiteWatch, stamp_of
 from .sites.publication import read_site
 from .status_pages import HEALTH, METRICS, StatusPages
+from .store.accounts.choice import has_accounts
 from .store.database import Database
 from .store.sole_gateway import SoleGateway
 
@@ -44,6 +45,7 @@ log = logging.getLogger(__name__)
 
 AGE_INTERVAL = 0.25
 SAVE_INTERVAL = 1.0
+STUCK_INTERVAL = 5.0
 PRUNE_INTERVAL = 60.0
 CLOSE_WITHIN = 1.0
 """seconds for each of the last words to the database, so that a gateway ends within five in all."""
@@ -96,6 +98,10 @@ class Gateway:
             "accounts": self._gate.watch,
             "audit log": self._gate.journal.run,
         }
+        if has_accounts(fleet.database.dialect.name):
+            works["stuck robots"] = lambda: every(
+                STUCK_INTERVAL, fleet.database.end_stuck, "stuck robots", tally
+            )
         if self._tls is not None:
             works["certificates"] = self._tls.watch
         return works

@@ -11,6 +11,7 @@ from sqlalchemy import URL, Connection
 
 from ..errors import StoreError
 from ..store import revisions
+from ..store.accounts.choice import has_accounts, keeper_on
 from ..store.address import shown
 from ..store.database import run_once
 from ..store.engines.sqlite import SQLite
@@ -37,6 +38,8 @@ def upgrade(database: DatabaseOption = DEFAULT, database_password_file: Password
     """Bring the tables of an older version up to date, with all that is in them; end the gateway first."""
     address = database_address(database, database_password_file)
     found = _run(_there(address), revisions.upgrade)
+    if has_accounts(address.drivername):
+        _run(address, lambda connection: keeper_on(connection).renew_rights())
     if found == revisions.NEEDED:
         print(f"{shown(address)}: revision {found}, nothing is to be done")
     else:

@@ -8,9 +8,10 @@ import time
 from collections.abc import Callable
 from typing import Any, TypeVar
 
-from sqlalchemy import URL
+from sqlalchemy import URL, Connection
 
 from . import revisions
+from .accounts.stuck import end_stuck
 from .address import open_engine, read_address, shown
 from .engines.dialect import PATIENCE_S, Mode
 from .wakeups import Listening, Polling, Wakeup
@@ -74,6 +75,10 @@ class Database:
         result: int | None = await self._submit(self.dialect.version, (), Mode.READ, alone=True)
         return result
 
+    async def end_stuck(self) -> None:
+        """End robots' transactions that take too long; raises StoreError."""
+        await self._submit(_end_stuck, (), Mode.READ, alone=True)
+
     def wakeup(self, channel: str) -> Wakeup:
         """Return what tells when it is time to look for new rows; ``channel`` is one of the triggers'."""
         if self.dialect.listens:
@@ -118,6 +123,11 @@ class Database:
 
 def _pass_over(_seconds: float) -> None:
     """Take no note."""
+
+
+def _end_stuck(connection: Connection) -> None:
+    with connection.begin():
+        end_stuck(connection)
 
 
 def run_once(address: str | URL, work: Callable[..., T], *arguments: Any) -> T:
