@@ -37,7 +37,7 @@ def explain(error: Exception, url: str, exceptions: ModuleType) -> LinkError | N
         return _closed(error, place)
     if isinstance(error, exceptions.InvalidURI):
         return LinkError(f"The gateway's URL {url} cannot be used. Write it like {DEFAULT_URL}.", final=True)
-    return _network_failure(error, place)
+    return _network_failure(error, place, secure=urlsplit(url).scheme == "wss")
 
 
 def _place(url: str) -> str:
@@ -125,7 +125,7 @@ def _said(response: Any) -> str:
     return text[:300] if text.isprintable() else ""
 
 
-def _network_failure(error: Exception, place: str) -> LinkError | None:
+def _network_failure(error: Exception, place: str, *, secure: bool) -> LinkError | None:
     if isinstance(error, ssl.SSLCertVerificationError):
         return _bad_certificate(error, place)
     if isinstance(error, ssl.SSLError):
@@ -140,6 +140,11 @@ def _network_failure(error: Exception, place: str) -> LinkError | None:
         )
     if isinstance(error, socket.gaierror):
         return LinkError(f"The host of {place} is not known to this network. Correct the URL.")
+    if secure and isinstance(error, ConnectionResetError):
+        return LinkError(
+            f"{place} broke off while the secure link was made. If the gateway has no TLS, write ws:// "
+            "instead of wss://."
+        )
     if isinstance(error, TimeoutError):
         return LinkError(
             f"{place} did not answer in time. Check that the gateway runs, and the network and firewall."
