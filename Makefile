@@ -16,8 +16,7 @@ PROFILE ?= default
 LINK ?=
 export PYTHON DESTDIR PREFIX PROGRAM
 
-.PHONY: install-service uninstall-service
-.PHONY: help setup demo test lint desktop screenshots install package clean bench
+.PHONY: help setup demo test lint desktop screenshots install install-service uninstall-service package clean bench
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-18s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)

@@ -1,0 +1,74 @@
+"""The operation page: its commands are run as they are written, and its tables name what there is."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from dataclasses import fields
+
+import pytest
+
+from robot_bridge.sites.settings import TABLES
+
+SHELL = ["sh", "-eu"]
+
+
+@pytest.fixture(scope="module")
+def page(root) -> str:
+    return (root / "docs" / "operation.md").read_text(encoding="utf-8")
+
+
+def test_the_commands_for_sqlite_do_what_they_say(page, root, sample_site, tmp_path):
+    shutil.copytree(sample_site, tmp_path / "site", ignore=shutil.ignore_patterns("*.tif", "*.py", "drawing"))
+    program = tmp_path / "bin" / "robot-bridge"
+    program.parent.mkdir()
+    program.write_text(f'#!/bin/sh\nexec {sys.executable} -m robot_bridge "$@"\n')
+    program.chmod(0o755)
+    blocks = re.findall(r"^```sh sqlite\n(.*?)^```$", page, re.DOTALL | re.MULTILINE)
+    assert len(blocks) == 2
+    script = "robot-bridge database create\n" + "".join(blocks)
+    done = subprocess.run(
+        SHELL,
+        input=script,
+        cwd=tmp_path,
+        text=True,
+        capture_output=True,
+        check=False,
+        timeout=120,
+        env={**os.environ, "PATH": f"{program.parent}:{os.environ['PATH']}", "PYTHONPATH": str(root)},
+    )
+    assert done.returncode == 0, done.stderr
+    assert "the tables are those that this version works with" in done.stdout
+    for name in ("fleet-backup.db", "drives.gpkg", "r1.gpkg"):
+        assert (tmp_path / name).is_file()
+
+
+def test_every_setting_is_explained(page):
+    section = page.split("## The settings of a site")[1].split("\n## ")[0]
+    for table, kind in TABLES.items():
+        if table == "limits":
+            continue  # in the part on limits
+        for field in fields(kind):
+            assert f"`{field.name}`" in section, f"{table}.{field.name}"
+
+
+def test_every_metric_is_one_that_there_is(page, root):
+    source = "".join(
+        (root / "robot_bridge" / name).read_text(encoding="utf-8")
+        for name in ("status_pages.py", "monitoring/metrics.py")
+    )
+    named = set(re.findall(r"`robot_bridge_(\w+?)(?:_total)?[`{ ]", page))
+    assert len(named) > 12
+    for name in named:
+        assert f'"{name}"' in source or f'"robot_bridge_{name}"' in source, name
+
+
+def test_every_option_of_serve_is_explained(page):
+    from robot_bridge.commands.serve import serve
+
+    for name in serve.__annotations__:
+        if name != "return":
+            assert f"`--{name.replace('_', '-')}`" in page, name
