@@ -117,7 +117,8 @@ def _in_words(link: LinkStatus, site: SiteReport | None, now: float) -> str:
     colour, word = MARKS[link.phase]
     detail = _escaped(link.reason)
     if link.phase is Phase.CONNECTED and site is not None:
-        detail = f"{_escaped(site.name)}, {_escaped(site.crs)}"
+        who = f" · {_escaped(link.reason)}" if link.reason else ""
+        detail = f"{_escaped(site.name)}, {_escaped(site.crs)}{who}"
     if link.phase is Phase.RETRYING:
         word = f"Retrying in {link.wait(now):.0f} s"
     dot = f'<span style="color:{colour}">⬤</span>'

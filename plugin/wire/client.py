@@ -124,7 +124,7 @@ class DeskClient:
                 f"within {ANSWER_WITHIN:g} s. Check that the URL leads to a Fleet Supervisor gateway."
             ) from error
         self._backoff.reset()
-        self._mailbox.put_link(LinkStatus(Phase.CONNECTED))
+        self._mailbox.put_link(LinkStatus(Phase.CONNECTED, self._protocol.who))
         async for text in socket:
             self._send_all(self._protocol.receive(text))
 

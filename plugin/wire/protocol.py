@@ -48,6 +48,8 @@ class DeskProtocol:
         self._ids = itertools.count(1)
         self._asked: dict[int, Order] = {}
         self.ready = False
+        self.who = ""
+        """Who this desk is to the gateway, and in which role; empty until it is known."""
 
     def begin(self) -> list[str]:
         """Return the first texts to send on a new link."""
@@ -134,6 +136,7 @@ class DeskProtocol:
                 final=True,
             )
         self._mailbox.put_site(checked_site(site_report(result["site"])))
+        self.who = ", ".join(str(result[name]) for name in ("operator", "role") if result.get(name))
         if "emergency" in result:
             self._mailbox.put_emergency(emergency_report(result["emergency"]))
         self.ready = True

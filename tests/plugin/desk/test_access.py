@@ -262,6 +262,7 @@ def test_an_operator_connects_by_the_panel_alone_and_sees_what_is_missing(plugin
     QTest.keyClicks(token, bridge.token)
     QTest.mouseClick(connect, Qt.MouseButton.LeftButton)
     wait(lambda: "Connected" in label.text(), 10)
+    wait(lambda: "Ada, operator" in label.text())
     assert not access.isEnabled()
     assert SECRET not in label.text()
     picture = os.environ.get("FLEET_PICTURE")
