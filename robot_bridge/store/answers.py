@@ -6,10 +6,25 @@ import json
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from sqlalchemy import Connection, and_, delete, insert, or_, select
+from sqlalchemy import Connection, and_, bindparam, delete, insert, or_, select
 
 from ..messages import Abort, Answer, SetMap, to_json
 from .schema import sa
+
+# Built once: SQLAlchemy takes longer to build a statement than the database to do it.
+_LATER = or_(
+    and_(sa.c.urgent == 0, sa.c.id > bindparam("after")),
+    and_(sa.c.urgent > 0, sa.c.id > bindparam("after_urgent")),
+)
+_READ = (
+    select(sa.c.id, sa.c.op, sa.c.params, sa.c.payload, sa.c.urgent)
+    .where(sa.c.robot == bindparam("of"), _LATER)
+    .order_by(sa.c.urgent.desc(), sa.c.id)
+)
+_ADD = insert(sa).inline()
+_REMOVE = delete(sa).where(sa.c.id.in_(bindparam("ids", expanding=True)))
+_REMOVE_OWN = delete(sa).where(sa.c.robot == bindparam("of"), sa.c.id == bindparam("one"))
+_WAITING = select(sa.c.id).where(sa.c.id.in_(bindparam("ids", expanding=True)))
 
 
 class AnswerRow(NamedTuple):
@@ -32,7 +47,7 @@ def add(connection: Connection, robot: str, answer: Answer) -> int:
 def add_all(connection: Connection, rows: Sequence[tuple[str, Answer]]) -> None:
     """Write many answers, each with its robot."""
     if rows:
-        connection.execute(insert(sa).inline(), [_row(robot, answer) for robot, answer in rows])
+        connection.execute(_ADD, [_row(robot, answer) for robot, answer in rows])
 
 
 def add_numbered(connection: Connection, rows: Sequence[tuple[str, Answer]]) -> list[int]:
@@ -59,21 +74,19 @@ def read(connection: Connection, robot: str, after: int = 0, after_urgent: int =
     Of the urgent ones those with an id above ``after_urgent``, of the others those above ``after``: an urgent
     one overtakes others that are older.
     """
-    query = select(sa.c.id, sa.c.op, sa.c.params, sa.c.payload, sa.c.urgent)
-    later = or_(and_(sa.c.urgent == 0, sa.c.id > after), and_(sa.c.urgent > 0, sa.c.id > after_urgent))
-    query = query.where(sa.c.robot == robot, later).order_by(sa.c.urgent.desc(), sa.c.id)
-    return [AnswerRow(*row[:4], urgent=bool(row[4])) for row in connection.execute(query)]
+    found = connection.execute(_READ, {"of": robot, "after": after, "after_urgent": after_urgent})
+    return [AnswerRow(*row[:4], urgent=bool(row[4])) for row in found]
 
 
 def remove(connection: Connection, ids: Sequence[int]) -> None:
     """Delete answers that were delivered, or that are void."""
     if ids:
-        connection.execute(delete(sa).where(sa.c.id.in_(ids)))
+        connection.execute(_REMOVE, {"ids": ids})
 
 
 def remove_own(connection: Connection, robot: str, id: int) -> None:
     """Delete answer ``id`` if it is the robot's own."""
-    connection.execute(delete(sa).where(sa.c.robot == robot, sa.c.id == id))
+    connection.execute(_REMOVE_OWN, {"of": robot, "one": id})
 
 
 def remove_kinds(connection: Connection, robot: str, ops: Sequence[str]) -> None:
@@ -90,4 +103,4 @@ def waiting(connection: Connection, ids: Sequence[int]) -> set[int]:
     """Return those of ``ids`` that still wait to be read."""
     if not ids:
         return set()
-    return set(connection.scalars(select(sa.c.id).where(sa.c.id.in_(ids))))
+    return set(connection.scalars(_WAITING, {"ids": ids}))

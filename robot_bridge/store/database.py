@@ -72,6 +72,8 @@ class Database:
 
     async def version(self) -> int | None:
         """Return a number that changes when another connection wrote, or None where there is none."""
+        if not self.dialect.has_version:
+            return None
         result: int | None = await self._submit(self.dialect.version, (), Mode.READ, alone=True)
         return result
 

@@ -5,11 +5,18 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
-from sqlalchemy import Connection, LargeBinary, Text, cast, delete, func, insert, select
+from sqlalchemy import Connection, LargeBinary, Text, bindparam, cast, delete, func, insert, select
 
 from .schema import rr
 
 AT_ONCE = 500
+
+# SQLite keeps bytes in a text column as bytes, and one row of them must not hold up the others.
+_ROW = (rr.c.id, *(cast(column, Text) for column in (rr.c.robot, rr.c.op, rr.c.params)))
+# Built once: SQLAlchemy takes longer to build a statement than the database to do it.
+_READ = select(*_ROW).order_by(rr.c.id).limit(AT_ONCE)
+_REMOVE = delete(rr).where(rr.c.id.in_(bindparam("ids", expanding=True)))
+_ADD = insert(rr).inline()
 
 
 class RequestRow(NamedTuple):
@@ -21,12 +28,9 @@ class RequestRow(NamedTuple):
     params: str | None
 
 
-def read(connection: Connection, limit: int = AT_ONCE) -> list[RequestRow]:
-    """Return the oldest requests."""
-    # SQLite keeps bytes in a text column as bytes, and one row of them must not hold up the others.
-    robot, op, params = (cast(column, Text) for column in (rr.c.robot, rr.c.op, rr.c.params))
-    query = select(rr.c.id, robot, op, params).order_by(rr.c.id).limit(limit)
-    return [RequestRow(*row) for row in connection.execute(query)]
+def read(connection: Connection) -> list[RequestRow]:
+    """Return the oldest requests, :data:`AT_ONCE` at most."""
+    return [RequestRow(*row) for row in connection.execute(_READ)]
 
 
 def payload(connection: Connection, id: int, check_size: Callable[[int], None]) -> bytes | None:
@@ -44,7 +48,7 @@ def payload(connection: Connection, id: int, check_size: Callable[[int], None]) 
 def remove(connection: Connection, ids: Sequence[int]) -> None:
     """Delete requests that have been dealt with."""
     if ids:
-        connection.execute(delete(rr).where(rr.c.id.in_(ids)))
+        connection.execute(_REMOVE, {"ids": ids})
 
 
 def add_all(connection: Connection, rows: Sequence[tuple[str, str, str, bytes | None]]) -> None:
@@ -52,4 +56,4 @@ def add_all(connection: Connection, rows: Sequence[tuple[str, str, str, bytes | 
     if rows:
         names = ("robot", "op", "params", "payload")
         values = [dict(zip(names, row, strict=True)) for row in rows]
-        connection.execute(insert(rr).inline(), values)
+        connection.execute(_ADD, values)

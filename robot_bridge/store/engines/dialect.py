@@ -33,6 +33,8 @@ class Dialect:
     advice: ClassVar[str] = "check that the server runs and that this account may use the database"
     made_by_serve: ClassVar[bool] = False
     """Whether a gateway makes a database that is missing."""
+    has_version: ClassVar[bool] = False
+    """Whether it can be asked cheaply if another connection wrote (see :meth:`version`)."""
     listens: ClassVar[bool] = False
     """Whether the database tells its readers of new rows (see :mod:`..wakeups`)."""
 

@@ -41,6 +41,8 @@ class PostgreSQL(Dialect):
             poolclass=NullPool,
             hide_parameters=True,
         )
+        # Many rows in one statement instead of one statement each.
+        engine.dialect.use_insertmanyvalues_wo_returning = True
         if patience is not None:
             event.listen(engine, "connect", _limits(patience))
         return engine

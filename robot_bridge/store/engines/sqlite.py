@@ -21,6 +21,7 @@ class SQLite(Dialect):
     name = "sqlite"
     advice = "check that it exists, that it may be written and that its disk has room"
     made_by_serve = True
+    has_version = True
 
     def engine(self, url: URL, patience: float | None) -> Engine:
         self._timeout = PATIENCE_S if patience is None else patience

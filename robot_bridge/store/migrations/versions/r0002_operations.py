@@ -149,9 +149,11 @@ def _notifications() -> None:
         body = f"begin perform pg_notify({then}, ''); return null; end"
         how = "returns trigger language plpgsql set search_path = pg_catalog"
         op.execute(f"create function notify_{name}() {how} as $$ {body} $$")
+    # Commands only: that a robot has read the others changes nothing.
+    command = "old.op not in ('OpAck', 'SetMap', 'Start')"
     for name, event, each, function in (
         ("rr_inserted", "insert on rr", "statement", "notify_rr"),
-        ("sa_deleted", "delete on sa", "statement", "notify_rr"),
+        ("sa_deleted", "delete on sa", f"row when ({command})", "notify_rr"),
         ("sa_inserted", "insert on sa", "row", "notify_sa"),
     ):
         op.execute(f"create trigger {name} after {event} for each {each} execute function {function}()")
