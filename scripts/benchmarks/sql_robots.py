@@ -21,7 +21,7 @@ from urllib.parse import unquote, urlsplit
 PATIENCE_S = 20.0
 READ = "select id, op from sa where robot = {mark} order by urgent desc, id"
 INSERT = "insert into rr (robot, op, params) values ({mark}, {mark}, {mark})"
-DELETE = "delete from sa where robot = {mark} and id = {mark}"
+DELETE = "delete from sa where id = {mark}"
 
 
 @dataclass(frozen=True)
@@ -64,7 +64,7 @@ class Client(ABC):
         """Read and delete what is answered; return the operation codes."""
         rows = self._run(READ.format(mark=self.mark), self.name)
         for id, _ in rows:
-            self._run(DELETE.format(mark=self.mark), self.name, id)
+            self._run(DELETE.format(mark=self.mark), id)
         return [op for _, op in rows]
 
     def wait(self) -> None:
