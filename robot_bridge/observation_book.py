@@ -63,21 +63,21 @@ class ObservationBook:
 
     async def restore(self) -> None:
         """Draw on the maps what operators accepted before."""
-        accepted = await self._database.run(observations.newest, ACCEPTED, None, None, None)
-        self._site.show([report for report in reversed(accepted) if report.op == SetObject.__name__])
+        self._site.show(await self._database.run(observations.on_map))
 
     async def add(self, robot: Robot, link: str, told: Observed, id: int | None) -> ObservationReport:
         """Store what a robot told by its message ``id``; what it told before is there already.
 
-        :raises RefusedError: when an object is not on the site, or an image too large; MessageError when it
-            is no image.
+        :raises RefusedError: when an object is not on the site, an image too large, or too much waits;
+            MessageError when an image is none.
         """
         if isinstance(told, SetObject):
             check_places(self._site, [(told.x, told.y)])
         else:
             self.check_size(len(told.image))
         new = _new(robot.name, told, _occasion(robot, link, told, id), self._clock())
-        report, is_new = await self._database.run(observations.add, new)
+        most_pending = self._site.settings.observations.most_pending
+        report, is_new = await self._database.run(observations.add, new, most_pending)
         if is_new:
             self._changed(report)
         return report
@@ -88,9 +88,7 @@ class ObservationBook:
 
     async def newest(self, wanted: GetObservations) -> list[ObservationReport]:
         """Return observations, newest first."""
-        return await self._database.run(
-            observations.newest, wanted.state, wanted.robot, wanted.before, wanted.limit
-        )
+        return await self._database.run(observations.newest, wanted)
 
     async def image(self, id: int) -> tuple[bytes, str]:
         """Return the image of observation ``id`` and its media type; raises RefusedError without one."""

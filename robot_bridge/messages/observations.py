@@ -53,12 +53,13 @@ class ObservationReport:
 class GetObservations:
     """Ask for observations, newest first: at most ``limit`` with an id below ``before``.
 
-    Those in one ``state`` or in all, of one robot or of all.
+    Those in one ``state`` or in all, of one robot or of all, of one object (its images too) or of all.
     """
 
     method: ClassVar[str] = "get_observations"
     state: ObservationState | None = None
     robot: str | None = None
+    object: str | None = None
     before: int | None = None
     limit: int = 100
     ranges: ClassVar[Ranges] = {"limit": (1, 1000)}

@@ -47,9 +47,14 @@ class TrajectorySettings:
 
 @dataclass(frozen=True)
 class ObservationSettings:
-    """Largest image that is accepted, and the radius of an object whose size a robot did not say."""
+    """What robots may tell: the largest image, how much of one robot waits, and the size of an object.
+
+    ``most_pending`` observations of one robot may wait for review; more are refused. ``object_radius_m`` is
+    that of an object whose size the robot did not say.
+    """
 
     largest_image_bytes: int = _number(4_000_000, least=1024, most=64_000_000)
+    most_pending: int = _number(1000, least=1, most=1_000_000)
     object_radius_m: float = _number(0.25, above=True, most=100.0)
 
 

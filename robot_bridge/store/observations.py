@@ -8,7 +8,8 @@ from typing import Any, NamedTuple
 
 from sqlalchemy import Connection, func, insert, select, update
 
-from ..messages import ObservationReport, ObservationState
+from ..errors import RefusedError
+from ..messages import GetObservations, ObservationReport, ObservationState, SetObject
 from .schema import observations as table
 
 _REPORTED = [
@@ -33,11 +34,15 @@ class NewObservation(NamedTuple):
     media_type: str | None = None
 
 
-def add(connection: Connection, told: NewObservation) -> tuple[ObservationReport, bool]:
-    """Store an observation, once; return its report and whether it is new."""
+def add(connection: Connection, told: NewObservation, most_pending: int) -> tuple[ObservationReport, bool]:
+    """Store an observation, once; return its report and whether it is new.
+
+    :raises RefusedError: when ``most_pending`` of the robot's wait already.
+    """
     query = select(table.c.id).where(table.c.robot == told.robot, table.c.source == told.source)
     known = connection.scalar(query)
     if known is None:
+        _check_room(connection, told.robot, most_pending)
         values = {**told._asdict(), "details": json.dumps(told.details), "state": "pending"}
         key = connection.execute(insert(table).values(values)).inserted_primary_key
         assert key is not None
@@ -53,21 +58,25 @@ def find(connection: Connection, id: int) -> ObservationReport | None:
 
 def newest(
     connection: Connection,
-    state: ObservationState | None,
-    robot: str | None,
-    before: int | None,
-    limit: int | None,
+    wanted: GetObservations,
 ) -> list[ObservationReport]:
-    """Return observations, newest first: those with an id below ``before``, at most ``limit``."""
-    query = select(*_REPORTED).order_by(table.c.id.desc())
-    if state is not None:
-        query = query.where(table.c.state == state.value)
-    if robot is not None:
-        query = query.where(table.c.robot == robot)
-    if before is not None:
-        query = query.where(table.c.id < before)
-    if limit is not None:
-        query = query.limit(limit)
+    """Return observations, newest first."""
+    query = select(*_REPORTED).order_by(table.c.id.desc()).limit(wanted.limit)
+    if wanted.state is not None:
+        query = query.where(table.c.state == wanted.state.value)
+    if wanted.robot is not None:
+        query = query.where(table.c.robot == wanted.robot)
+    if wanted.object is not None:
+        query = query.where(table.c.object == wanted.object)
+    if wanted.before is not None:
+        query = query.where(table.c.id < wanted.before)
+    return [_report(row) for row in connection.execute(query).mappings()]
+
+
+def on_map(connection: Connection) -> list[ObservationReport]:
+    """Return the accepted objects, oldest first."""
+    accepted = table.c.state == ObservationState.ACCEPTED.value
+    query = select(*_REPORTED).where(accepted, table.c.kind == SetObject.__name__).order_by(table.c.id)
     return [_report(row) for row in connection.execute(query).mappings()]
 
 
@@ -94,6 +103,15 @@ def review(
     }
     connection.execute(update(table).where(table.c.id == id).values(values))
     return _one(connection, id)
+
+
+def _check_room(connection: Connection, robot: str, most_pending: int) -> None:
+    pending = select(func.count()).where(table.c.robot == robot, table.c.state == "pending")
+    if (waiting := connection.scalar(pending) or 0) >= most_pending:
+        raise RefusedError(
+            f"{waiting} observations of robot {robot!r} wait for review, and no more may ([observations] "
+            "most_pending); try again when an operator has reviewed some"
+        )
 
 
 def _one(connection: Connection, id: int) -> ObservationReport:

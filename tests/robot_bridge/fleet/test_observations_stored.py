@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 import os
 
@@ -96,6 +97,29 @@ async def test_an_image_in_the_payload_of_a_row_is_taken_and_answered(ready):
     assert "4000001 bytes, and this site takes up to 4000000" in acks[1]["reason"]
     assert "SendImage came without its payload" in acks[2]["reason"]
     assert ready.sql("select count(*) from rr") == [(0,)]
+
+
+async def test_what_is_told_while_too_much_waits_is_refused_until_something_is_reviewed(ready, monkeypatch):
+    few = dataclasses.replace(ready.site.settings.observations, most_pending=2)
+    settings = dataclasses.replace(ready.site.settings, observations=few)
+    monkeypatch.setattr(type(ready.site), "settings", property(lambda _: settings))
+    for number in (1, 2):
+        await tell(ready, CONE, number)
+    with pytest.raises(RefusedError, match=r"2 observations of robot 'r1' wait for review, and no more may"):
+        await tell(ready, CONE, 3)
+    await tell(ready, CONE, 2)
+    (first, _) = await told(ready)
+    await ready.fleet.observations.review(ReviewObservation(first.observation, accept=False), "Ada")
+    await tell(ready, CONE, 3)
+    assert len(await told(ready)) == 3
+
+
+async def test_an_object_and_its_images_are_found_by_its_id(ready):
+    for number, told_of in enumerate(
+        [CONE, SetObject(1.0, 1.0, "other"), SendImage(PNG, 1.0, 1.0, CONE.object)]
+    ):
+        await tell(ready, told_of, number)
+    assert [o.op for o in await told(ready, object=CONE.object)] == ["SendImage", "SetObject"]
 
 
 async def test_what_is_refused_leaves_nothing_behind(ready):
