@@ -158,8 +158,8 @@ def test_a_robot_is_never_taken_back_along_its_path_by_a_restart():
 
 
 def test_a_robot_that_creeps_to_the_end_of_its_path_has_reached_it():
-    arrival = PathArrival(SetPath([(0.0, 0.0), (1.0, 0.0)]), TOLERANCE)
-    told, at_the_end = walk(arrival, [(0.0, 0.0), (1.0, 0.0)], v=0.1, step=0.01)
+    arrival = PathArrival(SetPath([(0.0, 0.0), (1.1, 0.0)]), 0.05)
+    told, at_the_end = walk(arrival, [(0.0, 0.0), (1.1, 0.0)], v=0.1, step=0.01)
     assert (told, at_the_end) == (None, 0.0)
 
 

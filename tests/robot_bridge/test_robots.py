@@ -127,3 +127,25 @@ def test_a_robot_of_an_earlier_gateway_is_as_old_as_its_last_message():
         ("r1", "stale", 5.0),
         ("r2", "offline", 5.0),
     ]
+
+
+def test_a_silent_robot_ages_also_when_the_gateways_clock_is_set_back(robots):
+    robots.age(50.0)
+    robots.age(60.0)
+    assert (only(robots, 60.0).state, only(robots, 60.0).age) == (RobotState.LOST, 10.0)
+
+
+def test_the_latency_is_told_with_the_next_change(robots):
+    seen = robots.revision
+    robots.measured("r1", 0.01234)
+    robots.measured("nobody", 1.0)
+    assert robots.reports(101.0, since=seen) == []
+    robots.observe("r1", pose(1.0), "websocket", 102.0)
+    assert only(robots, 102.0).latency == 0.0123
+
+
+def test_the_three_clocks_of_a_pose_are_told_apart(robots):
+    robots.observe("r1", SendPos(1.0, 2.0, 0.0, 0.0, t=7.0, fix_t=6.5), "websocket", 102.0)
+    robots.heard("r1", "websocket", 104.0)
+    report = only(robots, 105.0)
+    assert (report.device_time, report.fix_time, report.pose_age, report.age) == (7.0, 6.5, 3.0, 1.0)

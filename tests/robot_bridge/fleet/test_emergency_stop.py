@@ -65,6 +65,7 @@ async def test_every_robot_is_told_before_anything_else(two, control):
     report = await control.stop(reason="child on the track")
     assert control.outbox("r1") == [("Abort", True), ("SetMap", False)]
     assert control.outbox("r2") == [("Abort", True)]
+    assert [row.op for row in await two.fleet.outbox("r1", 0)] == ["Abort", "SetMap"]
     ((params,),) = two.sql("select params from sa where robot = 'r2'")
     assert params == '{"emergency": true}'
     assert control.called == ["emergency-stop-0001"]
@@ -149,6 +150,20 @@ async def test_two_operators_at_once_are_both_heard_and_cleared_together(two, co
     assert [row[3] for row in control.rows()] == ["Eve", "Eve"]
 
 
+async def test_a_stop_made_while_another_is_being_cleared_is_in_force(two, control):
+    await control.stop("stop-of-ada")
+    await asyncio.gather(control.clear(), control.stop("stop-of-bob", by="Bob"))
+    assert (control.report.in_force, control.report.stored, control.report.by) == (True, True, "Bob")
+    await two.restart()
+    assert Control(two).report.in_force
+
+
+async def test_a_path_that_a_robot_asked_for_is_taken_back(two, control):
+    two.sql("insert into sa (robot, op, params) values ('r2', 'SetPath', '{\"points\": [[1, 1], [2, 2]]}')")
+    await control.stop()
+    assert control.outbox("r2") == [("Abort", True)]
+
+
 async def test_a_target_sent_in_the_same_moment_does_not_set_a_robot_in_motion(two, control):
     for k in range(10):
         results = await asyncio.gather(
@@ -169,8 +184,9 @@ async def test_a_robot_that_says_ready_meanwhile_is_stopped_before_it_gets_its_m
     await two.ready("r1", magic=2)
     assert control.outbox("new")[0] == control.outbox("r1")[0] == ("Abort", True)
     assert (control.report.robots, control.report.waiting) == (3, ["new", "r1", "r2"])
+    before = two.sql("select id from sa where robot = 'new' and op = 'Abort'")
     await two.ready("new", link="sql")
-    assert [op for op, _ in control.outbox("new")].count("Abort") == 1
+    assert two.sql("select id from sa where robot = 'new' and op = 'Abort'") == before
     await control.clear()
     await two.ready("newer")
     assert ("Abort", True) not in control.outbox("newer")
@@ -312,6 +328,18 @@ async def test_a_database_that_does_not_answer_delays_no_stop(two, control):
     await frozen
     await two.fleet.save()
     assert control.report.stored
+
+
+async def test_a_stop_is_stored_before_it_is_cleared(two, control):
+    two.client.break_table("emergency_stops")
+    await control.stop()
+    two.client.mend_table("emergency_stops")
+    await control.clear()
+    assert control.rows() == [("stop-0001", "Ada", None, "Eve")]
+    assert control.outbox("r1") == [("Abort", True)]
+    await two.fleet.save()
+    await two.restart()
+    assert Control(two).report.in_force is False
 
 
 async def test_two_stops_without_a_database_are_both_stored_when_it_is_back(two, control):
