@@ -85,6 +85,12 @@ def test_an_object_that_the_window_cuts_keeps_its_number_in_every_chain():
     assert all(abs(o.a).max() <= 20.0 for o in cut)
 
 
+def test_an_object_that_is_wider_than_the_window_has_a_chain_in_each_corner():
+    chains = [o for o in joined(seen(5, 0.0, 0.0, radius=23.0)).obstacles if o.id >= FIRST_ID]
+    assert [o.id - FIRST_ID for o in chains] == [40, 41, 42, 43]
+    assert {o.ext["src"] for o in chains} == {"observation:5"}
+
+
 def test_a_robots_words_do_not_break_the_text_format():
     nasty = seen(1, 0.0, 0.0, label="a;b%c#d,e")
     report = ObservationReport(**{**vars(nasty), "object": "x=1;y,z%#\\"})
@@ -95,7 +101,7 @@ def test_a_robots_words_do_not_break_the_text_format():
 
 @settings(max_examples=50, deadline=None)
 @given(
-    st.lists(st.tuples(st.floats(-25, 25), st.floats(-25, 25), st.floats(0.05, 6)), max_size=12),
+    st.lists(st.tuples(st.floats(-25, 25), st.floats(-25, 25), st.floats(0.05, 30)), max_size=12),
 )
 def test_wherever_objects_are_ids_are_unique_and_nothing_lies_outside(places):
     objects = [seen(n, x, y, radius=radius) for n, (x, y, radius) in enumerate(places, 1)]
