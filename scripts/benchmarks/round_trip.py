@@ -37,16 +37,16 @@ SITE = ROOT / "resources" / "sample_site"
 COUNTS = (1, 20, 100)
 SECONDS = 10.0
 PASSWORD = "robot-of-the-benchmark"
-POLL_S = {"sqlite": 0.002, "postgresql": 0.0, "mariadb": 0.005}
+POLL_S = {"sqlite": 0.002, "postgresql": 0.0, "mariadb": 0.004}
 NAMES = {"sqlite": "SQLite", "postgresql": "PostgreSQL", "mariadb": "MariaDB"}
 
 TEXT = """\
 A request (`Stopped`) and its OpAck, from before the robot's insert until the robot has read and deleted the
 answer. A real gateway with everything running on the sample site, with one operator who watches; its robots,
 a thread and a connection each with the rights of a robot's account, run in one other process on the same
-machine, and so does the database server, which waits for the disk at every commit. PostgreSQL tells both sides
-that there is something new (NOTIFY); on SQLite the robots look every {sqlite:g} ms, on MariaDB every
-{mariadb:g} ms, and the gateway every 1 ms to 20 ms.
+machine, as does the database server, which waits for the disk at every commit. PostgreSQL tells both sides
+that there is something new (NOTIFY). On SQLite the robots look after {sqlite:g} ms, on MariaDB after
+{mariadb:g} ms, then less and less often, and the gateway every 1 ms to 20 ms.
 
 ### Once a second
 

@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import contextlib
+import itertools
 import json
 import random
 import sqlite3
@@ -26,7 +27,10 @@ DELETE = "delete from sa where id = {mark}"
 
 @dataclass(frozen=True)
 class Plan:
-    """Robots' names and URLs, how long they ask, and how often a second each; 0: again as soon as answered."""
+    """Robots' names and URLs, for how long and how often a second they ask (0: again once answered).
+
+    Without notifications they look first after ``poll`` seconds, then less and less often.
+    """
 
     robots: dict[str, str]
     seconds: float
@@ -67,17 +71,19 @@ class Client(ABC):
             self._run(DELETE.format(mark=self.mark), id)
         return [op for _, op in rows]
 
-    def wait(self) -> None:
-        """Wait until it is time to look."""
-        time.sleep(self.poll)
+    def wait(self, looks: int) -> None:
+        """Wait until it is time to look again after so many looks: soon, then less and less often."""
+        time.sleep(self.poll * 1.5 ** min(looks, 6))
 
     def wait_for(self, op: str) -> None:
         """Return when ``op`` was read."""
         until = time.perf_counter() + PATIENCE_S
-        while op not in self.read():
+        for looks in itertools.count():
+            if op in self.read():
+                return
             if time.perf_counter() > until:
                 raise TimeoutError(f"{self.name}: no {op} within {PATIENCE_S:g} s")
-            self.wait()
+            self.wait(looks)
 
     def _run(self, text: str, *values: Any) -> list[Any]:
         with contextlib.closing(self.connection.cursor()) as cursor:
@@ -92,7 +98,10 @@ class SQLite(Client):
 
     def connect(self, url: str) -> Any:
         file = url.removeprefix("sqlite:///")
-        return sqlite3.connect(file, timeout=PATIENCE_S, isolation_level=None, check_same_thread=False)
+        connection = sqlite3.connect(file, timeout=PATIENCE_S, isolation_level=None, check_same_thread=False)
+        # A request that a power cut takes has no answer, and is asked again.
+        connection.execute("pragma synchronous = normal")
+        return connection
 
 
 class MariaDB(Client):
@@ -102,7 +111,12 @@ class MariaDB(Client):
         import pymysql
 
         return pymysql.connect(
-            **_where(url), database=urlsplit(url).path[1:], autocommit=True, read_timeout=PATIENCE_S
+            **_where(url),
+            database=urlsplit(url).path[1:],
+            autocommit=True,
+            read_timeout=PATIENCE_S,
+            # At the level that MariaDB begins with, many robots' inserts lock each other out.
+            init_command="set session transaction isolation level read committed",
         )
 
 
@@ -116,7 +130,7 @@ class PostgreSQL(Client):
         connection.execute(f'listen "sa_{self.name}"')
         return connection
 
-    def wait(self) -> None:
+    def wait(self, looks: int) -> None:
         """Wait for a notification, or a second."""
         for _ in self.connection.notifies(timeout=1.0, stop_after=1):
             pass
