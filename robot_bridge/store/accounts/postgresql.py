@@ -160,6 +160,8 @@ class PostgreSqlAccounts(AccountKeeper):
         self._all(
             [
                 f"grant select, insert, update, delete on all tables in schema public to {role}",
+                # pg_dump reads them, and whoever runs the gateway may back it up.
+                f"grant select on all sequences in schema public to {role}",
                 f"revoke insert, update on public.rr from {role}",
                 f"revoke update on public.sa from {role}",
             ]
