@@ -63,7 +63,7 @@ class Yard:
 
     def address(self, account: str) -> str:
         """Return the URL that ``account`` connects to."""
-        database = self.side if account in ROBOTS else self.name
+        database = self.name if account == GATEWAY else self.side
         return self.server.url(database, account, self.passwords[account])
 
     @contextlib.contextmanager
@@ -71,7 +71,14 @@ class Yard:
         """A connection of its own for ``account``, or for ``admin``; each statement is a transaction."""
         url = sqlalchemy.make_url(self.admin if account == "admin" else self.address(account))
         if self.kind == "postgresql":
-            connection = psycopg.connect(url.render_as_string(hide_password=False), autocommit=True)
+            connection = psycopg.connect(
+                host=url.host,
+                port=url.port,
+                user=url.username,
+                password=url.password,
+                dbname=url.database,
+                autocommit=True,
+            )
         else:
             connection = pymysql.connect(
                 host=url.host,
