@@ -20,6 +20,7 @@ from .command_writing import (
     write_all,
     write_drafts,
     write_driven,
+    write_late,
 )
 from .errors import RefusedError, UncertainError
 from .messages import Command, CommandReport, CommandState, OpAck, SendPos, SetPath, SetPosEnd
@@ -186,6 +187,11 @@ class CommandBook:
     async def _acknowledged(self, robot: str, ack: OpAck) -> float | None:
         async with self._holding([robot]):
             command = next((c for c in self._open.of(robot) if c.sa_id == ack.id), None)
+            if command is None and ack.ok and ack.id is not None:
+                late = await self._run(write_late, robot, ack.id, self._clock())
+                if late is not None:
+                    self._changed(late)
+                return None
             steps = [] if command is None else self._taken(command, robot, ack)
             # One transaction: a message that is gone from SA with its step unsaved would be lost.
             await self._run(write_acknowledged, robot, ack.id, steps)

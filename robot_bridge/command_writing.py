@@ -11,9 +11,9 @@ from typing import NamedTuple
 
 from sqlalchemy import Connection
 
-from .command_life import is_open
+from .command_life import is_open, note
 from .errors import RefusedError
-from .messages import Command
+from .messages import Command, CommandReport
 from .open_command import OpenCommand, Order
 from .store import answers, commands
 from .store.commands import StoredCommand
@@ -77,6 +77,21 @@ def write_acknowledged(
     if sa_id is not None:
         answers.remove_own(connection, robot, sa_id)
     write_all(connection, steps)
+
+
+def write_late(connection: Connection, robot: str, sa_id: int, at: float) -> CommandReport | None:
+    """Take message ``sa_id``, which no open command waits for, out of SA.
+
+    A robot may have read the message of a command that ended while it was on its way: then its log says so,
+    once, and is returned.
+    """
+    answers.remove_own(connection, robot, sa_id)
+    stored = commands.find_message(connection, robot, sa_id)
+    if stored is None or is_open(stored.report.state) or any(s.by == robot for s in stored.report.steps):
+        return None
+    report = note(stored.report, at, robot, "the robot had read it by then, and acknowledged it")
+    commands.save_all(connection, [stored._replace(report=report)])
+    return report
 
 
 def write_again(

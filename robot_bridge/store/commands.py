@@ -82,6 +82,12 @@ def find(connection: Connection, command: str) -> CommandReport | None:
     return None if found is None else found.report
 
 
+def find_message(connection: Connection, robot: str, sa_id: int) -> StoredCommand | None:
+    """Return the robot's command whose message is, or was, row ``sa_id`` of SA."""
+    query = select(commands).where(commands.c.robot == robot, commands.c.sa_id == sa_id)
+    return next(iter(_load(connection, query)), None)
+
+
 def newest(connection: Connection, robot: str | None, limit: int) -> list[CommandReport]:
     """Return the newest commands first, of one robot or of all."""
     query = select(commands).order_by(commands.c.created_at.desc(), commands.c.sa_id.desc()).limit(limit)

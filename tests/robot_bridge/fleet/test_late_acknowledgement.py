@@ -1,0 +1,55 @@
+"""A command that ended while its message was on its way: the log says that the robot had read it."""
+
+from __future__ import annotations
+
+import pytest
+
+from robot_bridge.messages import AbortTask
+
+READ = "the robot had read it by then, and acknowledged it"
+
+
+@pytest.fixture
+async def overtaken(yard):
+    """A yard whose robot has read a target that was aborted before the gateway knew; the target's message."""
+    await yard.ready()
+    await yard.take()
+    await yard.send("a")
+    (row,) = await yard.fleet.outbox("r1", 0)
+    await yard.fleet.abort(AbortTask("command-x", robot="r1"), "Bob")
+    assert await yard.reason("a") == "before the robot fetched it"
+    yard.told.clear()
+    return row.id
+
+
+async def test_the_log_of_an_aborted_command_says_that_the_robot_had_read_it(yard, overtaken):
+    await yard.ack(overtaken)
+    assert await yard.steps("a") == ["queued", "aborted", "aborted"]
+    assert await yard.reason("a") == READ
+    assert yard.told == [("command-a", "aborted")]
+    assert yard.waiting() == ["Abort"]
+
+
+async def test_it_says_so_once_and_after_a_restart_too(yard, overtaken):
+    await yard.restart()
+    for _ in range(2):
+        await yard.ack(overtaken)
+    assert await yard.steps("a") == ["queued", "aborted", "aborted"]
+
+
+async def test_it_says_so_only_when_the_robot_took_it_on_and_is_the_one(yard, overtaken):
+    await yard.ready("r2")
+    await yard.ack(overtaken, "r2")
+    await yard.ack(overtaken, ok=False, reason="battery empty")
+    assert await yard.steps("a") == ["queued", "aborted"]
+
+
+async def test_a_command_that_was_acknowledged_in_time_gets_no_such_line(yard):
+    await yard.ready()
+    await yard.take()
+    await yard.send("a")
+    (row,) = await yard.deliver()
+    await yard.ack(row.id)
+    await yard.at(50.0, 40.0)
+    await yard.ack(row.id)
+    assert await yard.steps("a") == ["queued", "delivered", "acknowledged", "reached"]
