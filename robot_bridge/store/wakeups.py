@@ -91,8 +91,9 @@ class Listening:
                     # Something may have been written while nobody listened.
                     self._news.set()
                     await self._hear(connection)
-            except psycopg.Error as error:
-                log.debug("channel %s: %s", self._channel, error)
+            except (psycopg.Error, OSError) as error:
+                reason = " ".join(str(error).split())
+                log.warning("notifications are lost, looking once a second meanwhile: %s", reason)
             await asyncio.sleep(RETRY_AFTER_S)
 
     def _connect(self) -> Connection[Any]:
@@ -123,8 +124,10 @@ class Listening:
                     lost.set_exception(error)
 
         # By the socket itself: the driver's own way takes ten times the processor time for each notification.
-        loop.add_reader(connection.fileno(), take_in)
+        number = connection.fileno()
+        loop.add_reader(number, take_in)
         try:
             await lost
         finally:
-            loop.remove_reader(connection.fileno())
+            # A lost connection no longer knows its number, and the next one may be given the same.
+            loop.remove_reader(number)

@@ -1,0 +1,166 @@
+"""A database server that dies, comes back, or no longer answers: nobody waits for ever, and all goes on."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import os
+import signal
+import time
+from pathlib import Path
+
+import pytest
+from sqlalchemy import event, insert, select
+
+from robot_bridge.errors import StoreError, UncertainError
+from robot_bridge.store.database import Database
+from robot_bridge.store.schema import rr
+
+pytestmark = pytest.mark.parametrize("kind", ["postgresql", "mariadb"], indirect=True)
+
+
+@pytest.fixture
+def server(kind, request):
+    return request.getfixturevalue(f"{kind}_server")
+
+
+@pytest.fixture
+async def database(url):
+    database = Database(url, patience=1.0)
+    await database.open()
+    yield database
+    await database.close()
+
+
+def add(connection, robot):
+    connection.execute(insert(rr).values(robot=robot, op="Alive"))
+
+
+def names(connection):
+    return sorted(connection.scalars(select(rr.c.robot)))
+
+
+def tree_of(pid: int) -> list[int]:
+    """Return a process and all that it has started."""
+    children = Path(f"/proc/{pid}/task/{pid}/children").read_text(encoding="ascii").split()
+    return [pid, *(found for child in children for found in tree_of(int(child)))]
+
+
+@contextlib.contextmanager
+def frozen(server):
+    """A server that does nothing, while its computer keeps its connections open."""
+    processes = tree_of(server.pid)
+    for pid in processes:
+        os.kill(pid, signal.SIGSTOP)
+    try:
+        yield
+    finally:
+        for pid in processes:
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(pid, signal.SIGCONT)
+
+
+async def test_a_server_that_was_restarted_between_two_pieces_of_work_is_not_noticed(database, server):
+    await database.run(add, "before")
+    server.kill()
+    server.start()
+    await database.run(add, "after")
+    assert await database.read(names) == ["after", "before"]
+
+
+async def test_work_on_a_server_that_is_gone_is_refused_at_once_and_done_when_it_is_back(database, server):
+    server.kill()
+    began = time.monotonic()
+    for work in (database.run, database.read):
+        with pytest.raises(StoreError, match="check that the server runs"):
+            await work(names)
+    assert time.monotonic() - began < 3
+    server.start()
+    await database.run(add, "r1")
+    assert await database.read(names) == ["r1"]
+
+
+async def test_nobody_waits_for_a_server_that_no_longer_answers(database, server):
+    await database.run(add, "r1")
+    began = time.monotonic()
+    with frozen(server):
+        turns = 0
+        work = asyncio.gather(*(database.run(names) for _ in range(3)), return_exceptions=True)
+        while not work.done():
+            await asyncio.sleep(0.05)
+            turns += 1
+            assert time.monotonic() - began < 25
+        assert [isinstance(error, StoreError) for error in await work] == [True] * 3
+    assert turns > 10, "the event loop waited, too"
+    assert await database.run(names) == ["r1"]
+
+
+async def test_a_statement_that_takes_too_long_is_ended(database, kind):
+    numbers = "information_schema.columns"
+    slow = "select pg_sleep(30)"
+    if kind == "mariadb":
+        slow = f"select count(*) from {numbers} a, {numbers} b, {numbers} c, {numbers} d"
+    began = time.monotonic()
+    with pytest.raises(StoreError):
+        await database.run(lambda connection: connection.exec_driver_sql(slow).first())
+    assert time.monotonic() - began < 10
+    assert await database.run(names) == []
+
+
+async def test_a_connection_lost_during_the_commit_leaves_it_open_whether_it_was_done(database, server):
+    def dies_before_it_is_committed(connection):
+        add(connection, "r1")
+        event.listen(connection, "commit", lambda _: server.kill(), once=True)
+
+    with pytest.raises(UncertainError, match="check that the server runs"):
+        await database.run(dies_before_it_is_committed)
+    server.start()
+    assert await database.run(names) == []
+
+
+async def test_a_robot_that_locks_its_rows_keeps_nobody_else_waiting_for_ever(url, kind, database, server):
+    other = Database(url)
+    await other.run(add, "r1")
+    held, free = asyncio.Event(), asyncio.Event()
+    loop = asyncio.get_running_loop()
+
+    def hold(connection):
+        connection.execute(rr.update().where(rr.c.robot == "r1").values(op="Stopped"))
+        loop.call_soon_threadsafe(held.set)
+        asyncio.run_coroutine_threadsafe(free.wait(), loop).result(20)
+
+    holding = asyncio.create_task(other.run(hold))
+    await held.wait()
+    began = time.monotonic()
+    with pytest.raises(StoreError):
+        await database.run(lambda connection: connection.execute(rr.delete()).rowcount)
+    assert time.monotonic() - began < 8
+    free.set()
+    await holding
+    await other.close()
+
+
+async def test_notifications_are_heard_again_after_a_restart(database, server, kind, url):
+    if kind == "mariadb":
+        pytest.skip("MariaDB has no notifications")
+    wakeup = database.wakeup("rr")
+    other = Database(url)
+
+    async def told() -> float:
+        """Return how long it takes to hear of a row."""
+        await asyncio.sleep(0.1)
+        began = time.monotonic()
+        await other.run(add, "r1")
+        await wakeup.wait(found=True)
+        return time.monotonic() - began
+
+    await wakeup.wait(found=False)
+    await wakeup.wait(found=False)
+    assert await told() < 0.5
+    server.kill()
+    server.start()
+    for _ in range(4):
+        await wakeup.wait(found=False)
+    assert await told() < 0.5
+    await wakeup.close()
+    await other.close()
