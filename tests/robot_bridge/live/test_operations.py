@@ -5,6 +5,8 @@ from __future__ import annotations
 import base64
 import itertools
 import math
+import subprocess
+import sys
 
 import pyproj
 import pytest
@@ -376,3 +378,30 @@ def test_the_reference_robot_tells_what_it_sees_and_asks_for_its_path(bridge, tm
     told = wait_until(lambda: (o := desk.ask("get_observations", {"robot": name})["observations"])[1:] and o)
     assert [(o["op"], o["object"]) for o in told] == [("SendImage", "cone-7"), ("SetObject", "cone-7")]
     assert math.hypot(told[0]["x"] - 45, told[0]["y"] - 8) <= 10.1
+
+
+@pytest.mark.parametrize(
+    ("options", "text"),
+    [
+        (["--see", "45,8"], "thing '45,8' cannot be read"),
+        (["--see", "45,8,"], "object is ''; give 1 to 128 printable characters"),
+        (["--see", "here,8,cone"], "write X,Y,ID such as 10,20,cone-7"),
+        (["--image", "no-such-file.png"], "image no-such-file.png cannot be read: No such file"),
+    ],
+)
+def test_what_the_reference_robot_is_to_see_is_checked(options, text):
+    command = [
+        sys.executable,
+        "-m",
+        "robot_bridge",
+        "robot",
+        "--name",
+        "r1",
+        "--url",
+        "ws://127.0.0.1:1/robot",
+    ]
+    done = subprocess.run([*command, *options], capture_output=True, text=True, timeout=30)
+    assert done.returncode == 1
+    assert text in done.stderr
+    assert done.stderr.startswith("robot-bridge: ")
+    assert done.stderr.count("\n") == 1
