@@ -180,6 +180,7 @@ async def run(settings: GatewaySettings, signals: Signals, started: Callable[[st
         stack.push_async_callback(_save_last, fleet, gate)
         gateway = Gateway(fleet, gate, tls)
         server = await gateway.serve(settings.host, settings.port)
+        gate.warn()
         stack.push_async_callback(say_farewell, server, fleet)
         started(_address(server, tls is not None))
         watch = SiteWatch(settings.site, stamp, maps, fleet, signals.reload)

@@ -20,8 +20,8 @@ class Phase(str, Enum):
 class LinkStatus:
     """The link's stage, why it is not connected, and when the next attempt is due (monotonic clock).
 
-    While connected, ``reason`` is who the desk is to the gateway. ``wants_token`` is true when it takes another
-    token or CA file to connect.
+    While connected, ``reason`` is who the desk is to the gateway. ``wants_token`` is true when it takes
+    another token or CA file to connect.
     """
 
     phase: Phase

@@ -68,6 +68,9 @@ class Gate:
         """Read the accounts, and note the end of what an earlier gateway left open; raises StoreError."""
         await self._database.run(session_rows.end_all, self._clock(), "the gateway ended")
         await self.book.refresh()
+
+    def warn(self) -> None:
+        """Say in the log what is open to everybody."""
         for kind, path in PATHS.items():
             if self._is_open(kind):
                 log.warning("%s is open to everybody on this computer: no %s has a token", path, kind.value)

@@ -66,7 +66,7 @@ def test_a_port_that_is_taken_is_named(sample_site, free_database):
 
 
 @pytest.mark.parametrize("host", ["0.0.0.0", "192.168.1.10", "::"])
-def test_it_listens_on_loopback_only(sample_site, free_database, host):
+def test_without_tls_it_listens_on_loopback_only(sample_site, free_database, host):
     line = refusal(serve("serve", "--site", sample_site, "--database", free_database, "--host", host))
     assert f"host {host} can be reached from other computers" in line
     assert "use 127.0.0.1" in line
@@ -74,7 +74,7 @@ def test_it_listens_on_loopback_only(sample_site, free_database, host):
 
 def test_a_host_is_an_address(sample_site, free_database):
     line = refusal(serve("serve", "--site", sample_site, "--database", free_database, "--host", "my-pi"))
-    assert "host 'my-pi' is not an IP address; use 127.0.0.1 or ::1" in line
+    assert "host 'my-pi' is not an IP address; use 127.0.0.1, or 0.0.0.0 for" in line
 
 
 def test_a_site_that_is_not_there_is_named(tmp_path, free_database):
@@ -121,7 +121,7 @@ def test_a_robot_has_one_link(free_database):
         (["--name", "r 1", "--url", "ws://127.0.0.1:1/robot"], "robot name 'r 1' cannot be used"),
         (["--name", "r1", "--url", "http://127.0.0.1:1/"], "write the URL as ws://127.0.0.1:8765/robot"),
         (["--name", "r1", "--url", "ws://127.0.0.1:1/robot", "--pose", "1,2"], "write X,Y,THETA such as"),
-        (["--name", "r1", "--database", "mysql://h/d"], "only SQLite is supported"),
+        (["--name", "r1", "--database", "mysql://h/d"], "mysql is not supported"),
     ],
 )
 def test_what_a_robot_is_started_with_is_checked(options, text):
