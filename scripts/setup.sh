@@ -98,7 +98,8 @@ install_packages() {
 install_servers() {
     if has apt-get && may_become_root; then
         say "installing $* for the tests"
-        if apt_install "$@" >/dev/null 2>&1; then
+        if apt_install "$@" >/dev/null 2>&1 ||
+            { as_root apt-get update -q >/dev/null 2>&1; apt_install "$@" >/dev/null 2>&1; }; then
             for service in postgresql mariadb; do
                 case "$*" in *$service*) as_root systemctl disable --now $service >/dev/null 2>&1 || : ;; esac
             done
