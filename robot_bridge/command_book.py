@@ -178,7 +178,8 @@ class CommandBook:
             )
 
     async def _delivered(self, sa_ids: list[int]) -> None:
-        robots = {self._open.queued[id].report.robot for id in sa_ids}
+        # By now some may be further on.
+        robots = {self._open.queued[id].report.robot for id in sa_ids if id in self._open.queued}
         async with self._holding(robots):
             queued = [self._open.queued[id] for id in sa_ids if id in self._open.queued]
             now = self._clock()

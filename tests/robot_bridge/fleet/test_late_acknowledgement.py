@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import asyncio
+
 import pytest
 
 from robot_bridge.messages import AbortTask
@@ -53,3 +55,16 @@ async def test_a_command_that_was_acknowledged_in_time_gets_no_such_line(yard):
     await yard.at(50.0, 40.0)
     await yard.ack(row.id)
     assert await yard.steps("a") == ["queued", "delivered", "acknowledged", "reached"]
+
+
+async def test_a_delivery_is_nothing_new_when_the_command_has_gone_further_meanwhile(yard):
+    await yard.ready()
+    await yard.take()
+    await yard.send("a")
+    (row,) = await yard.fleet.outbox("r1", 0)
+    noting = asyncio.create_task(yard.fleet.delivered([row.id]))
+    await asyncio.sleep(0)
+    # What was under way for the same robot ends in this very moment.
+    yard.fleet._book._open.remove("command-a")
+    await noting
+    assert await yard.steps("a") == ["queued"]
