@@ -64,7 +64,11 @@ class Bridge:
 
         ``sql`` is the URL of the database, or true for the gateway's own.
         """
-        way = ["--database", self.database if sql is True else sql] if sql else ["--url", f"{self.address}/robot"]
+        way = (
+            ["--database", self.database if sql is True else sql]
+            if sql
+            else ["--url", f"{self.address}/robot"]
+        )
         where = ",".join(str(number) for number in pose)
         fast = ["--name", name, f"--pose={where}", "--speed", "5", "--turn-rate", "3", "--rate", "20"]
         self._run(name, ["robot", *way, *fast, *options])
