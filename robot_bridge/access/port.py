@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import http
 import logging
+import resource
 import secrets
 import ssl
 from collections.abc import Awaitable, Callable
@@ -25,6 +26,9 @@ PING_INTERVAL = 5.0
 WRITE_LIMIT = 65_536
 """bytes that wait in this process for a client before whoever sends to it has to wait too."""
 
+SPARE_FILES = 512
+"""Files, database connections, and connections that are not let in yet."""
+
 Handler = Callable[[Visitor], Awaitable[None]]
 Doorman = Callable[[Visitor, Request], Awaitable[Response | None]]
 
@@ -36,6 +40,7 @@ async def listen(
 
     :raises BridgeError: when the address cannot be listened on.
     """
+    _allow_connections(gate.limits.robots + gate.limits.desks)
     try:
         return await serve(
             cast("Callable[[ServerConnection], Awaitable[None]]", partial(_serve, handler)),
@@ -56,6 +61,19 @@ async def listen(
         raise BridgeError(
             f"cannot listen on {host}:{port}: {error.strerror or error}; choose another --port, or 0 for any"
         ) from error
+
+
+def _allow_connections(count: int) -> None:
+    """Let this process hold so many connections beside its files, as far as the system allows."""
+    soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+    wanted = count + SPARE_FILES
+    if hard != resource.RLIM_INFINITY:
+        wanted = min(wanted, hard)
+    if soft < wanted:
+        resource.setrlimit(resource.RLIMIT_NOFILE, (wanted, hard))
+        soft = wanted
+    if soft < count + SPARE_FILES:
+        log.warning("the system allows %d open files, fewer than the limits of the site take", soft)
 
 
 async def _ask(doorman: Doorman, visitor: Visitor, request: Request) -> Response | None:
