@@ -1,0 +1,127 @@
+"""A real gateway in trouble: it goes on by itself, or ends with a clear word; and it keeps secrets."""
+
+from __future__ import annotations
+
+import json
+import secrets
+import signal
+import socket
+import time
+import urllib.error
+import urllib.request
+
+import pytest
+from bridge_programs import wait_until
+from prometheus_client.parser import text_string_to_metric_families
+
+from robot_bridge.store import revisions
+from robot_bridge.store.accounts.choice import keeper_on
+from robot_bridge.store.address import read_address
+from robot_bridge.store.backups.backing_up import back_up
+from robot_bridge.store.database import run_once
+
+
+def numbers(bridge):
+    address = bridge.address.replace("ws://", "http://")
+    with urllib.request.urlopen(f"{address}/metrics", timeout=5) as answer:
+        families = text_string_to_metric_families(answer.read().decode())
+    return {(s.name, *s.labels.values()): s.value for family in families for s in family.samples}
+
+
+@pytest.fixture
+def bridge(start_bridge, sample_site):
+    bridge = start_bridge(sample_site)
+    yield bridge
+    bridge.end()
+
+
+def test_a_task_that_fails_is_logged_counted_and_goes_on_when_it_can(bridge):
+    robot = bridge.robot("r1")
+    robot.plug_in(1)
+    robot.ask("Alive")
+    bridge.sql("alter table trajectories rename to away")
+    robot.tell("SendPos", {"x": 7.0, "y": 8.0, "theta": 0.0, "v": 0.0})
+    wait_until(lambda: numbers(bridge).get(("robot_bridge_task_failures_total", "save"), 0) >= 2)
+    assert bridge.gateway.poll() is None
+    bridge.sql("alter table away rename to trajectories")
+    wait_until(lambda: bridge.sql("select x from trajectories") == [(7.0,)])
+    said = [line for line in bridge.output().splitlines() if "save: database" in line]
+    assert len(said) == 1 and "no such table: trajectories" in said[0]
+
+
+@pytest.mark.parametrize("kind", ["postgresql", "mariadb"])
+def test_a_gateway_that_another_replaced_ends_with_a_clear_word(kind, request, start_bridge, sample_site):
+    server, url = request.getfixturevalue(f"{kind}_server"), request.getfixturevalue(f"{kind}_url")
+    run_once(read_address(url), revisions.create)
+    bridge = start_bridge(sample_site, url)
+    name = url.rsplit("/", 1)[1]
+    other = json.dumps({"run": "other", "host": "elsewhere", "process": 7, "since": 0})
+    server.sql(f"update bridge set value = '{other}' where name = 'gateway'", name)
+    if kind == "postgresql":
+        server.sql(
+            "select pg_terminate_backend(pid) from pg_locks where mode = 'ShareUpdateExclusiveLock' "
+            "and relation = 'bridge'::regclass",
+            name,
+        )
+    else:
+        for id in server.sql(f"select id from information_schema.processlist where db = '{name}'").split():
+            server.sql(f"kill connection {id}")
+    assert bridge.gateway.wait(20) == 1
+    last = bridge.output().strip().splitlines()[-1]
+    assert last.startswith("robot-bridge: database ")
+    assert "another gateway: process 7 on elsewhere" in last and "took it over" in last
+
+
+@pytest.mark.parametrize("kind", ["postgresql", "mariadb"])
+def test_the_gateways_own_account_runs_it_and_backs_it_up_and_no_secret_is_logged(
+    kind, request, start_bridge, sample_site, tmp_path
+):
+    server, url = request.getfixturevalue(f"{kind}_server"), request.getfixturevalue(f"{kind}_url")
+    run_once(read_address(url), revisions.create)
+    name, password = f"gw{secrets.token_hex(4)}", f"pass-{secrets.token_hex(12)}"
+    run_once(read_address(server.admin_url(url)), lambda c: keeper_on(c).add_gateway(name, password))
+    own = server.url(url.rsplit("/", 1)[1], name, password)
+    bridge = start_bridge(sample_site, own, ["--log-level", "debug", "--log-format", "json"])
+    robot = bridge.robot("r1")
+    robot.plug_in(1)
+    robot.ask("Alive")
+    assert back_up(read_address(own), tmp_path / "backup") > 100
+    token = f"fleet_op_{secrets.token_urlsafe(32)}"
+    request_ = urllib.request.Request(
+        bridge.address.replace("ws://", "http://") + "/metrics", headers={"Authorization": f"Bearer {token}"}
+    )
+    urllib.request.urlopen(request_, timeout=5).read()
+    server.kill()
+    wait_until(lambda: "trying again" in bridge.output(), 20)
+    server.start()
+    wait_until(lambda: healthy(bridge), 30)
+    bridge.gateway.send_signal(signal.SIGTERM)
+    assert bridge.gateway.wait(6) == 0
+    output = bridge.output()
+    for secret in (password, token):
+        assert secret not in output
+    for line in output.splitlines():
+        assert line.startswith("listening on ") or json.loads(line)["level"]
+
+
+def healthy(bridge):
+    try:
+        urllib.request.urlopen(bridge.address.replace("ws://", "http://") + "/healthz", timeout=5).read()
+    except (urllib.error.URLError, OSError):
+        return False
+    return True
+
+
+def test_what_comes_over_http_and_is_no_request_does_no_harm(bridge):
+    for text in (
+        b"GARBAGE\r\n\r\n",
+        b"GET /healthz HTTP/1.1\r\n" + b"X: y\r\n" * 5000,
+        b"POST /metrics HTTP/1.1\r\n\r\n",
+    ):
+        with socket.create_connection(("127.0.0.1", bridge.port), timeout=5) as link:
+            link.sendall(text)
+            link.shutdown(socket.SHUT_WR)
+            until = time.monotonic() + 5
+            while link.recv(4096):
+                assert time.monotonic() < until
+    assert healthy(bridge)
