@@ -109,6 +109,8 @@ class DeskProtocol:
             self._mailbox.put_commands([command_report(params)])
         elif method == "emergency":
             self._mailbox.put_emergency(emergency_report(params))
+        elif method == "site":
+            self._mailbox.put_site(checked_site(site_report(params)))
         # Another notification is of a newer gateway and nothing that this desk asked for.
 
     def _answered(self, message: dict[str, Any]) -> list[str]:
