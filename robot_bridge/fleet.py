@@ -260,6 +260,10 @@ class Fleet:
         """Return the oldest requests in RR, which stay there until :meth:`finish`; note what was read."""
         sent = self._undelivered(link)
         rows, waiting = await self._database.read(_look, sorted(sent))
+        if rows and (late := self._undelivered(link) - sent):
+            # Sent while the database looked; its acknowledgement may be among the rows already.
+            sent |= late
+            waiting |= await self._database.read(answers.waiting, sorted(late))
         if sent - waiting:
             await self._book.delivered(sent - waiting)
         return rows
