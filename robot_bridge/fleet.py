@@ -221,13 +221,20 @@ class Fleet:
     async def finish(self, outcomes: list[Outcome], request_ids: list[int], *, acks: bool) -> None:
         """Write the answers of requests into SA, with their OpAcks if ``acks``, and delete them from RR.
 
-        One transaction: a request is either answered and gone, or will be dealt with again.
+        One transaction, with the positions that they told: a request is either answered and gone, or will be
+        dealt with again.
         """
         if outcomes or request_ids:
             rows = [row for outcome in outcomes for row in outcome.rows(acks=acks)]
             # A request whose answer a power cut undid is there again, and is dealt with again.
             write = self._database.jot if request_ids else self._database.run
-            await write(_finish, outcomes, rows, request_ids)
+            # A request may have waited for long: where the robot was then must not be in memory alone.
+            fixes = self.recorder.take(self._clock()) if request_ids else []
+            try:
+                await write(_finish, outcomes, rows, request_ids, fixes)
+            except Exception:
+                self.recorder.give_back(fixes)
+                raise
         for outcome in outcomes:
             if outcome.answer is not None:
                 self._outbox_changed(outcome.robot)
@@ -369,8 +376,6 @@ class Fleet:
     async def save(self) -> None:
         """Store where robots are and have been since the last call, and let old commands expire."""
         await self._save()
-        while self.recorder.waiting:
-            await self._save()
         await self.emergency.store()
         await self._book.save_progress()
         await self._book.expire(self.site.settings.commands.expire_after_s)
@@ -384,15 +389,25 @@ class Fleet:
         """Delete what the site's settings do not keep any longer, in small pieces."""
         await self.recorder.prune(self._database, self._clock())
 
-    async def _save(self) -> None:
-        fixes = self.recorder.take(self._clock())
-        unsaved, self._unsaved = self._unsaved, set()
-        try:
-            await self._database.run(_save, [self.robots.get(n) for n in unsaved if n in self.robots], fixes)
-        except Exception:
-            self.recorder.give_back(fixes)
-            self._unsaved |= unsaved
-            raise
+    async def _save(self, *robots: str) -> None:
+        """Store where robots have been and then where they are, those of ``robots`` in any case.
+
+        In this order: a stored pose makes older ones late, and a request that is dealt with again tells one.
+        """
+        while True:
+            fixes = self.recorder.take(self._clock())
+            last, unsaved = not self.recorder.waiting, set[str]()
+            if last:
+                unsaved, self._unsaved = self._unsaved.union(robots), set()
+            try:
+                known = [self.robots.get(name) for name in unsaved if name in self.robots]
+                await self._database.run(_save, known, fixes)
+            except Exception:
+                self.recorder.give_back(fixes)
+                self._unsaved |= unsaved
+                raise
+            if last:
+                return
 
     # ---------------------------------------------------------------------------------------------------
 
@@ -402,7 +417,7 @@ class Fleet:
             log.warning("link %s: a second robot said Ready: %s", link, reason)
             return Outcome(robot, OpAck(id=id, ok=False, reason=reason, magic=request.magic))
         started = self.robots.ready(robot, request.magic, link, self._clock())
-        await self._database.run(stored_robots.save, [self.robots.get(robot)])
+        await self._save(robot)
         if started:
             await self.delivered_by_deletion(link)
             reason = f"robot {robot} started anew; sent once more"
@@ -470,12 +485,14 @@ def _finish(
     outcomes: Sequence[Outcome],
     rows: Sequence[tuple[str, Answer]],
     request_ids: Sequence[int],
+    fixes: Sequence[Fix],
 ) -> None:
     for outcome in outcomes:
         kinds = outcome.voided()
         if kinds:
             answers.remove_kinds(connection, outcome.robot, kinds)
     answers.add_all(connection, rows)
+    trajectories.add(connection, fixes)
     requests.remove(connection, request_ids)
 
 

@@ -1,0 +1,58 @@
+"""A position that a robot wrote into RR is stored when its row goes, however long the row had waited."""
+
+from __future__ import annotations
+
+import pytest
+
+from robot_bridge.errors import StoreError
+from robot_bridge.messages import Ready, SendPos
+
+
+@pytest.fixture
+async def plugged(yard):
+    """A yard with robot r1 on SQL."""
+    yard.ask("r1", Ready(1))
+    await yard.link.poll()
+    return yard
+
+
+def places(yard):
+    return [x for (x,) in yard.sql("select x from trajectories order by id")]
+
+
+async def test_positions_are_stored_with_their_requests_gone_and_not_later(plugged):
+    for x in (1.0, 2.0):
+        plugged.ask("r1", SendPos(x, 0.0, 0.0, 1.0))
+        plugged.now += 1
+        await plugged.link.poll()
+    assert plugged.sql("select id from rr") == []
+    assert places(plugged) == [1.0, 2.0]
+
+
+async def test_positions_that_cannot_be_stored_stay_in_rr_and_are_stored_once_when_they_can(plugged):
+    plugged.ask("r1", SendPos(1.0, 0.0, 0.0, 1.0))
+    plugged.client.break_table("trajectories")
+    with pytest.raises(StoreError):
+        await plugged.link.poll()
+    assert plugged.sql("select op from rr") == [("SendPos",)]
+    plugged.client.mend_table("trajectories")
+    plugged.now += 1
+    await plugged.link.poll()
+    await plugged.fleet.save()
+    assert plugged.sql("select id from rr") == []
+    assert set(places(plugged)) == {1.0}
+
+
+async def test_positions_that_are_dealt_with_again_after_a_kill_are_stored_though_a_newer_one_was_known(
+    plugged,
+):
+    for t in (1.0, 2.0):
+        plugged.ask("r1", SendPos(t, 0.0, 0.0, 1.0, t=t))
+    rows = await plugged.fleet.look("sql")
+    await plugged.link._deal_with_robot(rows)
+    # Killed before its rows were gone; what the robot said last was stored by its Ready.
+    await plugged.fleet.receive("r1", "sql", Ready(1), 9)
+    await plugged.restart()
+    await plugged.link.poll()
+    assert plugged.sql("select id from rr") == []
+    assert set(places(plugged)) == {1.0, 2.0}
