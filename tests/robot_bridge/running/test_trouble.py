@@ -6,6 +6,9 @@ import json
 import secrets
 import signal
 import socket
+import ssl
+import subprocess
+import sys
 import time
 import urllib.error
 import urllib.request
@@ -125,3 +128,50 @@ def test_what_comes_over_http_and_is_no_request_does_no_harm(bridge):
             while link.recv(4096):
                 assert time.monotonic() < until
     assert healthy(bridge)
+
+
+@pytest.fixture
+def own_address():
+    """An address of this computer that is not loopback."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as link:
+        try:
+            link.connect(("192.0.2.1", 9))  # sends nothing
+            address = link.getsockname()[0]
+        except OSError:
+            address = "127.0.0.1"
+    if address.startswith("127."):
+        pytest.skip("this computer has no address but loopback")
+    return address
+
+
+def test_numbers_are_for_those_who_have_a_token_and_tokens_are_not_logged(
+    start_bridge, sample_site, tmp_path, own_address
+):
+    def run(*words):
+        command = [sys.executable, "-m", "robot_bridge", *map(str, words)]
+        return subprocess.run(command, capture_output=True, text=True, check=True, timeout=60).stdout.strip()
+
+    database = f"sqlite:///{tmp_path}/fleet.db"
+    run("tls", "create", tmp_path / "tls", "--name", "gateway", "--ip", own_address)
+    token = run("operators", "add", "Ada", "--role", "viewer", "--database", database)
+    files = {path.name: path for path in (tmp_path / "tls").iterdir()}
+    options = ["--host", "0.0.0.0", "--log-level", "debug", "--log-format", "json"]
+    options += ["--certificate", files["server.pem"], "--key", files["server-key.pem"]]
+    bridge = start_bridge(sample_site, database, options)
+    trust = ssl.create_default_context(cafile=files["ca.pem"])
+    wrong = "fleet_op_" + secrets.token_urlsafe(32)
+
+    def ask(path, token=None):
+        headers = {"Authorization": f"Bearer {token}"} if token else {}
+        request = urllib.request.Request(f"https://{own_address}:{bridge.port}{path}", headers=headers)
+        try:
+            return urllib.request.urlopen(request, timeout=5, context=trust).status
+        except urllib.error.HTTPError as error:
+            return error.code
+
+    assert ask("/healthz") == 200
+    assert (ask("/metrics"), ask("/metrics", wrong), ask("/metrics", token)) == (401, 401, 200)
+    bridge.gateway.send_signal(signal.SIGTERM)
+    assert bridge.gateway.wait(6) == 0
+    for secret in (token, wrong):
+        assert secret not in bridge.output() and secret[-16:] not in bridge.output()
