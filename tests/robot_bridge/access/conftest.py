@@ -9,9 +9,14 @@ import pytest
 from robot_bridge.store.database import Database
 
 
+@pytest.fixture(params=["sqlite", "postgresql", "mariadb"])
+def database_url(request, new_database):
+    return new_database(request.param)
+
+
 @pytest.fixture
-async def database(tmp_path):
-    database = Database(f"sqlite:///{tmp_path}/accounts.db")
+async def database(database_url):
+    database = Database(database_url)
     await database.open()
     yield database
     await database.close()
