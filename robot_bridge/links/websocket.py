@@ -17,7 +17,7 @@ from websockets.asyncio.server import ServerConnection
 from websockets.exceptions import ConnectionClosed, ConnectionClosedOK
 
 from .. import jsonrpc
-from ..errors import BridgeError, NotReadyError
+from ..errors import BridgeError, NotReadyError, StoreError
 from ..fleet import Fleet, Outcome
 from ..messages import MessageError, OpAck, Ready, Request, to_json
 from ..wire import decode_request, error_code
@@ -203,6 +203,9 @@ class RobotSession:
         try:
             ack = OpAck(id=reply.id, ok=reply.error is None, reason=reply.error)
             await self._fleet.receive(self.robot, NAME, ack, None)
+        except StoreError as error:
+            log.warning("link websocket: robot %r: %s; it will be asked again", self.robot, error)
+            self._delivery.begin()
         except (MessageError, BridgeError) as error:
             log.warning("link websocket: robot %r: %s", self.robot, error)
         except Exception:

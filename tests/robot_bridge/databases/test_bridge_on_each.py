@@ -113,6 +113,26 @@ def test_a_database_server_that_is_killed_and_comes_back_is_missed_and_found_aga
         assert secret not in bridge.output()
 
 
+@SERVERS
+def test_an_acknowledgement_that_could_not_be_stored_is_asked_for_again(bridge, server):
+    robot = bridge.robot("ws")
+    robot.plug_in(1)
+    robot.tell("SendPos", {"x": 20.0, "y": 20.0, "theta": 0.0, "v": 0.0})
+    desk = watch(bridge)
+    desk.wait_for_robots("ws")
+    desk.send("target-1", "ws", "SetPosEnd", x=40.0, y=20.0)
+    first = robot.wait_for("SetPosEnd")
+    desk.wait_for_step("target-1", "delivered")
+    server.kill()
+    robot.say(first["id"])
+    wait_until(lambda: "it will be asked again" in bridge.output())
+    server.start()
+    again = robot.wait_for("SetPosEnd", 20)
+    assert again == first
+    robot.say(again["id"])
+    assert steps(desk.wait_for_step("target-1", "acknowledged")) == FULL_LIFE[:3]
+
+
 @pytest.mark.parametrize("kind", ["postgresql"], indirect=True)
 def test_requests_and_answers_on_postgresql_do_not_wait_for_a_poll(bridge, accounts):
     import psycopg
