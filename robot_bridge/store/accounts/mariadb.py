@@ -224,11 +224,13 @@ create or replace definer = {keeper} sql security definer view {side}.sa as
 
 create or replace definer = {keeper} procedure {base}.end_stuck_robots(seconds int) sql security definer
 begin
+    declare continue handler for 1094 begin end;
     for stuck in (
         select p.id from information_schema.processlist p
-        join information_schema.innodb_trx t on t.trx_mysql_thread_id = p.id
+        left join information_schema.innodb_trx t on t.trx_mysql_thread_id = p.id
         join mysql.tables_priv g on g.User = p.user and g.Db = {side_text} and g.Table_name = 'sa'
         where t.trx_started <= now() - interval seconds second
+            or (p.command in ('Query', 'Execute') and p.time >= seconds)
     ) do
         kill connection stuck.id;
     end for;

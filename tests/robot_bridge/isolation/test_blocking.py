@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import time
+from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 from yards import GATEWAY, MINE, OTHER, RefusedError
@@ -107,6 +108,18 @@ def test_a_robots_transaction_ends_when_it_takes_too_long(yard, greedy):
         )
     with pytest.raises(RefusedError):
         greedy.run("select 1")
+
+
+def test_a_robots_statement_ends_when_it_takes_too_long(yard):
+    sleep = {"postgresql": "select pg_sleep(60)", "mariadb": "select sleep(60)"}[yard.kind]
+    with yard.session(MINE) as session, ThreadPoolExecutor(1) as thread:
+        for statement in NO_LIMITS[yard.kind]:
+            session.run(statement)
+        sleeping = thread.submit(session.run, sleep)
+        time.sleep(2.1)
+        run_once(yard.address(GATEWAY), end_stuck, 2)
+        with pytest.raises(RefusedError):
+            sleeping.result(timeout=5)
 
 
 def test_others_transactions_are_left_alone(yard):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import secrets
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -14,6 +15,7 @@ import pymysql
 import sqlalchemy
 
 from robot_bridge.store import revisions
+from robot_bridge.store.accounts.choice import keeper_on
 from robot_bridge.store.database import run_once
 from robot_bridge.store.schema import metadata
 
@@ -156,19 +158,22 @@ def command_line(*arguments: str) -> subprocess.CompletedProcess[str]:
 
 
 def make_yard(server: Any) -> Yard:
-    """Make the tables and the accounts by the commands that the operator's page names."""
+    """Make the tables, and the accounts as the command line makes them."""
     yard = Yard(server, server.new_database(), {})
     run_once(yard.url, revisions.create)
-    made = {name: ["robots", "add", name] for name in ROBOTS} | {GATEWAY: ["database", "account", GATEWAY]}
-    for name, command in made.items():
-        done = command_line(*command, "--database", yard.admin)
-        assert done.returncode == 0, done.stderr
-        yard.passwords[name] = done.stdout.strip()
+    yard.passwords = {name: secrets.token_urlsafe(12) for name in (*ROBOTS, GATEWAY)}
+    run_once(yard.admin, _add_accounts, yard.passwords)
     return yard
+
+
+def _add_accounts(connection: Any, passwords: dict[str, str]) -> None:
+    keeper = keeper_on(connection)
+    for name in ROBOTS:
+        keeper.add_robot(name, passwords[name])
+    keeper.add_gateway(GATEWAY, passwords[GATEWAY])
 
 
 def remove_accounts(yard: Yard) -> None:
     """Take the accounts away again: they belong to the server, which other tests use."""
     for name in ROBOTS:
-        done = command_line("robots", "remove", name, "--database", yard.admin)
-        assert done.returncode == 0, done.stderr
+        run_once(yard.admin, lambda connection, name=name: keeper_on(connection).remove_robot(name))
