@@ -17,9 +17,6 @@ def asyncapi() -> dict[str, Any]:
     """Return the document as JSON values."""
     answers = {op: cls for op, cls in ANSWERS.items() if op != "OpAck"}
     requests = {op: cls for op, cls in REQUESTS.items() if op != "OpAck"}
-    results = {f"{request.method}Result": cls for request, cls in RESULTS.items()}
-    classes = {cls: None for table in (REQUESTS, ANSWERS, DESK_REQUESTS, results, NOTIFICATIONS)
-               for cls in table.values()}  # fmt: skip
     return {
         "asyncapi": VERSION,
         "info": {
@@ -29,34 +26,36 @@ def asyncapi() -> dict[str, Any]:
         },
         "servers": _servers(),
         "defaultContentType": "application/json",
-        "channels": {
-            "robot": _channel(
-                "/robot",
-                "A robot's connection.",
-                {**_calls(requests), **_calls(answers), "OpAck": _result(OpAck), "error": _error()},
-                {"robot": "The robot's name; without one it is given one."},
-            ),
-            "desk": _channel(
-                "/desk",
-                "An operator's connection.",
-                {**_calls(DESK_REQUESTS), **_results(results), **_news(NOTIFICATIONS), "error": _error()},
-                {},
-            ),
-        },
+        "channels": {"robot": _robot_channel(requests, answers), "desk": _desk_channel()},
         "operations": _operations(requests, answers),
-        "components": {
-            "schemas": {**definitions(list(classes), _REFERENCE), "Id": _ID, "Error": _ERROR},
-            "securitySchemes": {
-                "token": {
-                    "type": "http",
-                    "scheme": "bearer",
-                    "description": "Authorization: Bearer TOKEN; not asked for where there are no accounts.",
-                }
-            },
-        },
+        "components": {"schemas": _schemas(), "securitySchemes": {"token": _TOKEN}},
     }
 
 
+def _robot_channel(requests: Mapping[str, type], answers: Mapping[str, type]) -> Schema:
+    messages = {**_calls(requests), **_calls(answers), "OpAck": _result(OpAck), "error": _error()}
+    query = {"robot": "The robot's name; without one it is given one."}
+    return _channel("/robot", "A robot's connection.", messages, query)
+
+
+def _desk_channel() -> Schema:
+    results = {f"{request.method}Result": cls for request, cls in RESULTS.items()}
+    messages = {**_calls(DESK_REQUESTS), **_results(results), **_news(NOTIFICATIONS), "error": _error()}
+    return _channel("/desk", "An operator's connection.", messages, {})
+
+
+def _schemas() -> dict[str, Schema]:
+    tables = (REQUESTS, ANSWERS, DESK_REQUESTS, RESULTS, NOTIFICATIONS)
+    # Some are in two tables, and each is to be described once.
+    classes = {cls: None for table in tables for cls in table.values()}
+    return {**definitions(list(classes), _REFERENCE), "Id": _ID, "Error": _ERROR}
+
+
+_TOKEN: Schema = {
+    "type": "http",
+    "scheme": "bearer",
+    "description": "Authorization: Bearer TOKEN; not asked for where there are no accounts.",
+}
 _ID: Schema = {
     "description": "The id of the call, which its answer carries back.",
     "type": ["integer", "string"],
