@@ -34,7 +34,6 @@ class MariaDb(DatabaseServer):
             f"--pid-file={self.folder / 'mariadb.pid'}",
             f"--port={self.port}",
             "--bind-address=127.0.0.1",
-            "--skip-name-resolve",
             "--max-connections=200",
             "--character-set-server=utf8mb4",
         ]
