@@ -8,6 +8,7 @@ import time
 from pathlib import Path
 
 import pytest
+from bridge_sockets import frame, plain_socket
 from bridge_wires import RefusedError
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
@@ -184,26 +185,6 @@ def test_a_desk_that_listens_may_be_silent_and_a_robot_may_not(bridge, close_cod
 def memory(bridge):
     status = Path(f"/proc/{bridge.gateway.pid}/status").read_text(encoding="ascii")
     return int(next(line.split()[1] for line in status.splitlines() if line.startswith("VmRSS"))) // 1024
-
-
-def plain_socket(bridge, path):
-    """Open a WebSocket by hand; nothing on this side reads it or answers a ping."""
-    raw = socket.socket()
-    raw.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
-    raw.connect(("127.0.0.1", bridge.port))
-    raw.sendall(
-        f"GET {path} HTTP/1.1\r\nHost: x\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
-        "Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\nSec-WebSocket-Version: 13\r\n\r\n".encode()
-    )
-    assert raw.recv(4096).startswith(b"HTTP/1.1 101")
-    return raw
-
-
-def frame(text, opcode=1):
-    payload = text.encode()
-    head = bytes([0x80 | opcode])
-    length = bytes([0x80 | len(payload)]) if len(payload) < 126 else b"\xfe" + len(payload).to_bytes(2, "big")
-    return head + length + bytes(4) + payload
 
 
 def test_who_takes_nothing_of_what_it_is_sent_is_cut_off(bridge):
