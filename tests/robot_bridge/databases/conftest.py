@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+import sys
+from pathlib import Path
+
 import pytest
 from database_maker import KINDS
+
+sys.path.insert(0, str(Path(__file__).parent))
 
 
 @pytest.fixture(params=KINDS)

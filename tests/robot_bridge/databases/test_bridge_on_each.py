@@ -2,17 +2,12 @@
 
 from __future__ import annotations
 
-import sys
 import time
-from pathlib import Path
 
 import pytest
+from accounts import Accounts
 from bridge_programs import wait_until
 from bridge_wires import RefusedError
-
-sys.path.insert(0, str(Path(__file__).parent))
-
-from accounts import Accounts
 
 FULL_LIFE = ["queued", "delivered", "acknowledged", "reached"]
 SERVERS = pytest.mark.parametrize("kind", ["postgresql", "mariadb"], indirect=True)
