@@ -12,22 +12,23 @@ import time
 import uuid
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any, Protocol
 
 from sqlalchemy import Connection
 
+from . import exchange
 from .answering import Answering
 from .command_book import CommandBook, Order
 from .emergency import HELD_BACK, EmergencyStops
 from .errors import RefusedError
+from .exchange import Outcome
 from .ground_track import GroundTracks
 from .handshake import Holds, refusal
 from .messages import (
     COMMANDS,
     Abort,
     AbortTask,
-    Answer,
     Command,
     CommandReport,
     CommandState,
@@ -43,7 +44,6 @@ from .messages import (
     SendGPS,
     SendPos,
     SetMap,
-    SiteReport,
     Start,
     Stopped,
     TargetPosition,
@@ -55,7 +55,7 @@ from .observation_book import ObservationBook
 from .places import check_places, places_of
 from .planning import Planner, StraightPlanner
 from .robots import Robot, Robots
-from .sites.settings import SiteSettings
+from .served_site import ServedSite
 from .snapshots import Snapshots
 from .store import answers, commands, facts, requests, trajectories
 from .store import robots as stored_robots
@@ -66,60 +66,6 @@ from .trajectories.recorder import Recorder
 from .wire import decode_answer
 
 log = logging.getLogger(__name__)
-
-
-@dataclass(frozen=True)
-class Outcome:
-    """What comes of a robot's request: its OpAck, an answer, and the kinds of older answers that are void."""
-
-    robot: str
-    ack: OpAck | None = None
-    answer: Answer | None = None
-    void: tuple[str, ...] = ()
-
-    @property
-    def admitted(self) -> bool:
-        """Tell whether the request, a Ready, was taken."""
-        return self.ack is not None and self.ack.ok
-
-    def rows(self, *, acks: bool) -> list[tuple[str, Answer]]:
-        """Return what is to be written into SA, the OpAck first."""
-        messages: list[Answer | None] = [self.ack if acks else None, self.answer]
-        return [(self.robot, message) for message in messages if message is not None]
-
-    def voided(self) -> tuple[str, ...]:
-        """Return the kinds of older answers that are void; a map or a Start is, when there is a newer one."""
-        renewed = isinstance(self.answer, (SetMap, Start))
-        return (*self.void, type(self.answer).__name__) if renewed else self.void
-
-
-class MapSource(Protocol):
-    """What the fleet needs of a site: its facts and its maps in the binary format."""
-
-    @property
-    def report(self) -> SiteReport:
-        """The facts of the site."""
-
-    @property
-    def settings(self) -> SiteSettings:
-        """The settings of the site."""
-
-    def contains(self, x: float, y: float) -> bool:
-        """Tell whether (x, y), metres in the site frame, lies on the site."""
-
-    def whole_map(self) -> bytes:
-        """Return the map of the whole site."""
-
-    def map_around(self, x: float, y: float, area: float) -> bytes:
-        """Return the map of a square of ``area`` square metres centred on (x, y)."""
-
-    def place_on_earth(
-        self, lat: float, lon: float, heading: float | None
-    ) -> tuple[tuple[float, float], float | None]:
-        """Return (x, y) and theta of a GPS position; raises RefusedError where the site has none."""
-
-    def show(self, objects: Sequence[ObservationReport]) -> None:
-        """Draw accepted objects, and no others, on the maps from now on."""
 
 
 class Listener(Protocol):
@@ -134,7 +80,7 @@ class Fleet:
 
     def __init__(
         self,
-        site: MapSource,
+        site: ServedSite,
         database: Database,
         clock: Callable[[], float] = time.time,
         planner: Planner | None = None,
@@ -231,7 +177,7 @@ class Fleet:
             # A request may have waited for long: where the robot was then must not be in memory alone.
             fixes = self.recorder.take(self._clock()) if request_ids else []
             try:
-                await write(_finish, outcomes, rows, request_ids, fixes)
+                await write(exchange.finish, outcomes, rows, request_ids, fixes)
             except Exception:
                 self.recorder.give_back(fixes)
                 raise
@@ -266,7 +212,7 @@ class Fleet:
     async def look(self, link: str) -> list[requests.RequestRow]:
         """Return the oldest requests in RR, which stay there until :meth:`finish`; note what was read."""
         sent = self._undelivered(link)
-        rows, waiting = await self._database.read(_look, sorted(sent))
+        rows, waiting = await self._database.read(exchange.look, sorted(sent))
         if rows and (late := self._undelivered(link) - sent):
             # Sent while the database looked; its acknowledgement may be among the rows already.
             sent |= late
@@ -478,28 +424,6 @@ class Fleet:
 
     def _outbox_changed(self, robot: str) -> None:
         self.outbox_event(robot).set()
-
-
-def _finish(
-    connection: Connection,
-    outcomes: Sequence[Outcome],
-    rows: Sequence[tuple[str, Answer]],
-    request_ids: Sequence[int],
-    fixes: Sequence[Fix],
-) -> None:
-    for outcome in outcomes:
-        kinds = outcome.voided()
-        if kinds:
-            answers.remove_kinds(connection, outcome.robot, kinds)
-    answers.add_all(connection, rows)
-    trajectories.add(connection, fixes)
-    requests.remove(connection, request_ids)
-
-
-def _look(connection: Connection, sent: Sequence[int]) -> tuple[list[requests.RequestRow], set[int]]:
-    # In this order: a robot deletes what it read before it acknowledges it.
-    rows = requests.read(connection)
-    return rows, answers.waiting(connection, sent)
 
 
 def _save(connection: Connection, robots: Sequence[Robot], fixes: Sequence[Fix]) -> None:

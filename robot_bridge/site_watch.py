@@ -8,7 +8,8 @@ import logging
 from pathlib import Path
 
 from .errors import BridgeError
-from .fleet import Fleet, Outcome
+from .exchange import Outcome
+from .fleet import Fleet
 from .messages import RobotState, SetMap
 from .site_maps import SiteMaps
 from .sites.errors import SiteError

@@ -8,7 +8,8 @@ import uuid
 from collections.abc import Iterable
 
 from ..errors import DataRefusedError, NotReadyError, RefusedError, StoreError
-from ..fleet import Fleet, Outcome
+from ..exchange import Outcome
+from ..fleet import Fleet
 from ..messages import PAYLOADS, MessageError, OpAck, check_robot_name
 from ..store import requests
 from ..store.database import Database

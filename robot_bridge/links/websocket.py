@@ -18,7 +18,8 @@ from websockets.exceptions import ConnectionClosed, ConnectionClosedOK
 
 from .. import jsonrpc
 from ..errors import BridgeError, NotReadyError, StoreError
-from ..fleet import Fleet, Outcome
+from ..exchange import Outcome
+from ..fleet import Fleet
 from ..messages import MessageError, OpAck, Ready, Request, to_json
 from ..wire import decode_request, error_code
 from .delivery import Delivery

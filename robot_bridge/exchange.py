@@ -1,0 +1,61 @@
+"""What comes of robots' requests, and how it is written: answers into SA, and requests out of RR."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from sqlalchemy import Connection
+
+from .messages import Answer, OpAck, SetMap, Start
+from .store import answers, requests, trajectories
+from .store.trajectories import Fix
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What comes of a robot's request: its OpAck, an answer, and the kinds of older answers that are void."""
+
+    robot: str
+    ack: OpAck | None = None
+    answer: Answer | None = None
+    void: tuple[str, ...] = ()
+
+    @property
+    def admitted(self) -> bool:
+        """Tell whether the request, a Ready, was taken."""
+        return self.ack is not None and self.ack.ok
+
+    def rows(self, *, acks: bool) -> list[tuple[str, Answer]]:
+        """Return what is to be written into SA, the OpAck first."""
+        messages: list[Answer | None] = [self.ack if acks else None, self.answer]
+        return [(self.robot, message) for message in messages if message is not None]
+
+    def voided(self) -> tuple[str, ...]:
+        """Return the kinds of older answers that are void; a map or a Start is, when there is a newer one."""
+        renewed = isinstance(self.answer, (SetMap, Start))
+        return (*self.void, type(self.answer).__name__) if renewed else self.void
+
+
+def finish(
+    connection: Connection,
+    outcomes: Sequence[Outcome],
+    rows: Sequence[tuple[str, Answer]],
+    request_ids: Sequence[int],
+    fixes: Sequence[Fix],
+) -> None:
+    """Write what comes of requests, and where robots were, and delete the requests."""
+    for outcome in outcomes:
+        kinds = outcome.voided()
+        if kinds:
+            answers.remove_kinds(connection, outcome.robot, kinds)
+    answers.add_all(connection, rows)
+    trajectories.add(connection, fixes)
+    requests.remove(connection, request_ids)
+
+
+def look(connection: Connection, sent: Sequence[int]) -> tuple[list[requests.RequestRow], set[int]]:
+    """Return the oldest requests, and which of the messages ``sent`` still wait to be read."""
+    # In this order: a robot deletes what it read before it acknowledges it.
+    rows = requests.read(connection)
+    return rows, answers.waiting(connection, sent)

@@ -1,0 +1,38 @@
+"""What the fleet needs of a site."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Protocol
+
+from .messages import ObservationReport, SiteReport
+from .sites.settings import SiteSettings
+
+
+class ServedSite(Protocol):
+    """A site: its facts, its maps in the binary format, and what is drawn on them."""
+
+    @property
+    def report(self) -> SiteReport:
+        """The facts of the site."""
+
+    @property
+    def settings(self) -> SiteSettings:
+        """The settings of the site."""
+
+    def contains(self, x: float, y: float) -> bool:
+        """Tell whether (x, y), metres in the site frame, lies on the site."""
+
+    def whole_map(self) -> bytes:
+        """Return the map of the whole site."""
+
+    def map_around(self, x: float, y: float, area: float) -> bytes:
+        """Return the map of a square of ``area`` square metres centred on (x, y)."""
+
+    def place_on_earth(
+        self, lat: float, lon: float, heading: float | None
+    ) -> tuple[tuple[float, float], float | None]:
+        """Return (x, y) and theta of a GPS position; raises RefusedError where the site has none."""
+
+    def show(self, objects: Sequence[ObservationReport]) -> None:
+        """Draw accepted objects, and no others, on the maps from now on."""
