@@ -95,6 +95,16 @@ async def test_a_forsaken_xa_transaction_holds_it_up_no_longer(mariadb):
     assert mariadb.sql("xa recover") == []
 
 
+def test_a_robot_that_sets_itself_no_limits_has_ten_seconds(yard):
+    limits = {
+        "postgresql": ["statement_timeout", "lock_timeout", "idle_in_transaction_session_timeout"],
+        "mariadb": ["max_statement_time"],
+    }[yard.kind]
+    for limit in limits:
+        show = f"show {limit}" if yard.kind == "postgresql" else f"select @@{limit}"
+        assert yard.of(MINE).run(show) in ([("10s",)], [(10.0,)])
+
+
 def test_a_robots_transaction_ends_when_it_takes_too_long(yard, greedy):
     greedy.run("select * from sa")
     time.sleep(1.1)
