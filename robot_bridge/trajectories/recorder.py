@@ -17,6 +17,8 @@ log = logging.getLogger(__name__)
 
 BATCH = 5000
 """positions in one transaction: a few hundredths of a second of the database's thread."""
+LOOK_INTERVAL = 1.0
+"""seconds between two looks for robots that have fallen silent."""
 PRUNED_AT_ONCE = 1000
 PAUSE = 0.05
 """seconds between two deletions, in which robots and operators have the database."""
@@ -31,6 +33,7 @@ class Recorder:
         self._thinning = Thinning()
         self._waiting: deque[Fix] = deque()
         self._told = False
+        self._looked_at = 0.0
         self.given_up = 0
 
     @property
@@ -45,7 +48,10 @@ class Recorder:
 
     def take(self, now: float) -> list[Fix]:
         """Return the oldest positions to be stored; what cannot be stored is handed to :meth:`give_back`."""
-        self._waiting.extend(self._thinning.silent(now - self._settings().max_interval_s))
+        # Not each time: it looks at every robot, and this is called for every few requests.
+        if not 0 <= now - self._looked_at < LOOK_INTERVAL:
+            self._looked_at = now
+            self._waiting.extend(self._thinning.silent(now - self._settings().max_interval_s))
         self._told = self._told and len(self._waiting) > BATCH
         return [self._waiting.popleft() for _ in range(min(BATCH, len(self._waiting)))]
 

@@ -125,3 +125,11 @@ def test_at_the_end_the_actual_place_is_stored(recorder):
     assert len(recorder.take(1.0)) == 1
     recorder.finish()
     assert [one.pose.x for one in recorder.take(1.0)] == [0.3]
+
+
+def test_the_last_place_of_a_silent_robot_is_stored_after_the_longest_interval(recorder):
+    recorder.observe(fix(100))
+    recorder.observe(fix(101, x=0.3))
+    assert [one.pose.x for one in recorder.take(101.5)] == [0.0]
+    assert recorder.take(105.9) == []
+    assert [one.pose.x for one in recorder.take(107.0)] == [0.3]
