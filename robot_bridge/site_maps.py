@@ -10,6 +10,7 @@ from .errors import RefusedError
 from .messages import ObservationReport, SiteReport
 from .observed_objects import ObservedObjects
 from .robotmap.binary import encode
+from .robotmap.errors import RobotMapError
 from .sites.earth import Earth
 from .sites.errors import CrsError
 from .sites.settings import SiteSettings
@@ -74,9 +75,15 @@ class SiteMaps:
             return made[1]
 
     def map_around(self, x: float, y: float, area: float) -> bytes:
-        """Return the map of a square of ``area`` square metres centred on (x, y) in the binary format."""
+        """Return the map of a square of ``area`` square metres centred on (x, y) in the binary format.
+
+        :raises RefusedError: when that square is none, being smaller than a map is exact.
+        """
         drawn = self._drawn
-        return encode(drawn.objects.join(drawn.site.map_around(x, y, area)))
+        try:
+            return encode(drawn.objects.join(drawn.site.map_around(x, y, area)))
+        except RobotMapError as error:
+            raise RefusedError(f"GetMap: {error}") from error
 
     def show(self, objects: Sequence[ObservationReport]) -> None:
         """Draw accepted objects, and no others, on the maps from now on."""

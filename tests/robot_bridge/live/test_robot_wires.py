@@ -68,6 +68,12 @@ def test_who_has_not_said_ready_is_told_to(bridge):
         ("SendPos", {**POSE, "x": "here"}, -32602, r"SendPos: .*\$\.x"),
         ("SendPos", [1, 2, 3, 4], -32602, "SendPos: params is list"),
         ("GetMap", {"x": 1, "y": 2, "area": -1}, -32602, "GetMap: area is -1"),
+        (
+            "GetMap",
+            {"x": 1, "y": 2, "area": 1e-6},
+            -32000,
+            "GetMap: window: width is 0.001 m, so it encloses",
+        ),
         ("Ready", {"magic": 10**30}, -32602, "Ready: magic is 1000"),
         ("Fly", {}, -32601, "unknown operation 'Fly'; known are Ready, Stopped"),
         ("SendGPS", {"lat": 95, "lon": 15}, -32602, "SendGPS: lat is 95.0; give a number from -90 to 90"),
