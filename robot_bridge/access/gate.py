@@ -211,16 +211,16 @@ class Gate:
         return grant.fault(self._clock())
 
     def _note_login(self, visitor: Visitor, identity: Identity) -> None:
-        role = self.role(visitor).value if identity.kind is TokenKind.OPERATOR else "robot"
-        address = visitor.address
         if identity.token is not None:
             self.journal.used(identity.token)
-            who, session = identity.name or "", identity.session
+        if identity.kind is TokenKind.ROBOT:
+            # A robot at the edge of the radio's reach comes back a thousand times a day.
+            return
+        role, address, session = self.role(visitor).value, visitor.address, identity.session
+        who = identity.name or f"desk {address}"
+        if identity.token is not None:
             self.journal.note(who, "login", role=role, address=address, subject=session)
-        if identity.kind is TokenKind.OPERATOR:
-            who = identity.name or f"desk {address}"
-            session = identity.session
-            self.journal.began(SessionRow(session, who, identity.token, role, address, self._clock()))
+        self.journal.began(SessionRow(session, who, identity.token, role, address, self._clock()))
 
     def _refuse(self, visitor: Visitor, kind: TokenKind, who: str, fault: str) -> Response:
         # Whoever knocks with wrong tokens is to fill neither the log nor the disk.

@@ -17,6 +17,7 @@ from websockets.frames import CloseCode
 from websockets.http11 import Request, Response
 
 from ..errors import BridgeError
+from ..sites.limit_settings import LimitSettings
 from .gate import Gate
 from .visitor import Visitor
 
@@ -27,7 +28,10 @@ WRITE_LIMIT = 65_536
 """bytes that wait in this process for a client before whoever sends to it has to wait too."""
 
 SPARE_FILES = 512
-"""Files, database connections, and connections that are not let in yet."""
+"""Files and connections to the database."""
+
+BACKLOG = 1024
+"""Connections that wait to be taken: a whole fleet comes back in one moment when the gateway was away."""
 
 Handler = Callable[[Visitor], Awaitable[None]]
 Doorman = Callable[[Visitor, Request], Awaitable[Response | None]]
@@ -40,7 +44,7 @@ async def listen(
 
     :raises BridgeError: when the address cannot be listened on.
     """
-    _allow_connections(gate.limits.robots + gate.limits.desks)
+    _allow_connections(gate.limits)
     try:
         return await serve(
             cast("Callable[[ServerConnection], Awaitable[None]]", partial(_serve, handler)),
@@ -49,6 +53,7 @@ async def listen(
             ssl=context,
             process_request=cast("Any", partial(_ask, doorman)),
             create_connection=cast("type[ServerConnection]", partial(Visitor, gate)),
+            backlog=BACKLOG,
             open_timeout=gate.limits.handshake_s,
             max_size=gate.limits.largest_message_bytes,
             write_limit=WRITE_LIMIT,
@@ -63,16 +68,16 @@ async def listen(
         ) from error
 
 
-def _allow_connections(count: int) -> None:
+def _allow_connections(limits: LimitSettings) -> None:
     """Let this process hold so many connections beside its files, as far as the system allows."""
     soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
-    wanted = count + SPARE_FILES
+    needed = wanted = limits.robots + limits.desks + limits.pending_per_address + SPARE_FILES
     if hard != resource.RLIM_INFINITY:
         wanted = min(wanted, hard)
     if soft < wanted:
         resource.setrlimit(resource.RLIMIT_NOFILE, (wanted, hard))
         soft = wanted
-    if soft < count + SPARE_FILES:
+    if soft < needed:
         log.warning("the system allows %d open files, fewer than the limits of the site take", soft)
 
 

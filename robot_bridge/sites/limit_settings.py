@@ -32,7 +32,7 @@ class LimitSettings:
     desks: int = _number(200, 1, 100_000)
     per_address: int = _number(1200, 1, 100_000)
     desks_per_account: int = _number(10, 1, 1000)
-    pending_per_address: int = _number(200, 1, 100_000)
+    pending_per_address: int = _number(1000, 1, 100_000)
     handshake_s: float = _number(5.0, 0.1, 60.0)
     first_message_s: float = _number(30.0, 0.1, 3600.0)
     silent_s: float = _number(300.0, 1.0, 86400.0)
