@@ -72,7 +72,7 @@ def test_who_has_not_said_ready_is_told_to(bridge):
             "GetMap",
             {"x": 1, "y": 2, "area": 1e-6},
             -32000,
-            "GetMap: window: width is 0.001 m, so it encloses",
+            "GetMap: window: width is 0.001 m, so",
         ),
         ("Ready", {"magic": 10**30}, -32602, "Ready: magic is 1000"),
         ("Fly", {}, -32601, "unknown operation 'Fly'; known are Ready, Stopped"),
