@@ -23,6 +23,7 @@ log = logging.getLogger(__name__)
 LARGEST_GROUP = 64
 """Pieces of work in one transaction: a commit waits for the disk, and they may as well wait together."""
 ATTEMPTS = 5
+WRONG_AT_ONCE_S = 1.0
 
 
 class Job(NamedTuple):
@@ -108,11 +109,14 @@ class Worker:
                 _tell(self._do(jobs))
 
     def _do(self, jobs: list[Job]) -> list[Outcome]:
+        began = time.monotonic()
         try:
             results = self._insist(jobs)
             return [(job, result, None) for job, result in zip(jobs, results, strict=True)]
         except StoreError as error:
-            if len(jobs) == 1 or not isinstance(error, DataRefusedError):
+            # One piece of work may be at fault; but not each of them is to wait for the database as long.
+            one_is_wrong = self._connection is not None and time.monotonic() - began < WRONG_AT_ONCE_S
+            if len(jobs) == 1 or not (one_is_wrong or isinstance(error, DataRefusedError)):
                 return [(job, None, error) for job in jobs]
         except BaseException as error:
             if len(jobs) == 1:
@@ -158,7 +162,9 @@ class Worker:
         connection = self._connected()
         try:
             if jobs[0].alone:
-                return [job.work(connection, *job.arguments) for job in jobs]
+                found = [job.work(connection, *job.arguments) for job in jobs]
+                self._rest()
+                return found
             transaction = self._dialect.begin(connection, max(job.mode for job in jobs))
             results = [job.work(connection, *job.arguments) for job in jobs]
         except BaseException:

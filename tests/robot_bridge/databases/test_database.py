@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import sqlite3
+import time
+from functools import partial
 
 import pytest
 from sqlalchemy import insert, select, text
@@ -100,6 +102,17 @@ async def test_work_that_waits_together_is_committed_together_and_fails_alone(da
     assert len(set(map(id, transactions))) < 10
 
 
+async def test_a_statement_that_is_wrong_fails_nobody_elses_work(database):
+    def wrong(connection):
+        return connection.execute(text("select 1 from nowhere")).first()
+
+    # What comes while the first is under way is done together.
+    work = [lambda _: time.sleep(0.3), partial(add, robot="r1"), wrong, partial(add, robot="r2")]
+    done = await asyncio.gather(*map(database.run, work), return_exceptions=True)
+    assert [isinstance(result, StoreError) for result in done] == [False, False, True, False]
+    assert await database.run(names) == ["r1", "r2"]
+
+
 async def test_what_is_committed_is_seen_by_others(database, url):
     await database.run(add, "r1")
     other = Database(url)
@@ -171,8 +184,6 @@ async def test_two_transactions_that_lock_each_other_out_are_both_done(url, kind
     def cross(connection, first, second):
         connection.execute(rr.update().where(rr.c.robot == first).values(op="Stopped"))
         loop.call_soon_threadsafe(met.set)
-        import time
-
         time.sleep(0.3)
         connection.execute(rr.update().where(rr.c.robot == second).values(op="Stopped"))
 
