@@ -12,6 +12,7 @@ import time
 import uuid
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
+from copy import copy
 from dataclasses import replace
 from typing import Any, Protocol
 
@@ -346,7 +347,8 @@ class Fleet:
             if last:
                 unsaved, self._unsaved = self._unsaved.union(robots), set()
             try:
-                known = [self.robots.get(name) for name in unsaved if name in self.robots]
+                # As they are now: by the time they are written they may be further on than what is stored.
+                known = [copy(self.robots.get(name)) for name in unsaved if name in self.robots]
                 await self._database.run(_save, known, fixes)
             except Exception:
                 self.recorder.give_back(fixes)

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import asyncio
+import json
+
 import pytest
 
 from robot_bridge.errors import StoreError
@@ -56,3 +59,16 @@ async def test_positions_that_are_dealt_with_again_after_a_kill_are_stored_thoug
     await plugged.link.poll()
     assert plugged.sql("select id from rr") == []
     assert set(places(plugged)) == {1.0, 2.0}
+
+
+async def test_a_pose_is_stored_as_it_was_when_its_track_was(plugged):
+    plugged.ask("r1", SendPos(1.0, 0.0, 0.0, 1.0, t=1.0))
+    await plugged.link.poll()
+    saving = asyncio.create_task(plugged.fleet.save())
+    await asyncio.sleep(0)
+    # The database's thread has had no time yet.
+    await plugged.fleet.receive("r1", "sql", SendPos(2.0, 0.0, 0.0, 1.0, t=2.0), None)
+    await saving
+    assert max(places(plugged)) == 1.0
+    ((pose,),) = plugged.sql("select pose from robots where name = 'r1'")
+    assert json.loads(pose)["x"] == 1.0
