@@ -25,11 +25,14 @@ class MariaDb(DatabaseServer):
     def _initialise(self) -> None:
         options = ["--no-defaults", f"--datadir={self.folder / 'data'}", "--skip-test-db"]
         options += ["--auth-root-authentication-method=normal", "--skip-name-resolve"]
-        self._require([*self._as_account(), self._program("mariadb-install-db"), *options])
+        # Each server removes what it finds of others in the folder for temporary tables.
+        install = [*self._as_account(), self._program("mariadb-install-db"), *options]
+        self._require(install, TMPDIR=str(self.folder))
 
     def _command(self) -> list[str | Path]:
         options = [
             f"--datadir={self.folder / 'data'}",
+            f"--tmpdir={self.folder}",
             f"--socket={self.folder / 'mariadb.sock'}",
             f"--pid-file={self.folder / 'mariadb.pid'}",
             f"--port={self.port}",
