@@ -93,12 +93,13 @@ class DeskSession:
 
     def _refused(self, call: jsonrpc.Call | jsonrpc.Reply | None, code: int, text: str) -> str:
         if isinstance(call, jsonrpc.Call):
-            self._note(call, text)
+            self._note(call, text, code)
         return jsonrpc.error(call.id if call else None, code, text)
 
-    def _note(self, call: jsonrpc.Call, refusal: str | None = None) -> None:
-        """Write down who asked for what to be changed, whether it was done or refused."""
-        if call.method not in DESK_REQUESTS or call.method in UNNOTED or call.method.startswith("get_"):
+    def _note(self, call: jsonrpc.Call, refusal: str | None = None, code: int | None = None) -> None:
+        """Write down who asked for what to be changed, done or refused, and what a role does not reach."""
+        harmless = call.method in UNNOTED or call.method.startswith("get_")
+        if call.method not in DESK_REQUESTS or (harmless and code != jsonrpc.FORBIDDEN):
             return
         asked = call.params if isinstance(call.params, dict) else {}
         names = (asked.get(name) for name in ("robot", "session", "observation", "command"))

@@ -22,6 +22,8 @@ log = logging.getLogger(__name__)
 
 CONTROL_FRAMES_PER_S = 20.0
 CONTROL_BURST = 100.0
+NEVER_REFUSED = "emergency_stop"
+"""Who has talked too much may stop the fleet all the same."""
 CLOSE_WITHIN = 0.5
 """Seconds that a client that is shown the door has for a close in good order."""
 
@@ -119,7 +121,8 @@ class Visitor(ServerConnection):
             if self._messages.take():
                 yield frame
             elif self._patience.take():
-                await self._refuse(frame)
+                if not await self._refuse(frame):
+                    yield frame
             else:
                 log.warning("%s from %s: too many messages; closed", self.who, self.address)
                 await self.expel(CloseCode.POLICY_VIOLATION, "too many messages a second")
@@ -140,14 +143,19 @@ class Visitor(ServerConnection):
             return "somebody"
         return f"{self.identity.kind.value} {self.identity.name or 'without a name'}"
 
-    async def _refuse(self, frame: str | bytes) -> None:
+    async def _refuse(self, frame: str | bytes) -> bool:
+        """Refuse a message; return false for one that is taken all the same."""
         try:
             message = jsonrpc.decode(frame)
         except jsonrpc.FrameError:
-            return
-        if isinstance(message, jsonrpc.Call) and message.id is not None:
+            return True
+        if isinstance(message, jsonrpc.Call):
+            if message.method == NEVER_REFUSED:
+                return False
             text = f"too many messages; wait {self._messages.wait():.2f} s and send fewer a second"
-            await self.send(jsonrpc.error(message.id, jsonrpc.TOO_MANY, text))
+            if message.id is not None:
+                await self.send(jsonrpc.error(message.id, jsonrpc.TOO_MANY, text))
+        return True
 
     def _check_silence(self) -> None:
         limits, robot = self._limits, self.identity is not None and self.identity.kind is TokenKind.ROBOT

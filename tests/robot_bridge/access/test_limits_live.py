@@ -80,6 +80,16 @@ def test_whoever_waits_as_told_is_answered_again(bridge):
     desk.ask("get_positions")
 
 
+def test_an_emergency_stop_is_taken_from_whoever_has_talked_too_much(bridge):
+    desk = bridge.desk()
+    with pytest.raises(RefusedError, match="too many messages"):
+        for _ in range(60):
+            desk.ask("get_positions")
+    assert desk.ask("emergency_stop", {"command": "stop-in-a-flood"})["in_force"]
+    time.sleep(0.5)
+    assert not desk.ask("clear_emergency_stop", {"reason": "tried"})["in_force"]
+
+
 @pytest.mark.parametrize(
     ("path", "fits", "too_large"), [("/desk", 19_000, 21_000), ("/robot", 100_000, 120_000)]
 )

@@ -113,6 +113,7 @@ def test_the_audit_log_tells_what_was_done_and_what_was_refused(bridge, desks):
     assert ("Operator", "clear_emergency_stop", False) in told
     assert ("Supervisor", "login", True) in told
     assert not {e["action"] for e in entries} & {"get_positions", "get_commands", "subscribe", "hello"}
+    assert ("Viewer", "get_audit", False) in told
     refused = next(e for e in entries if e["who"] == "Viewer" and e["action"] == "send")
     assert (refused["role"], refused["address"], refused["subject"]) == ("viewer", "127.0.0.1", "r1")
     assert "this takes operator" in refused["detail"]
