@@ -44,7 +44,7 @@ class Network:
         return connected(len(self.nodes), self.tail, self.head)
 
     def arcs(self) -> tuple[Ints, Ints, Ints]:
-        """Return what may be driven: edge, from node, to node of each direction that an edge has."""
+        """Return what may be driven: edge, from node, to node; first along the edges, then against them."""
         there = np.flatnonzero(self.edges.direction != BACKWARD)
         back = np.flatnonzero(self.edges.direction != FORWARD)
         return (

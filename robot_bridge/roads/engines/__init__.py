@@ -1,0 +1,1 @@
+"""Ways to find the cheapest way through a directed graph; all give the same answers."""

@@ -1,0 +1,93 @@
+"""The nearest point of a network's edges."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .box_pairs import boxes_of, cell_number, cell_size, cells_of
+from .centrelines import Floats, Ints, ranges
+from .network import Network
+from .points import foot_on
+
+
+@dataclass(frozen=True)
+class Foothold:
+    """A point of an edge: ``station`` metres along it, and ``away`` metres from the place that was asked."""
+
+    edge: int
+    station: float
+    away: float
+    x: float
+    y: float
+
+
+class NearestEdge:
+    """Finds the nearest edge through a grid of their segments."""
+
+    def __init__(self, network: Network) -> None:
+        edges = network.edges
+        at = ranges(edges.first[:-1], edges.counts() - 1)
+        self._owner = np.repeat(np.arange(len(edges)), edges.counts() - 1)
+        self._a, self._b = edges.xy[at], edges.xy[at + 1]
+        metres = np.hypot(*(self._b - self._a).T)
+        total = np.concatenate([[0.0], np.cumsum(metres)])
+        begin = np.searchsorted(self._owner, np.arange(len(edges)))
+        self._station = total[:-1] - total[begin][self._owner]
+        self._metres = metres
+        self._grid()
+
+    def _grid(self) -> None:
+        boxes = boxes_of(self._a, self._b, 0.0)
+        self._low = boxes[:, :2].min(axis=0) if len(boxes) else np.zeros(2)
+        self._high = boxes[:, 2:].max(axis=0) if len(boxes) else np.zeros(2)
+        self._cell = cell_size(boxes) if len(boxes) else 1.0
+        segment, cell = cells_of(boxes, self._low, self._cell)
+        order = np.argsort(cell, kind="stable")
+        self._segment, self._cells = segment[order], cell[order]
+
+    def nearest(
+        self, x: float, y: float, reach: float, allowed: NDArray[np.bool_] | None = None
+    ) -> Foothold | None:
+        """Return the nearest point of the ``allowed`` edges within ``reach`` metres of (x, y), or None."""
+        place = np.array([x, y])
+        radius = min(self._cell, reach)
+        while True:
+            found = self._within(place, radius, allowed)
+            if found is not None or radius >= reach:
+                return found
+            radius = min(radius * 4, reach)
+
+    def _within(self, place: Floats, radius: float, allowed: NDArray[np.bool_] | None) -> Foothold | None:
+        segments = self._near(place, radius)
+        if allowed is not None:
+            segments = segments[allowed[self._owner[segments]]]
+        if not len(segments):
+            return None
+        share, away = foot_on(self._a[segments], self._b[segments], place)
+        k = int(np.argmin(away))
+        if away[k] > radius:
+            return None
+        segment = int(segments[k])
+        foot = self._a[segment] + share[k] * (self._b[segment] - self._a[segment])
+        station = float(self._station[segment] + share[k] * self._metres[segment])
+        return Foothold(int(self._owner[segment]), station, float(away[k]), float(foot[0]), float(foot[1]))
+
+    def _near(self, place: Floats, radius: float) -> Ints:
+        """Return the segments in the cells that a square around ``place`` touches; some more than once."""
+        low = np.maximum(place - radius, self._low)
+        high = np.minimum(place + radius, self._high)
+        if (low > high).any():
+            return np.empty(0, np.int64)
+        columns, rows = (
+            np.arange(
+                int((low[k] - self._low[k]) // self._cell), int((high[k] - self._low[k]) // self._cell) + 1
+            )
+            for k in (0, 1)
+        )
+        cells = cell_number(columns[None, :], rows[:, None]).ravel()
+        begin = np.searchsorted(self._cells, cells, side="left")
+        end = np.searchsorted(self._cells, cells, side="right")
+        return self._segment[ranges(begin, end - begin)]

@@ -1,0 +1,234 @@
+"""Routes: the shortest or fastest way between two places near a network."""
+
+from __future__ import annotations
+
+import math
+from collections import OrderedDict
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .centrelines import BACKWARD, FORWARD, Floats, Ints
+from .engines.choice import AUTOMATIC, engines_for
+from .engines.engine import Engine, Graph
+from .errors import NoRouteError, OffNetworkError
+from .nearest import Foothold, NearestEdge
+from .network import Network
+from .noding import SAME
+from .route import Route
+
+Place = tuple[float, float]
+"""x, y in metres, site frame."""
+
+REACH = 20.0
+"""Metres that a place may be away from the network."""
+
+Stretches = tuple[Ints, Floats, Floats]
+"""Edges with the stations between which each is driven."""
+
+Ends = dict[int, tuple[float, float]]
+"""Nodes with what the stretch between them and a place costs, and their station on the edge of the place."""
+
+_KEPT = 8
+"""How many sets of restrictions are kept ready."""
+
+
+@dataclass(frozen=True)
+class Restrictions:
+    """What a route may use: roads of these surfaces (None: any) that are at least so many metres wide.
+
+    ``fastest`` asks for the least seconds instead of the least metres.
+    """
+
+    fastest: bool = False
+    surfaces: frozenset[str] | None = None
+    least_width: float = 0.0
+
+
+class Router:
+    """Finds routes on one network. Closed edges are closed for every query from then on.
+
+    :raises MissingEngineError: when the engine that is asked for by name is not there.
+    """
+
+    def __init__(self, network: Network, engine: str = AUTOMATIC) -> None:
+        self.network = network
+        self._edge, tail, head = network.arcs()
+        self._graph = Graph(network.nodes, tail, head)
+        self._engines = engines_for(self._graph, engine)
+        self._nearest = NearestEdge(network)
+        self._closed = network.edges.closed.copy()
+        self._arcs_of_edge = _arcs_of_edges(network)
+        self._ready: OrderedDict[Restrictions, tuple[Engine, NDArray[np.bool_]]] = OrderedDict()
+
+    def close(self, edges: Sequence[int]) -> None:
+        """Close ``edges`` for every route from now on."""
+        self._set_closed(edges, True)
+
+    def open(self, edges: Sequence[int]) -> None:
+        """Open ``edges`` again."""
+        self._set_closed(edges, False)
+
+    def route(
+        self, start: Place, goal: Place, wanted: Restrictions | None = None, reach: float = REACH
+    ) -> Route:
+        """Return the best route from the edge nearest to ``start`` to the edge nearest to ``goal``.
+
+        :raises OffNetworkError: when no road that may be used is within ``reach`` metres of one of them;
+            NoRouteError when no way leads from one to the other.
+        """
+        wanted = wanted or Restrictions()
+        engine, fit = self._engine(wanted)
+        allowed = fit & ~self._closed
+        begin = self._foothold("start", start, reach, allowed)
+        end = self._foothold("goal", goal, reach, allowed)
+        stretches = self._stretches(begin, end, engine, wanted)
+        if stretches is None:
+            raise NoRouteError(
+                f"No way leads from {_told(start)} to {_told(goal)} on the roads that may be used: "
+                "check closed roads, one-way roads, surfaces and widths, or repair the network."
+            )
+        return Route(self.network, *stretches, begin.away, end.away, engine.name)
+
+    def _foothold(self, what: str, place: Place, reach: float, allowed: NDArray[np.bool_]) -> Foothold:
+        if not all(math.isfinite(value) for value in place):
+            raise OffNetworkError(f"The {what} {_told(place)} is no place: give two numbers in metres.")
+        found = self._nearest.nearest(*place, reach, allowed)
+        if found is None:
+            raise OffNetworkError(
+                f"The {what} {_told(place)} is more than {reach:g} m from every road that may be used: "
+                "choose a place nearer to a road, or allow a greater distance."
+            )
+        return found
+
+    def _costs(self, wanted: Restrictions) -> Floats:
+        """Return what each edge costs, whatever is forbidden."""
+        lengths = self.network.lengths
+        return lengths / self.network.edges.speed if wanted.fastest else lengths
+
+    def _engine(self, wanted: Restrictions) -> tuple[Engine, NDArray[np.bool_]]:
+        """Return the engine for ``wanted`` and which edges it may use as far as they are open."""
+        if wanted not in self._ready:
+            fit = self.network.edges.width >= wanted.least_width
+            if wanted.surfaces is not None:
+                fit &= np.isin(self.network.edges.surface.astype(str), sorted(wanted.surfaces))
+            costs = np.where(fit & ~self._closed, self._costs(wanted), np.inf)
+            self._ready[wanted] = self._engines(costs[self._edge]), fit
+            while len(self._ready) > _KEPT:
+                self._ready.popitem(last=False)
+        self._ready.move_to_end(wanted)
+        return self._ready[wanted]
+
+    def _set_closed(self, edges: Sequence[int], closed: bool) -> None:
+        changed = np.array(sorted(set(edges)), dtype=np.int64)
+        self._closed[changed] = closed
+        arcs = self._arcs_of_edge[changed].ravel()
+        arcs = arcs[arcs >= 0]
+        for wanted, (engine, fit) in self._ready.items():
+            free = fit & ~self._closed
+            edge = self._edge[arcs]
+            engine.set_costs(arcs, np.where(free[edge], self._costs(wanted)[edge], np.inf))
+
+    def _stretches(
+        self, begin: Foothold, end: Foothold, engine: Engine, wanted: Restrictions
+    ) -> Stretches | None:
+        starts = self._ends(begin, wanted, leaving=True)
+        goals = self._ends(end, wanted, leaving=False)
+        direct = self._direct(begin, end)
+        way = self._way(starts, goals, engine)
+        if way is None:
+            return direct
+        first, last = self._first_and_last(way, starts, goals)
+        edge, low, high = self._whole(way)
+        made = (
+            np.concatenate([[begin.edge], edge, [end.edge]]),
+            np.concatenate([[begin.station], low, [goals[last][1]]]),
+            np.concatenate([[starts[first][1]], high, [end.station]]),
+        )
+        if direct is not None and self._cost(direct, wanted) <= self._cost(made, wanted):
+            return direct
+        return _without_nothing(*made)
+
+    def _way(self, starts: Ends, goals: Ends, engine: Engine) -> list[int] | None:
+        # To look for what cannot be there takes an engine longer than anything else.
+        parts = self.network.parts
+        if {int(parts[node]) for node in starts}.isdisjoint(int(parts[node]) for node in goals):
+            return None
+        return engine.way(_costs_only(starts), _costs_only(goals))
+
+    def _ends(self, foothold: Foothold, wanted: Restrictions, *, leaving: bool) -> Ends:
+        """Return the ends of its edge that lead on from ``foothold``, or from which it is reached."""
+        edge, network = foothold.edge, self.network
+        length = float(network.lengths[edge])
+        direction = int(network.edges.direction[edge])
+        reached: Ends = {}
+        for node, station, against in (
+            (int(network.tail[edge]), 0.0, FORWARD if leaving else BACKWARD),
+            (int(network.head[edge]), length, BACKWARD if leaving else FORWARD),
+        ):
+            metres = abs(foothold.station - station)
+            cost = metres * self._pace(edge, wanted)
+            # Who stands on a node stands on all its roads.
+            allowed = direction != against or metres <= SAME
+            if allowed and (node not in reached or cost < reached[node][0]):
+                reached[node] = cost, station
+        return reached
+
+    def _pace(self, edge: int, wanted: Restrictions) -> float:
+        """Return what a metre of ``edge`` costs."""
+        return 1.0 / float(self.network.edges.speed[edge]) if wanted.fastest else 1.0
+
+    def _direct(self, begin: Foothold, end: Foothold) -> Stretches | None:
+        """Return the way along one edge, if both are on it and its direction allows."""
+        if begin.edge != end.edge:
+            return None
+        against = BACKWARD if end.station > begin.station + SAME else FORWARD
+        near = abs(end.station - begin.station) <= SAME
+        if not near and int(self.network.edges.direction[begin.edge]) == against:
+            return None
+        return np.array([begin.edge]), np.array([begin.station]), np.array([end.station])
+
+    def _first_and_last(self, way: list[int], starts: Ends, goals: Ends) -> tuple[int, int]:
+        if way:
+            return int(self._graph.tail[way[0]]), int(self._graph.head[way[-1]])
+        node = min(starts.keys() & goals.keys(), key=lambda one: starts[one][0] + goals[one][0])
+        return node, node
+
+    def _whole(self, way: list[int]) -> Stretches:
+        arcs = np.array(way, dtype=np.int64)
+        edge = self._edge[arcs]
+        length = self.network.lengths[edge]
+        along = self._arcs_of_edge[edge, 0] == arcs
+        return edge, np.where(along, 0.0, length), np.where(along, length, 0.0)
+
+    def _cost(self, stretches: Stretches, wanted: Restrictions) -> float:
+        edge, begin, end = stretches
+        metres = np.abs(end - begin)
+        return float((metres / self.network.edges.speed[edge] if wanted.fastest else metres).sum())
+
+
+def _without_nothing(edge: Ints, begin: Floats, end: Floats) -> Stretches:
+    """Return the stretches that are longer than nothing; one if none is."""
+    some = np.flatnonzero(begin != end)
+    some = some if len(some) else np.array([0])
+    return edge[some], begin[some], end[some]
+
+
+def _costs_only(ends: Ends) -> list[tuple[int, float]]:
+    return [(node, cost) for node, (cost, _) in ends.items()]
+
+
+def _arcs_of_edges(network: Network) -> Ints:
+    """Return the arc along and the arc against each edge, (n, 2); -1 where there is none."""
+    edge, _, _ = network.arcs()
+    along = int((network.edges.direction != BACKWARD).sum())
+    arcs = np.full((len(network), 2), -1, np.int64)
+    arcs[edge[:along], 0] = np.arange(along)
+    arcs[edge[along:], 1] = np.arange(along, len(edge))
+    return arcs
+
+
+def _told(place: Place) -> str:
+    return f"({place[0]:.2f}, {place[1]:.2f})"
