@@ -245,9 +245,14 @@ class CommandBook:
         if not ack.ok:
             return [command.step(CommandState.FAILED, now, robot, ack.reason)]
         if may_become(command.report.state, CommandState.ACKNOWLEDGED):
-            taken = command.step(CommandState.ACKNOWLEDGED, now, robot).judged(self.tolerance)
+            steps = []
+            if command.report.state is CommandState.QUEUED:
+                # What a robot answers to has reached it, even if that was not seen yet.
+                command = command.step(CommandState.DELIVERED, now, GATEWAY)
+                steps.append(command)
+            steps.append(command.step(CommandState.ACKNOWLEDGED, now, robot).judged(self.tolerance))
             mine = self._open.of(robot)
-            return [taken, *ended_by(command, mine, now, "the robot acknowledged the Abort")]
+            return [*steps, *ended_by(command, mine, now, "the robot acknowledged the Abort")]
         if command.arrival is None:
             arrival = judge(command.message, self.tolerance)
             return [command.noted(now, robot, "acknowledged again", arrival)]

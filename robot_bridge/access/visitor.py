@@ -6,9 +6,11 @@ import asyncio
 import contextlib
 import logging
 import socket
-from collections.abc import AsyncIterator
+import time
+from collections.abc import AsyncIterator, Awaitable
 from dataclasses import dataclass
-from typing import Any, Protocol
+from functools import partial
+from typing import Any, Protocol, cast
 
 from websockets.asyncio.server import ServerConnection
 from websockets.frames import CloseCode, Frame, Opcode
@@ -67,6 +69,8 @@ class Visitor(ServerConnection):
         self._messages = self._patience = Bucket(1.0, 1.0)
         self.identity: Identity | None = None
         self.address = ""
+        self.round_trip: float | None = None
+        """Seconds that the last ping took there and back."""
 
     # --- the connection's life ------------------------------------------------------------------------
 
@@ -127,6 +131,17 @@ class Visitor(ServerConnection):
                 log.warning("%s from %s: too many messages; closed", self.who, self.address)
                 await self.expel(CloseCode.POLICY_VIOLATION, "too many messages a second")
                 return
+
+    async def ping(self, data: Any = None) -> Awaitable[float]:
+        """Send a ping and take its time, since some event loops count in whole milliseconds."""
+        sent = time.perf_counter()
+        pong = cast("asyncio.Future[float]", await super().ping(data))
+        pong.add_done_callback(partial(self._answered, sent))
+        return pong
+
+    def _answered(self, sent: float, pong: asyncio.Future[float]) -> None:
+        if not pong.cancelled() and pong.exception() is None:
+            self.round_trip = time.perf_counter() - sent
 
     def process_event(self, event: Any) -> None:
         """Take in one frame; pings and empty pieces of messages are counted, since nobody waits for them."""

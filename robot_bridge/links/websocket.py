@@ -13,10 +13,10 @@ import secrets
 from collections import Counter
 from collections.abc import Callable
 
-from websockets.asyncio.server import ServerConnection
 from websockets.exceptions import ConnectionClosed, ConnectionClosedOK
 
 from .. import jsonrpc
+from ..access.visitor import Visitor
 from ..errors import BridgeError, NotReadyError, StoreError
 from ..exchange import Outcome
 from ..fleet import Fleet
@@ -43,7 +43,7 @@ class WebSocketLink:
         self._holders: dict[str, RobotSession] = {}
         fleet.emergency.reach(self._stop_all)
 
-    async def serve(self, connection: ServerConnection, robot: str | None) -> None:
+    async def serve(self, connection: Visitor, robot: str | None) -> None:
         """Serve one connection to its end; without a name the robot is given one."""
         name = robot or self._free_name()
         session = RobotSession(self._fleet, connection, name, self._admit)
@@ -89,7 +89,7 @@ class RobotSession:
     def __init__(
         self,
         fleet: Fleet,
-        connection: ServerConnection,
+        connection: Visitor,
         robot: str,
         admit: Callable[[RobotSession], None],
     ) -> None:
@@ -113,8 +113,8 @@ class RobotSession:
 
     def measure(self) -> None:
         """Note how long the last ping took there and back."""
-        if self._admitted and self._connection.latency:
-            self._fleet.robots.measured(self.robot, self._connection.latency)
+        if self._admitted and self._connection.round_trip is not None:
+            self._fleet.robots.measured(self.robot, self._connection.round_trip)
 
     async def answers(self) -> bool:
         """Tell whether the robot is there: it answers a ping within a second."""
