@@ -15,7 +15,7 @@ from .messages import Stopping, to_json
 REASON = "the gateway ends; connect again after a while"
 FIRST_WORDS = 0.1
 """seconds for operators' sessions to send what they are told last."""
-CLOSED_WITHIN = 1.0
+CLOSED_WITHIN = 0.8
 """seconds for the closing handshakes, all at once; who has not closed by then is cut off."""
 
 

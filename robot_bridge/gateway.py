@@ -47,8 +47,8 @@ AGE_INTERVAL = 0.25
 SAVE_INTERVAL = 1.0
 STUCK_INTERVAL = 5.0
 PRUNE_INTERVAL = 60.0
-CLOSE_WITHIN = 1.0
-"""seconds for each of the last words to the database, so that a gateway ends within five in all."""
+SAVE_WITHIN, CLOSE_WITHIN = 2.2, 0.5
+"""seconds for the last words to the database, so that a gateway ends within five in all."""
 
 
 @dataclass(frozen=True)
@@ -202,7 +202,7 @@ async def _until_stopped(watch: Coroutine[None, None, None], stop: asyncio.Event
 async def _save_last(fleet: Fleet, gate: Gate) -> None:
     """Store what waits; a database that does not answer must not keep the gateway from ending."""
     try:
-        async with asyncio.timeout(CLOSE_WITHIN):
+        async with asyncio.timeout(SAVE_WITHIN):
             await fleet.finish_trajectories()
             await gate.close()
     except (StoreError, TimeoutError) as error:

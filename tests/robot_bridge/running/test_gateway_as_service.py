@@ -332,8 +332,8 @@ def test_a_database_that_does_not_answer_does_not_keep_it_from_ending(bridge):
     time.sleep(1.5)
     began = time.monotonic()
     bridge.gateway.send_signal(signal.SIGTERM)
-    assert bridge.gateway.wait(6) in (0, 1)
-    assert time.monotonic() - began < 5.5
+    assert bridge.gateway.wait(10) in (0, 1)
+    assert time.monotonic() - began < 6  # 5 and what a busy computer adds
     lock.close()
 
 
