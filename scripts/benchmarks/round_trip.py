@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import itertools
 import json
 import statistics
 import subprocess
@@ -33,9 +34,11 @@ from .clock import table
 from .page import Part
 from .sql_robots import Plan, Seen
 
+Databases = Iterator[tuple[str, str]]
+NUMBERS = itertools.count(1)
 SITE = ROOT / "resources" / "sample_site"
 COUNTS = (1, 20, 100)
-SECONDS = 10.0
+SECONDS = 8.0
 PASSWORD = "robot-of-the-benchmark"
 POLL_S = {"sqlite": 0.002, "postgresql": 0.0, "mariadb": 0.004}
 NAMES = {"sqlite": "SQLite", "postgresql": "PostgreSQL", "mariadb": "MariaDB"}
@@ -74,9 +77,10 @@ def measure(_data: Path) -> Part:
     """Measure each kind of database with few and many robots."""
     paced, closed = [], []
     for kind in NAMES:
-        for robots in COUNTS:
-            paced.append(measured(kind, robots, rate=1.0))
-            closed.append(measured(kind, robots, rate=0.0))
+        with _databases(kind) as databases:
+            for robots in COUNTS:
+                paced.append(measured(databases, kind, robots, rate=1.0))
+                closed.append(measured(databases, kind, robots, rate=0.0))
     text = TEXT.format(
         sqlite=POLL_S["sqlite"] * 1e3,
         mariadb=POLL_S["mariadb"] * 1e3,
@@ -90,29 +94,31 @@ def measure(_data: Path) -> Part:
     return Part("Round trips over SQL", text, failed)
 
 
-def measured(kind: str, robots: int, rate: float, seconds: float = SECONDS) -> Run:
+def measured(databases: Databases, kind: str, robots: int, rate: float) -> Run:
     """Measure one case on a new database."""
-    with tempfile.TemporaryDirectory() as folder, _database(kind, Path(folder)) as (url, admin_url):
-        run_once(url, revisions.create)
-        names = {f"r{number}": url for number in range(robots)}
-        if kind != "sqlite":
-            names = run_once(admin_url, _accounts, list(names), make_url(url))
-        plan = Plan(names, seconds, rate, POLL_S[kind])
-        with Processes(Path(folder) / "logs") as processes:
-            seen, cpu = _with_gateway(processes, url, plan)
+    url, admin_url = next(databases)
+    run_once(url, revisions.create)
+    # Accounts belong to the server: each case has names of its own.
+    names = {f"robot{next(NUMBERS)}": url for _ in range(robots)}
+    if kind != "sqlite":
+        names = run_once(admin_url, _accounts, list(names), make_url(url))
+    plan = Plan(names, SECONDS, rate, POLL_S[kind])
+    with tempfile.TemporaryDirectory() as folder, Processes(Path(folder)) as processes:
+        seen, cpu = _with_gateway(processes, url, plan)
     return Run(kind, robots, seen, cpu)
 
 
 @contextmanager
-def _database(kind: str, folder: Path) -> Iterator[tuple[str, str]]:
+def _databases(kind: str) -> Iterator[Databases]:
+    """Yield new databases, each with its owner's and its administrator's URL."""
     if kind == "sqlite":
-        url = f"sqlite:///{folder}/fleet.db"
-        yield url, url
+        with tempfile.TemporaryDirectory() as folder:
+            urls = (f"sqlite:///{folder}/fleet-{number}.db" for number in itertools.count(1))
+            yield ((url, url) for url in urls)
         return
     server: DatabaseServer = {"postgresql": PostgreSql, "mariadb": MariaDb}[kind](durable=True)
     with server:
-        url = server.new_database()
-        yield url, server.admin_url(url)
+        yield ((url, server.admin_url(url)) for url in iter(server.new_database, None))
 
 
 def _accounts(connection: Connection, names: list[str], url: Any) -> dict[str, str]:
