@@ -1,0 +1,148 @@
+"""The part on faults: what is left of commands, observations and positions when something dies."""
+
+from __future__ import annotations
+
+import random
+import sys
+import tempfile
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+from stage.errors import StageError
+from stage.faults import breaking
+from stage.faults.audit import Findings
+from stage.faults.disk import Disk
+from stage.faults.runs import ROBOTS, SERVERS, broken_on_server, broken_on_small_disk, broken_on_sqlite
+from stage.faults.yard import GATEWAY_KILLED, ROBOTS_KILLED, Yard
+
+from .clock import table
+from .page import Part
+
+GATEWAY_KILLS, SERVER_KILLS, ROBOT_KILLS = 50, 10, 10
+CUTS, CUT_S = 3, 10.0
+LONGEST_SEED = 10**6
+NAMES = {"sqlite": "SQLite", "postgresql": "PostgreSQL", "mariadb": "MariaDB"}
+
+TEXT = """\
+A real gateway on a real database that waits for the disk at every commit; {robots} robots, half on WebSocket,
+half on SQL with the rights of their accounts, which write down every message that they act on with its id;
+four desks that send them numbered commands, one after the other, every eighth followed by an Abort within
+0.15 s, and ask again under the same id where they get no answer. Everything dies by SIGKILL, at random
+moments (seed {seed}). What was killed is started again, and nobody does anything else. Then the database is
+held against what the desks were told and the robots wrote down.
+
+{commands}
+
+Told: commands that an operator was told are queued. Each of them was delivered, acted on once (a robot that
+had forgotten it when it was restarted is told again, and does it again), and has ended, in an order of steps
+that can be; those that were aborted before the robot read them were not acted on. Back after: seconds from
+the fault, its own length included, to the next command that was reached; median and longest.
+
+{kept}
+
+Accepted: the robot was told so; each is stored once, as it was told. Lost young: positions that a robot told
+within two seconds before the gateway was killed. None that was older is lost. Stored twice: positions of
+which a gateway that died did not know that they were stored.
+
+Wrong in all of this: {wrong}.
+"""
+
+
+class Run(NamedTuple):
+    """One kind of fault on one kind of database."""
+
+    kind: str
+    fault: str
+    findings: Findings
+
+
+def measure(_data: Path) -> Part:
+    """Break everything on each kind of database."""
+    seed = random.randrange(LONGEST_SEED)
+    print(f"seed {seed}", file=sys.stderr)
+    runs = list(_runs(seed))
+    wrong = [f"{run.kind}, {run.fault}: {text}" for run in runs for text in run.findings.wrong]
+    text = TEXT.format(
+        robots=ROBOTS, seed=seed, commands=_commands(runs), kept=_kept(runs), wrong=len(wrong) or "nothing"
+    )
+    return Part("Faults", "\n".join([text, *(f"- {sentence}" for sentence in wrong)]), bool(wrong))
+
+
+def _runs(seed: int) -> Iterator[Run]:
+    for kind in NAMES:
+        for fault, break_it in _faults(kind).items():
+            with tempfile.TemporaryDirectory(prefix="fleet-faults-") as folder:
+                findings = _broken(kind, Path(folder), seed, fault, break_it)
+            print(f"--- {kind}, {fault}\n{findings.told()}", file=sys.stderr, flush=True)
+            yield Run(kind, fault, findings)
+
+
+def _faults(kind: str) -> dict[str, Callable[..., None]]:
+    faults: dict[str, Callable[..., None]] = {
+        GATEWAY_KILLED: lambda yard: breaking.kill_gateway(yard, GATEWAY_KILLS),
+        ROBOTS_KILLED: lambda yard: breaking.kill_robots(yard, ROBOT_KILLS),
+    }
+    if kind not in SERVERS:
+        return {**faults, breaking.DISK_FULL: _fill_disk}
+    return {
+        **faults,
+        breaking.SERVER_KILLED: lambda yard: breaking.kill_server(yard, SERVER_KILLS),
+        breaking.STALLED: lambda yard: _cut(breaking.stall_network, yard),
+        breaking.REFUSED: lambda yard: _cut(breaking.reset_network, yard),
+    }
+
+
+def _fill_disk(yard: Yard, disk: Disk) -> None:
+    for _ in range(CUTS):
+        breaking.fill_disk(yard, disk, CUT_S)
+
+
+def _cut(cut: Callable[[Yard, float], None], yard: Yard) -> None:
+    for _ in range(CUTS):
+        cut(yard, CUT_S)
+
+
+def _broken(kind: str, folder: Path, seed: int, fault: str, break_it: Callable[..., None]) -> Findings:
+    try:
+        if kind in SERVERS:
+            return broken_on_server(kind, folder, seed, break_it)
+        if fault == breaking.DISK_FULL:
+            return broken_on_small_disk(folder, seed, break_it)
+        return broken_on_sqlite(folder, seed, break_it)
+    except StageError as error:
+        return Findings(wrong=[str(error)])
+
+
+def _commands(runs: list[Run]) -> str:
+    head = ["database", "fault", "times", "told", "acted on", "again", "reached", "aborted", "asked again"]
+    counted = [
+        "commands told queued",
+        "acted on",
+        "acted on again by a robot that had forgotten it",
+        "... reached",
+        "... aborted",
+        "asked again for want of an answer",
+        "refused with an error",
+    ]
+    return table(
+        [*head, "refused", "back after, s"], [[*_row(run, counted), run.findings.back] for run in runs]
+    )
+
+
+def _kept(runs: list[Run]) -> str:
+    head = ["database", "fault", "times", "objects accepted", "images accepted", "positions told", "stored"]
+    counted = [
+        "objects accepted",
+        "images accepted",
+        "positions told",
+        "... stored",
+        "... lost, told at most 2 s before a gateway was killed",
+        "... stored twice",
+    ]
+    return table([*head, "lost young", "stored twice"], [_row(run, counted) for run in runs])
+
+
+def _row(run: Run, counted: list[str]) -> list[str]:
+    counts = run.findings.counts
+    return [NAMES[run.kind], run.fault, str(counts[run.fault]), *(str(counts[name]) for name in counted)]

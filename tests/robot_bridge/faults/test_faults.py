@@ -1,0 +1,73 @@
+"""Real processes and databases that die at random moments: nothing is lost or done twice, all by itself.
+
+`make bench PARTS=faults` does the same many times over.
+"""
+
+from __future__ import annotations
+
+import random
+
+import pytest
+from stage.errors import StageError
+from stage.faults import breaking
+from stage.faults.runs import broken_on_server, broken_on_small_disk
+from stage.faults.yard import GATEWAY_KILLED, ROBOTS_KILLED
+
+CUT_S = 3.0
+
+
+@pytest.fixture
+def seed():
+    """What is random follows from it; pytest shows it when a test fails."""
+    seed = random.randrange(10**6)
+    print(f"seed {seed}")
+    return seed
+
+
+def kept_all(findings, reached, **faults):
+    """Tell that these faults were there, that enough went on beside them, and that nothing is wrong."""
+    print(findings.told())
+    assert findings.wrong == []
+    counts = findings.counts
+    assert {what: counts[what] for what in faults} == faults
+    assert counts["... reached"] >= reached
+    assert counts["acted on"] >= reached
+    assert counts["objects accepted"] >= 20
+    assert counts["images accepted"] >= 5
+    assert counts["... stored"] >= 100
+
+
+def test_on_sqlite_a_gateway_and_robots_are_killed_and_the_disk_is_full(tmp_path, seed):
+    def break_it(yard, disk):
+        for kills in (3, 2):
+            breaking.kill_robots(yard, 1, rest=0.0)
+            breaking.kill_gateway(yard, kills, longest=1.2)
+        breaking.fill_disk(yard, disk, CUT_S)
+
+    try:
+        findings = broken_on_small_disk(tmp_path, seed, break_it)
+    except StageError as error:
+        if "the right to mount" not in str(error):
+            raise
+        pytest.skip(str(error))
+    kept_all(findings, 100, **{GATEWAY_KILLED: 5, ROBOTS_KILLED: 2, breaking.DISK_FULL: 1})
+
+
+@pytest.mark.parametrize(
+    ("kind", "cut"),
+    [("postgresql", breaking.stall_network), ("mariadb", breaking.reset_network)],
+    ids=["postgresql-stalled", "mariadb-reset"],
+)
+def test_a_server_is_killed_and_the_network_to_it_is_cut(kind, cut, tmp_path, seed):
+    def break_it(yard):
+        breaking.kill_server(yard, 2, longest=2.0)
+        cut(yard, CUT_S)
+
+    try:
+        findings = broken_on_server(kind, tmp_path, seed, break_it)
+    except StageError as error:
+        if "not on this machine" not in str(error):
+            raise
+        pytest.skip(str(error))
+    what = breaking.STALLED if cut is breaking.stall_network else breaking.REFUSED
+    kept_all(findings, 50, **{breaking.SERVER_KILLED: 2, what: 1})
