@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import itertools
 import json
+import os
 import statistics
 import subprocess
 import sys
@@ -49,7 +50,8 @@ answer. A real gateway with everything running on the sample site, with one oper
 a thread and a connection each with the rights of a robot's account, run in one other process on the same
 machine, as does the database server, which waits for the disk at every commit. PostgreSQL tells both sides
 that there is something new (NOTIFY). On SQLite the robots look after {sqlite:g} ms, on MariaDB after
-{mariadb:g} ms, then less and less often, and the gateway every 1 ms to 20 ms.
+{mariadb:g} ms, then less and less often, and the gateway every 1 ms to 20 ms. Load of the machine when it
+began, by what else ran: {load:.1f}.
 
 ### Once a second
 
@@ -75,7 +77,7 @@ class Run:
 
 def measure(_data: Path) -> Part:
     """Measure each kind of database with few and many robots."""
-    paced, closed = [], []
+    paced, closed, load = [], [], os.getloadavg()[0]
     for kind in NAMES:
         with _databases(kind) as databases:
             for robots in COUNTS:
@@ -84,6 +86,7 @@ def measure(_data: Path) -> Part:
     text = TEXT.format(
         sqlite=POLL_S["sqlite"] * 1e3,
         mariadb=POLL_S["mariadb"] * 1e3,
+        load=load,
         paced=_table(paced),
         closed=_table(closed),
     )
