@@ -7,10 +7,13 @@ from pathlib import Path
 from qgis.core import QgsProcessingProvider
 from qgis.PyQt.QtGui import QIcon
 
+from .build_road_network import BuildRoadNetwork
+from .check_road_network import CheckRoadNetwork
 from .check_robot_map import CheckRobotMap
 from .export_navigation_map import ExportNavigationMap
 from .export_robot_map import ExportRobotMap
 from .export_robot_map_tiles import ExportRobotMapTiles
+from .find_route import FindRoute
 from .load_robot_map import LoadRobotMap
 from .publish_site import PublishSite
 
@@ -36,3 +39,6 @@ class FleetProvider(QgsProcessingProvider):
         self.addAlgorithm(ExportRobotMapTiles())
         self.addAlgorithm(LoadRobotMap())
         self.addAlgorithm(CheckRobotMap())
+        self.addAlgorithm(BuildRoadNetwork())
+        self.addAlgorithm(CheckRoadNetwork())
+        self.addAlgorithm(FindRoute())

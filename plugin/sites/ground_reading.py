@@ -58,7 +58,7 @@ def read_centrelines(
             metres = layer.rules.metres("width", width, notes)
             if metres is None:
                 unknown.append(feature.id())
-            lines = _lines(geometry, notes)
+            lines = lines_of(geometry, notes)
             label = layer.label(feature, notes)
             reading.items += [
                 Centreline(layer.placing.to_site(line), metres or default_width, label) for line in lines
@@ -151,7 +151,8 @@ class _GroundLayer:
         reading.warnings += [f"Layer {self.source.name}, feature {feature.id()}: {note}" for note in notes]
 
 
-def _lines(geometry: QgsGeometry, notes: list[str]) -> list[np.ndarray]:
+def lines_of(geometry: QgsGeometry, notes: list[str]) -> list[np.ndarray]:
+    """Return the lines of ``geometry`` that have a length, (n, 2) each; curves as chords."""
     if geometry.constGet().hasCurvedSegments():
         maximum = QgsAbstractGeometry.SegmentationToleranceType.MaximumDifference
         geometry = QgsGeometry(geometry.constGet().segmentize(SAGITTA_M, maximum))

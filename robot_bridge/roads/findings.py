@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
 
@@ -29,13 +30,26 @@ REPAIRED = (Kind.GAP, Kind.OVERSHOOT, Kind.DUPLICATE)
 
 @dataclass(frozen=True)
 class Finding:
-    """One finding: the place (x, y) in metres, the road it is about (an index of the input), and a text."""
+    """One finding: the place (x, y) in metres and the road it is about, an index of the input.
+
+    ``other`` is the other road where there is one; ``pattern`` says what is odd, with ``{other}`` for it.
+    """
 
     kind: Kind
     x: float
     y: float
     road: int
-    text: str
+    pattern: str
+    other: int = -1
+
+    @property
+    def text(self) -> str:
+        """What is odd, with the other road as a number."""
+        return self.pattern.format(other=self.other)
+
+    def told(self, names: Sequence[object]) -> str:
+        """Return what is odd, with ``names`` for the roads."""
+        return self.pattern.format(other=names[self.other] if self.other >= 0 else "")
 
 
 def find(network: Network, tolerance: float) -> list[Finding]:
@@ -71,8 +85,8 @@ def _overshoot(network: Network, edge: int) -> Finding:
 
 def _gap(network: Network, gap: Gap) -> Finding:
     x, y = network.nodes[gap.node]
-    text = f"The road ends {gap.metres:.3f} m short of road {gap.other}."
-    return Finding(Kind.GAP, float(x), float(y), gap.road, text)
+    text = f"The road ends {gap.metres:.3f} m short of road {{other}}."
+    return Finding(Kind.GAP, float(x), float(y), gap.road, text, gap.other)
 
 
 def _dead_ends(network: Network, breaks: Breaks) -> list[Finding]:

@@ -58,17 +58,18 @@ class Route:
     @cached_property
     def points(self) -> Floats:
         """The line of the route, (m, 2)."""
-        lines = self._lines
+        lines = self.lines
         return np.concatenate([lines[0], *(line[1:] for line in lines[1:])])
 
     @cached_property
     def widths(self) -> Floats:
         """Metres of road along each of the m - 1 pieces of :attr:`points`."""
         widths = self.network.edges.width[self.edges]
-        return np.repeat(widths, [len(line) - 1 for line in self._lines])
+        return np.repeat(widths, [len(line) - 1 for line in self.lines])
 
     @cached_property
-    def _lines(self) -> list[Floats]:
+    def lines(self) -> list[Floats]:
+        """The line of each stretch."""
         line = self.network.edges.line
         spans = zip(self.edges.tolist(), self.begin.tolist(), self.end.tolist(), strict=True)
         return [stretch(line(edge), begin, end) for edge, begin, end in spans]

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import math
 from collections import OrderedDict
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .centrelines import BACKWARD, FORWARD, Floats, Ints
-from .engines.choice import AUTOMATIC, engines_for
+from .engines.choice import AUTOMATIC, Engines, engines_for
 from .engines.engine import Engine, Graph
 from .errors import NoRouteError, OffNetworkError
 from .nearest import Foothold, NearestEdge
@@ -50,14 +50,16 @@ class Restrictions:
 class Router:
     """Finds routes on one network. Closed edges are closed for every query from then on.
 
+    ``engine`` is the name of one, or makes one on a graph.
+
     :raises MissingEngineError: when the engine that is asked for by name is not there.
     """
 
-    def __init__(self, network: Network, engine: str = AUTOMATIC) -> None:
+    def __init__(self, network: Network, engine: str | Callable[[Graph], Engines] = AUTOMATIC) -> None:
         self.network = network
         self._edge, tail, head = network.arcs()
         self._graph = Graph(network.nodes, tail, head)
-        self._engines = engines_for(self._graph, engine)
+        self._engines = engines_for(self._graph, engine) if isinstance(engine, str) else engine(self._graph)
         self._nearest = NearestEdge(network)
         self._closed = network.edges.closed.copy()
         self._arcs_of_edge = _arcs_of_edges(network)

@@ -1,0 +1,112 @@
+"""``fleet:checkroadnetwork``: road centrelines in, a layer of what is odd in their network out."""
+
+from __future__ import annotations
+
+from qgis.core import (
+    QgsGeometry,
+    QgsPointXY,
+    QgsProcessing,
+    QgsProcessingOutputNumber,
+    QgsProcessingParameterFeatureSink,
+    QgsWkbTypes,
+)
+
+from ...robot_bridge.roads.findings import REPAIRED, Kind, count_by_kind, find
+from ...robot_bridge.roads.network import build_network
+from .errors import shown_by_processing
+from .fleet_algorithm import FleetAlgorithm, fields_of
+from .road_source import TOLERANCE, WARNING_COUNT, RoadSource, road_parameters
+from .sinks import fill
+
+FINDINGS = "FINDINGS"
+_FIELDS = {"kind": "string", "repairable": "int8", "feature": "int8", "text": "string"}
+_COUNTS = {kind: f"{kind.value.upper().replace(' ', '_').replace('-', '_')}_COUNT" for kind in Kind}
+_TITLES = {
+    Kind.GAP: "Gaps",
+    Kind.OVERSHOOT: "Overshoots",
+    Kind.DUPLICATE: "Roads drawn twice",
+    Kind.DEAD_END: "Dead ends",
+    Kind.PART: "Parts of their own",
+    Kind.ONE_WAY: "Edges without a way back",
+}
+
+
+class CheckRoadNetwork(FleetAlgorithm):
+    """Shows gaps, overshoots, duplicates, dead ends, parts and one-way traps of a road network."""
+
+    GROUP = ("roads", "Roads")
+    NAME = "checkroadnetwork"
+    TITLE = "Check road network"
+    SUMMARY = (
+        "Finds gaps, overshoots, duplicates, dead ends, separate parts and one-way traps in road centrelines."
+    )
+    ICON = "check_road_network.svg"
+    TAGS = ("road", "network", "topology", "check", "gap", "dangle", "one-way")
+    HELP = """
+    <p>Checks the network that road centrelines make, and makes a layer of points that show what is odd, each
+    with the feature to look at. Nothing is changed.</p>
+    <p>What <i>fleet:buildroadnetwork</i> repairs: <b>gap</b>, an end that stops within the tolerance of
+    another road; <b>overshoot</b>, an end that reaches beyond a road by less than that; <b>duplicate</b>, a
+    stretch that is drawn twice.</p>
+    <p>What only people can judge: <b>dead end</b>; <b>disconnected part</b>, roads that are connected with
+    one another but not with the longest part; <b>one-way</b>, roads from which no way leads back because of
+    the directions.</p>
+    """
+
+    def initAlgorithm(self, configuration=None):
+        for parameter in road_parameters():
+            self.addParameter(parameter)
+        points = QgsProcessing.SourceType.TypeVectorPoint
+        self.addParameter(QgsProcessingParameterFeatureSink(FINDINGS, "Findings", points))
+        self.addOutput(QgsProcessingOutputNumber("FINDING_COUNT", "Findings"))
+        for kind, name in _COUNTS.items():
+            self.addOutput(QgsProcessingOutputNumber(name, _TITLES[kind]))
+        self.addOutput(QgsProcessingOutputNumber(WARNING_COUNT, "Warnings"))
+
+    def prepareAlgorithm(self, parameters, context, feedback):
+        self._fields = fields_of(_FIELDS)
+        with shown_by_processing():
+            self._source = RoadSource(self, parameters, context)
+        return True
+
+    def processAlgorithm(self, parameters, context, feedback):
+        with shown_by_processing():
+            reading = self._source.read(feedback)
+            if reading is None:
+                return {}
+            for warning in reading.warnings:
+                feedback.pushWarning(warning)
+            tolerance = self.parameterAsDouble(parameters, TOLERANCE, context)
+            findings = find(build_network(reading.roads), tolerance)
+            feedback.setProgress(90)
+            kind = QgsWkbTypes.Type.Point
+            sink, source = self.parameterAsSink(
+                parameters, FINDINGS, context, self._fields, kind, reading.crs
+            )
+            rows = [_row(finding, reading.features) for finding in findings]
+            if not fill(sink, self._fields, rows, feedback):
+                return {}
+        counts = count_by_kind(findings)
+        for name, count in counts.items():
+            if count:
+                feedback.pushInfo(f"{name}: {count}")
+        if not findings:
+            feedback.pushInfo("Nothing is odd in this network.")
+        numbers = {_COUNTS[kind]: counts[kind.value] for kind in Kind}
+        return {
+            FINDINGS: source,
+            "FINDING_COUNT": len(findings),
+            **numbers,
+            WARNING_COUNT: len(reading.warnings),
+        }
+
+
+def _row(finding, features: list[int]):
+    values = [
+        finding.kind.value,
+        int(finding.kind in REPAIRED),
+        features[finding.road],
+        # People know features, not the numbers of roads.
+        finding.told(features),
+    ]
+    return QgsGeometry.fromPointXY(QgsPointXY(finding.x, finding.y)), values

@@ -1,0 +1,215 @@
+"""``fleet:route``: the shortest or fastest way along roads, and the path that a robot drives."""
+
+from __future__ import annotations
+
+import importlib.util
+
+import numpy as np
+from qgis.core import (
+    QgsProcessing,
+    QgsProcessingOutputNumber,
+    QgsProcessingOutputString,
+    QgsProcessingParameterDefinition,
+    QgsProcessingParameterEnum,
+    QgsProcessingParameterFeatureSink,
+    QgsProcessingParameterNumber,
+    QgsProcessingParameterPoint,
+    QgsProcessingParameterString,
+    QgsWkbTypes,
+)
+
+from ...robot_bridge.roads.dense import DensePath, Driving, dense_path
+from ...robot_bridge.roads.engines.choice import AUTOMATIC, ENGINES
+from ...robot_bridge.roads.engines.engine import Graph
+from ...robot_bridge.roads.network import Network
+from ...robot_bridge.roads.route import Route
+from ...robot_bridge.roads.routes import REACH, Restrictions, Router
+from .errors import shown_by_processing
+from .fleet_algorithm import FleetAlgorithm, fields_of
+from .graph_engine import GraphEngine
+from .road_source import (
+    WARNING_COUNT,
+    RoadReading,
+    RoadSource,
+    network_of_roads,
+    repair_parameter,
+    road_parameters,
+)
+from .sinks import fill, line
+
+START, GOAL, BY, SURFACES = "START", "GOAL", "BY", "SURFACES"
+ENGINE, ROUTE, PATH = "ENGINE", "ROUTE", "PATH"
+SHORTEST, FASTEST = "shortest", "fastest"
+QGIS = "qgis"
+_REAL = QgsProcessingParameterNumber.Type.Double
+_DRIVING = Driving()
+_LENGTHS = {
+    "LEAST_WIDTH": ("Roads at least this wide [m]", 0.0, 0.0),
+    "DISTANCE": ("Start and goal at most this far from a road [m]", REACH, 0.0),
+    "SPACING": ("Points of the path at most this far apart [m]", _DRIVING.spacing, 0.01),
+    "TURNING_RADIUS": ("Turning radius of the robot [m]", _DRIVING.turning_radius, 0.0),
+    "ROBOT_WIDTH": ("Width of the robot [m]", _DRIVING.robot_width, 0.0),
+}
+_ROUTE = {
+    "order": "int8",
+    "feature": "int8",
+    "edge": "int8",
+    "length_m": "double",
+    "width_m": "double",
+    "surface": "string",
+}
+_PATH = {"metres": "double", "seconds": "double", "points": "int8", "tight": "int8", "engine": "string"}
+NUMBERS = {
+    "METRES": "Length of the route [m]",
+    "SECONDS": "Time on the route [s]",
+    "POINT_COUNT": "Points of the path",
+    "TIGHT_COUNT": "Corners tighter than the robot turns",
+    WARNING_COUNT: "Warnings",
+}
+ENGINE_USED = "ENGINE_USED"
+
+
+class FindRoute(FleetAlgorithm):
+    """Finds a way along roads between two places near them."""
+
+    GROUP = ("roads", "Roads")
+    NAME = "route"
+    TITLE = "Route on roads"
+    SUMMARY = "Finds the shortest or fastest way along road centrelines, and the path that a robot drives."
+    ICON = "route_on_roads.svg"
+    TAGS = ("road", "route", "shortest path", "fastest", "navigation", "path")
+    HELP = """
+    <p>Finds the way between two places near roads: each is taken to the nearest point of a road that may be
+    used. Closed roads are not used, one-way roads in their direction only; <b>surfaces</b> (names with commas
+    between) and a <b>least width</b> restrict the way further.</p>
+    <p><b>Route</b> has a line for each stretch of road, in order. <b>Path</b> is what a robot drives: points
+    at most so far apart, corners rounded to the turning radius as far as robot and road are wide.
+    Corners that stay tighter are counted and named in the log.</p>
+    <p>The <b>engine</b> is RoutingKit or SciPy where Python has them, else QGIS's own; the log and
+    <i>ENGINE_USED</i> say which was used. All find the same ways.</p>
+    <pre>qgis_process run fleet:route -- ROADS=roads.gpkg START="640430,5193530 [EPSG:32633]" \\
+    GOAL="640600,5193570 [EPSG:32633]" SURFACES=asphalt ROUTE=route.gpkg PATH=path.gpkg</pre>
+    """
+
+    def initAlgorithm(self, configuration=None):
+        roads, tolerance, *others = road_parameters()
+        names = [*ENGINES[:-1], QGIS, ENGINES[-1]]
+        ways = QgsProcessingParameterEnum(
+            BY, "Way", options=[SHORTEST, FASTEST], defaultValue=SHORTEST, usesStaticStrings=True
+        )
+        engine = QgsProcessingParameterEnum(
+            ENGINE, "Engine", options=names, defaultValue=AUTOMATIC, usesStaticStrings=True
+        )
+        engine.setFlags(engine.flags() | QgsProcessingParameterDefinition.Flag.FlagAdvanced)
+        for parameter in (
+            roads,
+            QgsProcessingParameterPoint(START, "Start"),
+            QgsProcessingParameterPoint(GOAL, "Goal"),
+            ways,
+            QgsProcessingParameterString(SURFACES, "Surfaces that may be used (default: all)", optional=True),
+            *(
+                QgsProcessingParameterNumber(name, title, _REAL, value, minValue=least)
+                for name, (title, value, least) in _LENGTHS.items()
+            ),
+            repair_parameter(),
+            tolerance,
+            *others,
+            engine,
+        ):
+            self.addParameter(parameter)
+        lines = QgsProcessing.SourceType.TypeVectorLine
+        self.addParameter(QgsProcessingParameterFeatureSink(ROUTE, "Route", lines))
+        self.addParameter(QgsProcessingParameterFeatureSink(PATH, "Path", lines))
+        for name, title in NUMBERS.items():
+            self.addOutput(QgsProcessingOutputNumber(name, title))
+        self.addOutput(QgsProcessingOutputString(ENGINE_USED, "Engine that was used"))
+
+    def prepareAlgorithm(self, parameters, context, feedback):
+        self._fields = fields_of(_ROUTE), fields_of(_PATH)
+        with shown_by_processing():
+            self._source = RoadSource(self, parameters, context)
+        return True
+
+    def processAlgorithm(self, parameters, context, feedback):
+        lengths = {name: self.parameterAsDouble(parameters, name, context) for name in _LENGTHS}
+        with shown_by_processing():
+            driving = Driving(lengths["SPACING"], lengths["TURNING_RADIUS"], lengths["ROBOT_WIDTH"])
+            reading = self._source.read(feedback)
+            if reading is None:
+                return {}
+            network, _ = network_of_roads(self, parameters, context, reading, feedback)
+            router = _router(network, self.parameterAsEnumString(parameters, ENGINE, context))
+            feedback.setProgress(80)
+            wanted = self._restrictions(parameters, context, lengths["LEAST_WIDTH"])
+            route = router.route(
+                *(self._place(parameters, name, context, reading) for name in (START, GOAL)),
+                wanted,
+                lengths["DISTANCE"],
+            )
+            path = dense_path(route.points, route.widths, driving)
+            made = self._written(route, path, reading, parameters, context, feedback)
+        _report(route, path, feedback)
+        figures = (route.metres, route.seconds, len(path.points), len(path.tight), len(reading.warnings))
+        return {**made, **dict(zip(NUMBERS, figures, strict=True)), ENGINE_USED: route.engine}
+
+    def _restrictions(self, parameters, context, least_width: float) -> Restrictions:
+        names = self.parameterAsString(parameters, SURFACES, context).split(",")
+        surfaces = frozenset(name.strip() for name in names if name.strip())
+        fastest = self.parameterAsEnumString(parameters, BY, context) == FASTEST
+        return Restrictions(fastest, surfaces or None, least_width)
+
+    def _place(self, parameters, name: str, context, reading: RoadReading) -> tuple[float, float]:
+        # A point without a CRS of its own is taken to be in that of the roads.
+        point = self.parameterAsPoint(parameters, name, context, reading.crs)
+        return point.x(), point.y()
+
+    def _written(self, route: Route, path: DensePath, reading: RoadReading, parameters, context, feedback):
+        one = [round(route.metres, 3), round(route.seconds, 3), len(path.points), len(path.tight)]
+        tables = (
+            (ROUTE, _stretches(route, reading)),
+            (PATH, [(line(path.points), [*one, route.engine])]),
+        )
+        made = {}
+        for (name, rows), fields in zip(tables, self._fields, strict=True):
+            kind = QgsWkbTypes.Type.LineString
+            sink, made[name] = self.parameterAsSink(parameters, name, context, fields, kind, reading.crs)
+            fill(sink, fields, rows, feedback)
+        return made
+
+
+def _router(network: Network, engine: str) -> Router:
+    stock = not any(importlib.util.find_spec(name) for name in ("routingkit_cch", "scipy"))
+    if engine == QGIS or (engine == AUTOMATIC and stock):
+        return Router(network, _of_qgis)
+    return Router(network, engine)
+
+
+def _of_qgis(graph: Graph):
+    return lambda costs: GraphEngine(graph, costs)
+
+
+def _stretches(route: Route, reading: RoadReading):
+    edges = route.network.edges
+    return [
+        (
+            line(points),
+            [
+                order,
+                reading.features[edges.source[edge]],
+                edge,
+                float(np.round(route.lengths[order], 3)),
+                float(edges.width[edge]),
+                str(edges.surface[edge]),
+            ],
+        )
+        for order, (edge, points) in enumerate(zip(route.edges.tolist(), route.lines, strict=True))
+    ]
+
+
+def _report(route: Route, path: DensePath, feedback) -> None:
+    feedback.pushInfo(
+        f"{route.metres:.1f} m, {route.seconds:.1f} s, {len(path.points)} points, found by {route.engine}; "
+        f"start {route.off_start:.2f} m and goal {route.off_goal:.2f} m from the road"
+    )
+    for x, y in path.tight.tolist():
+        feedback.pushWarning(f"The corner at ({x:.2f}, {y:.2f}) is tighter than the robot turns.")

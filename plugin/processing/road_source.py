@@ -1,0 +1,221 @@
+"""Centrelines for the network, read from the layer that an algorithm is given."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from qgis.core import (
+    QgsCoordinateReferenceSystem,
+    QgsProcessing,
+    QgsProcessingAlgorithm,
+    QgsProcessingFeatureSource,
+    QgsProcessingParameterBoolean,
+    QgsProcessingParameterCrs,
+    QgsProcessingParameterDefinition,
+    QgsProcessingParameterExpression,
+    QgsProcessingParameterFeatureSource,
+    QgsProcessingParameterNumber,
+)
+
+from ...robot_bridge.roads.centrelines import DEFAULT_SPEED, Centrelines, centrelines
+from ...robot_bridge.roads.findings import Finding
+from ...robot_bridge.roads.network import Network, build_network
+from ...robot_bridge.roads.repairs import repaired_network
+from ...robot_bridge.sites.frame import SiteFrame
+from ..sites.ground_reading import DEFAULT_WIDTH_M, lines_of
+from ..sites.layer_rules import LayerRules
+from ..sites.placing import LayerPlacing, PlacingError, SitePlacing
+from ..sites.road_attributes import RoadAttributes, RoadExpressions, RoadRules
+from ..sites.roles import LayerExpressions, expressions_of
+from ..sites.site_crs import site_crs_for
+from .errors import ParameterError
+from .map_window import SITE_CRS
+
+ROADS, DEFAULT_WIDTH, SPEED_DEFAULT = "ROADS", "DEFAULT_WIDTH", "DEFAULT_SPEED"
+TOLERANCE, REPAIR = "TOLERANCE", "REPAIR"
+WARNING_COUNT = "WARNING_COUNT"
+
+_REAL = QgsProcessingParameterNumber.Type.Double
+_EXPRESSIONS = {
+    "WIDTH": "Width of each road [m] (default: the layer's role, else a field width_m or width)",
+    "SURFACE": "Surface of each road (default: the layer's role, else a field surface)",
+    "DIRECTION": "Direction: yes along the line, -1 against it, no both (default: a field oneway, ...)",
+    "SPEED": "Speed on each road [m/s] (default: a field speed_ms, or maxspeed in km/h)",
+    "CLOSED": "Whether each road is closed (default: a field closed)",
+    "LEVEL": "Level of each road, 0 on the ground (default: fields level, layer, bridge, tunnel)",
+}
+_ROLE = {"width": "width", "surface": "semantics"}
+"""Expressions that a layer's role has for the attributes of a road."""
+
+
+@dataclass
+class RoadReading:
+    """Roads in metres; road ``k`` is a part of feature ``features[k]``."""
+
+    roads: Centrelines
+    features: list[int]
+    crs: QgsCoordinateReferenceSystem
+    placing: LayerPlacing
+    warnings: list[str] = field(default_factory=list)
+
+
+def road_parameters() -> list[QgsProcessingParameterDefinition]:
+    """Return the parameters that say what the roads are."""
+    advanced: list[QgsProcessingParameterDefinition] = [
+        QgsProcessingParameterExpression(name, title, parentLayerParameterName=ROADS, optional=True)
+        for name, title in _EXPRESSIONS.items()
+    ]
+    advanced += [
+        QgsProcessingParameterNumber(
+            DEFAULT_WIDTH,
+            "Width of roads of which it is not known [m]",
+            _REAL,
+            DEFAULT_WIDTH_M,
+            minValue=0.01,
+        ),
+        QgsProcessingParameterNumber(
+            SPEED_DEFAULT,
+            "Speed on roads of which it is not known [m/s]",
+            _REAL,
+            DEFAULT_SPEED,
+            minValue=0.01,
+        ),
+        QgsProcessingParameterCrs(
+            SITE_CRS, "CRS in metres (default: the layer's, or the project's)", optional=True
+        ),
+    ]
+    for parameter in advanced:
+        parameter.setFlags(parameter.flags() | QgsProcessingParameterDefinition.Flag.FlagAdvanced)
+    lines = [QgsProcessing.SourceType.TypeVectorLine]
+    return [
+        QgsProcessingParameterFeatureSource(ROADS, "Road centrelines", lines),
+        QgsProcessingParameterNumber(
+            TOLERANCE, "Ends this near to a road were meant to meet it [m]", _REAL, 0.5, minValue=0.0
+        ),
+        *advanced,
+    ]
+
+
+def repair_parameter() -> QgsProcessingParameterDefinition:
+    """Return the parameter that asks for repairs."""
+    return QgsProcessingParameterBoolean(
+        REPAIR, "Repair: close gaps, cut overshoots, leave out what is drawn twice", defaultValue=False
+    )
+
+
+class RoadSource:
+    """The layer of roads of one run; made in the main thread, read in any."""
+
+    def __init__(self, algorithm: QgsProcessingAlgorithm, parameters, context) -> None:
+        layer = algorithm.parameterAsVectorLayer(parameters, ROADS, context)
+        role = expressions_of(layer) if layer is not None else LayerExpressions()
+        self._algorithm, self._parameters, self._context = algorithm, parameters, context
+        given = {
+            name.lower(): algorithm.parameterAsString(parameters, name, context) for name in _EXPRESSIONS
+        }
+        for name, of_role in _ROLE.items():
+            given[name] = given[name] or getattr(role, of_role)
+        self._expressions = RoadExpressions(**given)
+
+    def read(self, feedback) -> RoadReading | None:
+        """Return the roads; None after a cancel.
+
+        :raises FleetError: when the layer, its CRS or an expression cannot be used.
+        """
+        source = self._algorithm.parameterAsSource(self._parameters, ROADS, self._context)
+        if source is None:
+            raise ParameterError(
+                f"ROADS {self._parameters.get(ROADS)} cannot be opened: check the file and the layer's name."
+            )
+        crs = self._crs(source)
+        site = SitePlacing(crs, SiteFrame("", (0.0, 0.0)), self._context.transformContext())
+        placing = site.of_layer(source.sourceName(), source.sourceCrs())
+        return self._read(source, crs, placing, feedback)
+
+    def _crs(self, source: QgsProcessingFeatureSource) -> QgsCoordinateReferenceSystem:
+        chosen = self._algorithm.parameterAsCrs(self._parameters, SITE_CRS, self._context)
+        if self._parameters.get(SITE_CRS) and not chosen.isValid():
+            given = self._parameters[SITE_CRS]
+            raise ParameterError(
+                f"SITE_CRS {given} is no CRS that QGIS knows: write a code such as EPSG:32633."
+            )
+        own = source.sourceCrs()
+        if not chosen.isValid() and own.isValid() and not own.isGeographic():
+            chosen = own
+        project = self._context.project()
+        other = project.crs() if project is not None else QgsCoordinateReferenceSystem()
+        return site_crs_for(chosen, other, [own])
+
+    def _read(self, source, crs, placing: LayerPlacing, feedback) -> RoadReading | None:
+        name = source.sourceName()
+        scope = self._algorithm.createExpressionContext(self._parameters, self._context, source)
+        rules = LayerRules(name, source.fields(), scope)
+        road_rules = RoadRules(rules, self._expressions)
+        lines: list[np.ndarray] = []
+        known: list[RoadAttributes] = []
+        features: list[int] = []
+        warnings: list[str] = []
+        total = max(source.featureCount(), 1)
+        for number, feature in enumerate(source.getFeatures()):
+            if feedback.isCanceled():
+                return None
+            feedback.setProgress(50.0 * number / total)
+            notes: list[str] = []
+            rules.at(feature)
+            found = _lines_in_metres(feature, placing, notes)
+            if found:
+                known += [road_rules.of(notes)] * len(found)
+            lines += found
+            features += [feature.id()] * len(found)
+            warnings += [f"Layer {name}, feature {feature.id()}: {note}" for note in notes]
+        reading = RoadReading(self._columns(lines, known, name, warnings), features, crs, placing, warnings)
+        reading.warnings += rules.warnings
+        return reading
+
+    def _columns(self, lines, known: list[RoadAttributes], name: str, warnings: list[str]) -> Centrelines:
+        width, speed = (
+            self._algorithm.parameterAsDouble(self._parameters, key, self._context)
+            for key in (DEFAULT_WIDTH, SPEED_DEFAULT)
+        )
+        unknown = sum(one.width is None for one in known)
+        if unknown:
+            warnings.append(f"Layer {name}: the width of {unknown} roads is not known; {width:g} m is used")
+        return centrelines(
+            lines,
+            width=[one.width or width for one in known],
+            surface=[one.surface for one in known],
+            direction=[one.direction for one in known],
+            speed=[one.speed or speed for one in known],
+            closed=[one.closed for one in known],
+            level=[one.level for one in known],
+        )
+
+
+def _lines_in_metres(feature, placing: LayerPlacing, notes: list[str]) -> list[np.ndarray]:
+    geometry = feature.geometry()
+    if geometry.isNull() or geometry.isEmpty():
+        notes.append("has no geometry; it is left out")
+        return []
+    try:
+        return lines_of(placing.to_metres(geometry), notes)
+    except PlacingError as error:
+        notes.append(f"cannot be transformed into the CRS in metres ({error}); it is left out")
+        return []
+
+
+def network_of_roads(
+    algorithm: QgsProcessingAlgorithm, parameters, context, reading: RoadReading, feedback
+) -> tuple[Network, list[Finding]]:
+    """Return the network and what was repaired in it, nothing where REPAIR is not asked for."""
+    for warning in reading.warnings:
+        feedback.pushWarning(warning)
+    if not algorithm.parameterAsBool(parameters, REPAIR, context):
+        return build_network(reading.roads), []
+    tolerance = algorithm.parameterAsDouble(parameters, TOLERANCE, context)
+    network, repairs = repaired_network(reading.roads, tolerance)
+    for repair in repairs:
+        feature, text = reading.features[repair.road], repair.told(reading.features)
+        where = f"({repair.x:.3f}, {repair.y:.3f})"
+        feedback.pushInfo(f"Repaired: {repair.kind.value} of feature {feature} at {where}: {text}")
+    return network, repairs
