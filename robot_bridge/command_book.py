@@ -22,7 +22,7 @@ from .command_writing import (
     write_driven,
     write_late,
 )
-from .errors import RefusedError, UncertainError
+from .errors import DataRefusedError, RefusedError, StoreError, UncertainError
 from .messages import Command, CommandReport, CommandState, OpAck, SendPos, SetPath, SetPosEnd
 from .open_command import GATEWAY, OpenCommand, Order, drafted, ended_by, voided
 from .open_commands import OpenCommands
@@ -35,6 +35,8 @@ __all__ = ["GATEWAY", "CommandBook", "OpenCommand", "Order"]
 T = TypeVar("T")
 DRIVEN_STEP = 0.5
 """metres along a path between two that are stored."""
+MOST_LATE = 1000
+"""acknowledgements of ended commands that wait for the database."""
 
 
 class CommandBook:
@@ -64,6 +66,7 @@ class CommandBook:
         self._open = OpenCommands()
         self._locks: dict[str, asyncio.Lock] = {}
         self._doubtful = False
+        self._late: set[tuple[str, int]] = set()
 
     async def restore(self) -> None:
         """Take up the commands that an earlier gateway left open."""
@@ -138,7 +141,9 @@ class CommandBook:
             await _to_its_end(self._expire([c.report.command for c in late]))
 
     async def save_progress(self) -> None:
-        """Store how far robots have come along their paths, where that has changed."""
+        """Store how far robots have come along their paths, and acknowledgements that came too late."""
+        for robot, sa_id in list(self._late):
+            await self.acknowledged(robot, OpAck(id=sa_id))
         driven = self._open.progress(DRIVEN_STEP)
         if driven:
             await self._database.run(write_driven, driven)
@@ -189,9 +194,7 @@ class CommandBook:
         async with self._holding([robot]):
             command = next((c for c in self._open.of(robot) if c.sa_id == ack.id), None)
             if command is None and ack.ok and ack.id is not None:
-                late = await self._run(write_late, robot, ack.id, self._clock())
-                if late is not None:
-                    self._changed(late)
+                await self._note_late(robot, ack.id)
                 return None
             steps = [] if command is None else self._taken(command, robot, ack)
             # One transaction: a message that is gone from SA with its step unsaved would be lost.
@@ -199,6 +202,20 @@ class CommandBook:
             for step in steps:
                 self._apply(step)
             return command.written_at if command is not None and command.is_on_its_way else None
+
+    async def _note_late(self, robot: str, sa_id: int) -> None:
+        """Note that the robot read a message whose command has ended; what cannot be stored now is kept."""
+        try:
+            report = await self._run(write_late, robot, sa_id, self._clock())
+        except DataRefusedError:
+            raise
+        except StoreError:
+            if len(self._late) < MOST_LATE:
+                self._late.add((robot, sa_id))
+            raise
+        self._late.discard((robot, sa_id))
+        if report is not None:
+            self._changed(report)
 
     async def _reached(self, command: OpenCommand, deviation: float) -> None:
         async with self._holding([command.report.robot]):

@@ -6,6 +6,7 @@ import asyncio
 
 import pytest
 
+from robot_bridge.errors import StoreError
 from robot_bridge.messages import AbortTask
 
 READ = "the robot had read it by then, and acknowledged it"
@@ -68,3 +69,14 @@ async def test_a_delivery_is_nothing_new_when_the_command_has_gone_further_meanw
     yard.fleet._book._open.remove("command-a")
     await noting
     assert await yard.steps("a") == ["queued"]
+
+
+async def test_it_says_so_when_the_database_is_back(yard, overtaken):
+    yard.client.break_table("command_steps")
+    with pytest.raises(StoreError):
+        await yard.ack(overtaken)
+    yard.client.mend_table("command_steps")
+    await yard.fleet.save()
+    assert await yard.steps("a") == ["queued", "aborted", "aborted"]
+    await yard.fleet.save()
+    assert yard.told == [("command-a", "aborted")]
