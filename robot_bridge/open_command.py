@@ -117,12 +117,11 @@ def voided(order: Order, mine: list[OpenCommand], now: float) -> list[OpenComman
     ended = []
     for command in mine:
         if isinstance(order.message, Abort) and command.is_motion:
-            if command.report.state is CommandState.QUEUED:
-                reason = because("before the robot fetched it", order.reason)
-            elif order.message.emergency and command.is_on_its_way:
-                reason = because("before the robot acknowledged it", order.reason)
-            else:
+            overtaken = order.message.emergency and command.is_on_its_way
+            if command.report.state is not CommandState.QUEUED and not overtaken:
                 continue
+            # Not "before the robot read it": a robot may have done that without the gateway knowing yet.
+            reason = because("before the robot acknowledged it", order.reason)
             ended.append(command.step(CommandState.ABORTED, now, order.operator, reason))
         elif _replaces(order.message, command):
             reason = f"by command {order.command}"

@@ -42,7 +42,7 @@ async def test_one_command_is_aborted_by_its_id(ready):
     await ready.send("a")
     assert (await abort(ready, aborts="command-a", reason="wrong cone")).robot == "r1"
     assert await ready.states() == {"a": "aborted", "x": "queued"}
-    assert await ready.reason("a") == "before the robot fetched it: wrong cone"
+    assert await ready.reason("a") == "before the robot acknowledged it: wrong cone"
 
 
 async def test_what_came_after_the_command_that_was_to_be_aborted_lives_on(ready):
@@ -80,7 +80,7 @@ def test_an_abort_names_one_thing(what):
 async def test_why_all_were_aborted_is_kept(ready):
     await ready.send("a")
     await ready.fleet.abort_all("Ada", reason="lunch")
-    assert await ready.reason("a") == "before the robot fetched it: lunch"
+    assert await ready.reason("a") == "before the robot acknowledged it: lunch"
 
 
 # --- expiry -----------------------------------------------------------------------------------------------

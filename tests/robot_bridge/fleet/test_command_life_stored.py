@@ -73,7 +73,7 @@ async def test_an_abort_before_delivery_ends_the_target_at_once(ready):
     await ready.send("a")
     await ready.send("x", "Abort")
     assert await ready.states() == {"a": "aborted", "x": "queued"}
-    assert await ready.reason("a") == "before the robot fetched it"
+    assert await ready.reason("a") == "before the robot acknowledged it"
     assert ready.waiting() == ["Abort"]
 
 

@@ -97,7 +97,7 @@ async def test_what_robots_have_not_taken_on_is_aborted_at_once_and_what_they_dr
         "delivered": "aborted",
         "driving": "acknowledged",
     }
-    assert await two.reason("queued") == "before the robot fetched it: smoke"
+    assert await two.reason("queued") == "before the robot acknowledged it: smoke"
     assert await two.reason("delivered") == "before the robot acknowledged it: smoke"
     await two.take("r3")
     assert (await two.states())["driving"] == "aborted"
