@@ -107,18 +107,19 @@ class Journal:
         try:
             await self._database.run(_do_all, batch)
         except StoreError:
-            if count == 1 and await self._is_there():
-                # One piece that the database refuses must not keep back all that come after it.
-                self._dropped += 1
+            if count == 1 and await self._succeeds([]):
+                # One piece that the database refuses must not keep back all that come after it; one that
+                # failed because the database was away is written now that it is back.
+                self._dropped += not await self._succeeds(batch)
                 return
             self._waiting.extendleft(reversed(batch))
             self._batch = max(1, count // 2)
             raise
         self._batch = min(BATCH, 2 * self._batch)
 
-    async def _is_there(self) -> bool:
+    async def _succeeds(self, batch: list[Work]) -> bool:
         try:
-            await self._database.run(_do_all, [])
+            await self._database.run(_do_all, batch)
         except StoreError:
             return False
         return True

@@ -211,6 +211,25 @@ async def test_one_piece_that_the_database_refuses_keeps_none_of_the_others_back
     assert "1 pieces of the audit log were lost" in caplog.text
 
 
+async def test_a_piece_that_failed_while_the_database_came_back_is_written(database, clock, caplog):
+    outage = Outage(database)
+    journal = Journal(outage, clock)
+    journal.note("Ada", "sent")
+    real, outage.run = outage.run, _failing_once(outage)
+    await journal.flush()
+    assert outage.run == real
+    assert [entry.action for entry in await written(database)] == ["sent"]
+    assert "lost" not in caplog.text
+
+
+def _failing_once(outage):
+    async def fail(_work, *_arguments):
+        del outage.run
+        raise StoreError("away")
+
+    return fail
+
+
 # --- sessions -------------------------------------------------------------------------------------------
 
 
