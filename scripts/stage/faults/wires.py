@@ -107,6 +107,7 @@ class SqlRobot:
         self._ready = False
         self._ready_at = 0.0
         self._unsaid: list[int] = []
+        self._heard: set[int] = set()
 
     def run(self) -> None:
         """Live until told to end."""
@@ -138,6 +139,10 @@ class SqlRobot:
         Until the gateway has taken this life's Ready the rest is left: it may be sent anew, or is another's.
         """
         self._mind.belongs_to(params.get("database"))
+        if op in ("Start", "OpAck") and id in self._heard:
+            # It is there again because the transaction in which it was deleted came to nothing.
+            return True
+        self._heard.add(id)
         if op == "Start":
             self._ready, self._ready_at = False, 0.0
         elif op == "OpAck" and "magic" in params:
