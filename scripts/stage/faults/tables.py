@@ -13,6 +13,7 @@ PATIENCE_S = 15.0
 READ = "select id, op, params from sa where robot = {mark} order by urgent desc, id"
 DELETE = "delete from sa where robot = {mark} and id = {mark}"
 INSERT = "insert into rr (robot, op, params, payload) values ({mark}, {mark}, {mark}, {mark})"
+LEVEL = "set session transaction isolation level read committed"
 
 
 class Tables(ABC):
@@ -103,7 +104,8 @@ class MariaDBTables(Tables):
         import pymysql
 
         where = {**self._where, "database": self._url.path[1:], "autocommit": True}
-        return pymysql.connect(**where, connect_timeout=5, read_timeout=PATIENCE_S, write_timeout=PATIENCE_S)
+        limits = {"connect_timeout": 5, "read_timeout": PATIENCE_S, "write_timeout": PATIENCE_S}
+        return pymysql.connect(**where, **limits, init_command=LEVEL)
 
 
 KINDS = {"sqlite": SQLiteTables, "postgresql": PostgreSQLTables, "mariadb": MariaDBTables}
