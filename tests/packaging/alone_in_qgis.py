@@ -21,7 +21,7 @@ FOREIGN = {
     "websockets",
     "zstandard",
 }
-BRIDGE = ("robotmap", "messages", "liveness", "roads", "sites")
+BRIDGE = ("robotmap", "messages", "liveness", "roads", "layouts", "sites")
 
 
 class NothingForeign:

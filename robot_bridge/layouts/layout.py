@@ -1,0 +1,99 @@
+"""What every layout has: a name, the standard it follows, dimensions that can be changed, and cones."""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields
+from typing import Any, ClassVar
+
+from .cone import Cone, Spot, numbered
+from .errors import DimensionError
+
+BASE_M = 0.285
+"""Across the base of the cone of 505 mm of Formula Student; ISO 3888-2 asks for 500 mm of height or more."""
+
+
+@dataclass(frozen=True)
+class Dimension:
+    """One number of a layout: what it is, in which unit, and its value in the standard.
+
+    Values are ``least`` or more, without a fraction where ``whole``, and one of ``choices`` where there are
+    any.
+    """
+
+    name: str
+    text: str
+    unit: str
+    standard: float
+    least: float
+    whole: bool
+    choices: tuple[float, ...]
+
+    def problem(self, value: float) -> str:
+        """Return what is wrong with ``value``, or nothing."""
+        if not math.isfinite(value):
+            return "give a number"
+        if self.choices and value not in self.choices:
+            return f"give one of {', '.join(f'{choice:g}' for choice in self.choices)}"
+        if value < self.least:
+            return f"give {self.least:g} or more"
+        return "give a whole number" if self.whole and value != int(value) else ""
+
+
+def dimension(standard: float, text: str, unit: str = "m", least: float = 0.0, **limits: Any) -> Any:
+    """Return the field of a dimension; ``limits`` are ``whole`` and ``choices`` of :class:`Dimension`."""
+    return field(default=standard, metadata={"text": text, "unit": unit, "least": least, **limits})
+
+
+@dataclass(frozen=True)
+class Layout(ABC):
+    """A layout with its dimensions, in a frame of its own: x along the travel, y to the left, in metres.
+
+    :raises DimensionError: when a dimension has a value that it cannot have.
+    """
+
+    NAME: ClassVar[str] = ""
+    TITLE: ClassVar[str] = ""
+    STANDARD: ClassVar[str] = ""
+
+    cone_base: float = dimension(
+        BASE_M, "Across the base of a cone; the cones touch the track's limits", least=0
+    )
+
+    def __post_init__(self) -> None:
+        for one in self.dimensions():
+            problem = one.problem(getattr(self, one.name))
+            if problem:
+                value = getattr(self, one.name)
+                raise DimensionError(f"{self.NAME}: {one.name} is {value:g}: {problem}.")
+
+    @classmethod
+    def dimensions(cls) -> list[Dimension]:
+        """Return every dimension of the layout."""
+        unlimited: dict[str, Any] = {"least": 0.0, "whole": False, "choices": ()}
+        return [
+            Dimension(name=one.name, **{"standard": one.default, **unlimited, **one.metadata})
+            for one in fields(cls)
+        ]
+
+    @classmethod
+    def of(cls, values: Mapping[str, float]) -> Layout:
+        """Return the layout with ``values`` in place of the standard's.
+
+        :raises DimensionError: naming what the layout has, when a name is none of it.
+        """
+        known = [one.name for one in cls.dimensions()]
+        for name in values:
+            if name not in known:
+                raise DimensionError(f"{cls.NAME} has no dimension {name!r}: give {', '.join(known)}.")
+        return cls(**values)
+
+    @abstractmethod
+    def spots(self) -> list[Spot]:
+        """Return where the cones stand, in the order of placing."""
+
+    def cones(self, prefix: str = "") -> list[Cone]:
+        """Return the cones, named after ``prefix`` or the layout."""
+        return numbered(self.spots(), prefix or self.NAME)
