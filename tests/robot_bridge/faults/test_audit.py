@@ -1,0 +1,162 @@
+"""The audit finds what it is there to find: each story is right but for one thing."""
+
+from __future__ import annotations
+
+import copy
+import hashlib
+from collections import Counter
+from types import SimpleNamespace
+
+import pytest
+from stage.faults.audit import Stored, judged
+from stage.faults.desk import Ledger
+from stage.faults.yard import GATEWAY_KILLED, Fault
+
+TARGET, STOP = "sq01-000001", "sq01-000001-abort"
+IMAGE = b"an image"
+
+
+def step(state, at, reason=None):
+    return SimpleNamespace(state=state, at=at, reason=reason)
+
+
+def line(what, at, **more):
+    return {"what": what, "at": at, "robot": "sq01", "life": 1, **more}
+
+
+@pytest.fixture
+def story():
+    """A robot that is sent somewhere, arrives, tells of an image, and is told to stop when it stands."""
+    return SimpleNamespace(
+        ledger=Ledger(told={TARGET: 1.0, STOP: 3.0}),
+        faults=[Fault(GATEWAY_KILLED, 20.0, 21.0)],
+        stored=Stored(
+            {
+                TARGET: SimpleNamespace(robot="sq01", op="SetPosEnd", state="reached", sa_id=5),
+                STOP: SimpleNamespace(robot="sq01", op="Abort", state="reached", sa_id=6),
+            },
+            {
+                TARGET: [step("queued", 1.0), step("acknowledged", 2.0), step("reached", 2.5)],
+                STOP: [step("queued", 3.0), step("delivered", 3.1), step("reached", 3.5)],
+            },
+            [SimpleNamespace(robot="sq01", object="sq01-1-1", image=IMAGE)],
+            Counter({("sq01", 10.0): 1}),
+            [],
+        ),
+        lines=[
+            line("acted", 1.5, op="SetPosEnd", number=1, id=5),
+            line("acted", 3.2, op="Abort", id=6),
+            line("accepted", 4.0, object="sq01-1-1", image=hashlib.sha256(IMAGE).hexdigest()),
+            line("pose", 10.0, t=10.0),
+            line("pose", 19.0, t=19.0),
+        ],
+    )
+
+
+def wrong(story):
+    return judged(story.ledger, story.faults, story.stored, story.lines).wrong
+
+
+def test_a_right_story_is_right_and_is_counted(story):
+    findings = judged(story.ledger, story.faults, story.stored, story.lines)
+    assert findings.wrong == []
+    assert findings.counts["commands told queued"] == findings.counts["acted on"] == 2
+    assert findings.counts["... lost, told at most 2 s before a gateway was killed"] == 1
+
+
+def forget_command(story):
+    del story.stored.commands[TARGET]
+
+
+def go_back(story):
+    story.stored.steps[TARGET].insert(2, step("delivered", 2.2))
+
+
+def end_twice(story):
+    story.stored.steps[TARGET].append(step("aborted", 2.6))
+
+
+def stay_open(story):
+    story.stored.commands[TARGET].state = "acknowledged"
+    story.stored.steps[TARGET].pop()
+
+
+def never_act(story):
+    del story.lines[0]
+
+
+def act_twice(story):
+    story.lines.append(line("acted", 1.7, op="SetPosEnd", number=1, id=9))
+
+
+def act_again_in_another_life(story):
+    story.lines.append({**story.lines[0], "life": 2, "at": 2.1})
+
+
+def act_late(story):
+    story.lines[0]["at"] = 2.4
+
+
+def act_after_the_abort(story):
+    story.stored.commands[TARGET].state = "aborted"
+    story.stored.steps[TARGET] = [step("queued", 1.0), step("aborted", 3.0)]
+    story.lines[0]["at"] = 3.3
+
+
+def act_on_what_nobody_sent(story):
+    story.lines.append(line("acted", 5.0, op="SetPosEnd", number=2, id=9))
+
+
+def lose_object(story):
+    story.stored.observations.clear()
+
+
+def store_twice(story):
+    story.stored.observations.append(copy.copy(story.stored.observations[0]))
+
+
+def spoil_image(story):
+    story.stored.observations[0].image = b"another"
+
+
+def lose_position(story):
+    story.stored.positions.clear()
+
+
+def lose_position_older_than_two_seconds(story):
+    story.lines.append(line("pose", 17.9, t=17.9))
+
+
+def leave_message(story):
+    story.stored.waiting.append(("sq01", "SetPosEnd"))
+
+
+def be_refused_for_no_reason(story):
+    story.ledger.wrong.append("command x was refused: no such robot")
+
+
+@pytest.mark.parametrize(
+    ("spoil", "says"),
+    [
+        (forget_command, "is not in the database"),
+        (go_back, "delivered after acknowledged"),
+        (end_twice, "aborted after reached"),
+        (stay_open, "it is acknowledged"),
+        (never_act, "the robot never acted on it"),
+        (act_twice, "acted on 2 times"),
+        (act_again_in_another_life, "does not say that it was sent again"),
+        (act_late, "0.40 s before the robot acted on it"),
+        (act_after_the_abort, "acted on it after the Abort"),
+        (act_on_what_nobody_sent, "the desk has no answer for it"),
+        (lose_object, "not at all"),
+        (store_twice, "is stored 2 times"),
+        (spoil_image, "not stored as it was told"),
+        (lose_position, "position of sq01"),
+        (lose_position_older_than_two_seconds, "position of sq01"),
+        (leave_message, "SetPosEnd of or for robot sq01 still waits"),
+        (be_refused_for_no_reason, "no such robot"),
+    ],
+)
+def test_one_thing_that_is_wrong_is_found(story, spoil, says):
+    spoil(story)
+    assert any(says in sentence for sentence in wrong(story)), wrong(story)
