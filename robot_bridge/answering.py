@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 from .command_book import CommandBook
 from .command_life import is_open
@@ -34,6 +34,13 @@ class Maps(Protocol):
         """Return the map of a square of ``area`` square metres centred on (x, y)."""
 
 
+class Reply(NamedTuple):
+    """An answer, and what the robot is told with it."""
+
+    message: SetMap | SetPath | SetPosIni | SetPosEnd
+    note: str = ""
+
+
 class Answering:
     """Answers questions from what is known of the robots, their commands and the site."""
 
@@ -46,19 +53,18 @@ class Answering:
         self._book = book
         self._planner = planner
 
-    async def answer(self, robot: str, question: Question) -> SetMap | SetPath | SetPosIni | SetPosEnd:
+    async def answer(self, robot: str, question: Question) -> Reply:
         """Return the answer to ``question``; raises RefusedError where there is none, saying why."""
         if isinstance(question, GetMap):
-            return SetMap(
-                await asyncio.to_thread(self._maps.map_around, question.x, question.y, question.area)
-            )
+            around = question.x, question.y, question.area
+            return Reply(SetMap(await asyncio.to_thread(self._maps.map_around, *around)))
         if isinstance(question, GetPath):
             return await self._path(robot)
         if isinstance(question, GetPosIni):
-            return await self._begin(robot)
-        return await self._end(robot)
+            return Reply(await self._begin(robot))
+        return Reply(await self._end(robot))
 
-    async def _path(self, robot: str) -> SetPath:
+    async def _path(self, robot: str) -> Reply:
         task = self._book.task(robot)
         if task is None:
             raise RefusedError(f"GetPath: robot {robot!r} has no task; wait for SetPosEnd or SetPath")
@@ -66,7 +72,7 @@ class Answering:
         if pose is None:
             raise RefusedError(f"GetPath: it is not known where robot {robot!r} is; send SendPos first")
         message, driven = task
-        return await asyncio.to_thread(way_left, message, (pose.x, pose.y), driven, self._planner)
+        return Reply(*await asyncio.to_thread(way_left, message, (pose.x, pose.y), driven, self._planner))
 
     async def _begin(self, robot: str) -> SetPosIni:
         given = await self._given("GetPosIni", robot, "SetPosIni", "SetPath")

@@ -155,15 +155,15 @@ class Fleet:
         stopped = isinstance(request, Stopped) or self.robots.get(robot).ended_in_order
         known = self.robots.heard(robot, link, now, stopped=stopped)
         self._unsaved.add(known.name)
-        answer = None
+        answer, note = None, ""
         if isinstance(request, OpAck):
             self._measure(known, await self._book.acknowledged(robot, request))
         elif isinstance(request, Observed):
             await self.observations.add(known, link, request, id)
         elif isinstance(request, Question):
-            answer = await self._answering.answer(robot, request)
+            answer, note = await self._answering.answer(robot, request)
             self.emergency.check(answer)
-        return Outcome(robot, OpAck(id=id) if request.acknowledged else None, answer)
+        return Outcome(robot, OpAck(id=id, reason=note or None) if request.acknowledged else None, answer)
 
     async def finish(self, outcomes: list[Outcome], request_ids: list[int], *, acks: bool) -> None:
         """Write the answers of requests into SA, with their OpAcks if ``acks``, and delete them from RR.

@@ -32,6 +32,7 @@ from .links.websocket import WebSocketLink
 from .messages import MessageError, check_robot_name
 from .monitoring.metrics import Metrics
 from .monitoring.tasks import Work, every, keep_all_going
+from .road_planning import RoadPlanner
 from .schemas.documents import served
 from .site_maps import SiteMaps
 from .site_watch import SiteWatch, stamp_of
@@ -175,7 +176,8 @@ async def run(settings: GatewaySettings, signals: Signals, started: Callable[[st
         accounts = gate.book.has_operator(time.time())
         check_reach(settings.host, tls=tls is not None, accounts=accounts)
         maps = SiteMaps(site)
-        fleet = Fleet(maps, database)
+        planner = await asyncio.to_thread(RoadPlanner, lambda: maps.site)
+        fleet = Fleet(maps, database, planner=planner)
         await fleet.start()
         stack.push_async_callback(_save_last, fleet, gate)
         gateway = Gateway(fleet, gate, tls)

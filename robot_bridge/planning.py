@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
@@ -23,33 +23,48 @@ _LOOK_AHEAD = 5.0
 """metres of a drawn path ahead on which a robot may join it again, so that a loop is not cut short."""
 
 
-class Planner(Protocol):
-    """Finds a way. Paths begin at ``start`` and end at ``goal``, and have at least two points."""
+class Planned(NamedTuple):
+    """A path from start to goal, at least two points; ``note`` says where it is not what one would expect."""
 
-    def path(self, start: Point, goal: Point) -> Sequence[Point]:
-        """Return the points of a path; raises RefusedError when there is none."""
+    points: Sequence[Point]
+    note: str = ""
+
+
+class Planner(Protocol):
+    """Finds a way. Paths begin at ``start`` and end at ``goal``."""
+
+    def path(self, start: Point, goal: Point) -> Planned:
+        """Return a path; raises RefusedError when there is none."""
 
 
 class StraightPlanner:
     """Knows no roads: every path is one straight line."""
 
-    def path(self, start: Point, goal: Point) -> Sequence[Point]:
+    def path(self, start: Point, goal: Point) -> Planned:
         """Return ``start`` and ``goal``."""
-        return [start, goal]
+        return Planned([start, goal])
 
 
-def way_left(task: SetPosEnd | SetPath, start: Point, driven: float, planner: Planner) -> SetPath:
+class WayLeft(NamedTuple):
+    """What is left of a task, and the planner's note about it."""
+
+    message: SetPath
+    note: str = ""
+
+
+def way_left(task: SetPosEnd | SetPath, start: Point, driven: float, planner: Planner) -> WayLeft:
     """Return the path from ``start`` to the end of ``task``.
 
     Of a path that was drawn it is what lies ahead of the first ``driven`` metres. Raises RefusedError when
     the planner finds no way.
     """
     if isinstance(task, SetPosEnd):
-        return SetPath(list(planner.path(start, (task.x, task.y))), task.theta)
+        planned = planner.path(start, (task.x, task.y))
+        return WayLeft(SetPath(list(planned.points), task.theta), planned.note)
     line = Polyline(task.points)
     here = _joins(line, start, driven)
     corners = [point for point, at in zip(task.points, line.stations, strict=True) if at > here + _SAME]
-    return SetPath(_without_repetition([start, line.at(here), *(corners or [line.end])]), task.theta)
+    return WayLeft(SetPath(_without_repetition([start, line.at(here), *(corners or [line.end])]), task.theta))
 
 
 def _joins(line: Polyline, start: Point, driven: float) -> float:

@@ -40,6 +40,11 @@ class SiteMaps:
         self._drawn = Drawn(site, self._drawn.objects)
 
     @property
+    def site(self) -> Site:
+        """The site as it was published last."""
+        return self._site
+
+    @property
     def settings(self) -> SiteSettings:
         """The settings of the site."""
         return self._site.settings

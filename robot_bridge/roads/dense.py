@@ -15,6 +15,8 @@ _STRAIGHT = math.radians(0.5)
 """Bends below this are none."""
 _STEP = math.radians(10.0)
 """The greatest turn between two points of an arc."""
+_LEAST_RADIUS = 0.05
+"""Metres below which an arc is a corner, and its many points no help."""
 _WOBBLE = 0.05
 """Metres by which digitised points may be off the line through their neighbours without being bends."""
 
@@ -93,7 +95,8 @@ class _Corner:
         tangent = min(metres[0] * share[0], metres[1] * share[1])
         by_length = tangent / math.tan(turn / 2)
         by_width = room / (1 / math.cos(turn / 2) - 1)
-        return cls(line[k], u, v, turn, min(driving.turning_radius, by_length, by_width))
+        radius = min(driving.turning_radius, by_length, by_width)
+        return cls(line[k], u, v, turn, radius if radius >= _LEAST_RADIUS else 0.0)
 
     @property
     def offset(self) -> float:

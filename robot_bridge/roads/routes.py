@@ -65,6 +65,11 @@ class Router:
         self._arcs_of_edge = _arcs_of_edges(network)
         self._ready: OrderedDict[Restrictions, tuple[Engine, NDArray[np.bool_]]] = OrderedDict()
 
+    @property
+    def engine_name(self) -> str:
+        """What finds the ways, as people are told."""
+        return self._engine(Restrictions())[0].name
+
     def close(self, edges: Sequence[int]) -> None:
         """Close ``edges`` for every route from now on."""
         self._set_closed(edges, True)

@@ -207,7 +207,7 @@ def give_a_track(robot, desk):
     """Send the robot what it asks for later: where its track begins and ends."""
     robot.tell("SendPos", {"x": 20.0, "y": 8.0, "theta": 0.0, "v": 0.0})
     desk.send("track-begin", "r1", "SetPosIni", x=20.0, y=8.0, theta=0.0)
-    desk.send("track-end", "r1", "SetPosEnd", x=45.0, y=20.0, theta=1.57, cone=False)
+    desk.send("track-end", "r1", "SetPosEnd", x=22.0, y=8.0, theta=1.57, cone=False)
     for op in ("SetPosIni", "SetPosEnd"):
         robot.say(robot.wait_for(op)["id"])
     for command in ("track-begin", "track-end"):
