@@ -34,16 +34,17 @@ held against what the desks were told and the robots wrote down.
 
 {commands}
 
-Told: commands that an operator was told are queued. Each of them was delivered, acted on once (a robot that
-had forgotten it when it was restarted is told again, and does it again), and has ended, in an order of steps
-that can be; those that were aborted before the robot read them were not acted on. Back after: seconds from
-the fault, its own length included, to the next command that was reached; median and longest.
+Told: commands that an operator was told are queued. Each of them was delivered, acted on once, and has ended,
+in an order of steps that can be. Those told and not acted on were aborted before the robot read them; those
+acted on again were told to a robot that was started again and had forgotten them. Asked again: for want of an
+answer. Back after: seconds from the fault, its own length and the start of what was killed included, to the
+next command that was reached; median and longest.
 
 {kept}
 
 Accepted: the robot was told so; each is stored once, as it was told. Lost young: positions that a robot told
-within two seconds before the gateway was killed. None that was older is lost. Stored twice: positions of
-which a gateway that died did not know that they were stored.
+within two seconds before the gateway was killed; none that was older is lost. Stored twice: positions of
+which the gateway did not know that they were stored, when it or its database died.
 
 Wrong in all of this: {wrong}.
 """
@@ -61,7 +62,11 @@ def measure(_data: Path) -> Part:
     """Break everything on each kind of database."""
     seed = random.randrange(LONGEST_SEED)
     print(f"seed {seed}", file=sys.stderr)
-    runs = list(_runs(seed))
+    return part(seed, list(_runs(seed)))
+
+
+def part(seed: int, runs: list[Run]) -> Part:
+    """Return what is told of some runs, which were random by ``seed``."""
     wrong = [f"{run.kind}, {run.fault}: {text}" for run in runs for text in run.findings.wrong]
     text = TEXT.format(
         robots=ROBOTS, seed=seed, commands=_commands(runs), kept=_kept(runs), wrong=len(wrong) or "nothing"

@@ -90,7 +90,12 @@ def act_twice(story):
 
 
 def act_again_in_another_life(story):
+    story.lines.append({**story.lines[0], "life": 2, "at": 2.1, "id": 9})
+
+
+def test_a_robot_that_died_before_it_said_that_it_had_read_a_message_may_act_on_it_again(story):
     story.lines.append({**story.lines[0], "life": 2, "at": 2.1})
+    assert wrong(story) == []
 
 
 def act_late(story):
