@@ -10,10 +10,12 @@ from qgis.PyQt.QtGui import QIcon
 from .build_road_network import BuildRoadNetwork
 from .check_road_network import CheckRoadNetwork
 from .check_robot_map import CheckRobotMap
+from .cone_layout import ConeLayout
 from .export_navigation_map import ExportNavigationMap
 from .export_robot_map import ExportRobotMap
 from .export_robot_map_tiles import ExportRobotMapTiles
 from .find_route import FindRoute
+from .import_cone_layout import ImportConeLayout
 from .load_robot_map import LoadRobotMap
 from .publish_site import PublishSite
 
@@ -42,3 +44,5 @@ class FleetProvider(QgsProcessingProvider):
         self.addAlgorithm(BuildRoadNetwork())
         self.addAlgorithm(CheckRoadNetwork())
         self.addAlgorithm(FindRoute())
+        self.addAlgorithm(ConeLayout())
+        self.addAlgorithm(ImportConeLayout())

@@ -1,0 +1,109 @@
+"""The layers that cones become, and the CRS they are in."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from qgis.core import (
+    QgsCoordinateReferenceSystem,
+    QgsGeometry,
+    QgsPointXY,
+    QgsProcessing,
+    QgsProcessingFeatureSource,
+    QgsProcessingOutputNumber,
+    QgsProcessingParameterCrs,
+    QgsProcessingParameterDefinition,
+    QgsProcessingParameterFeatureSink,
+    QgsWkbTypes,
+)
+
+from ...robot_bridge.layouts.checks import Finding
+from ...robot_bridge.layouts.cone import Cone
+from ..sites.site_crs import site_crs_for
+from .cone_ground import Ground
+from .errors import ParameterError
+from .fleet_algorithm import fields_of
+from .map_window import SITE_CRS
+from .sinks import fill
+
+CONES, FINDINGS = "CONES", "FINDINGS"
+CONE_COUNT, FINDING_COUNT = "CONE_COUNT", "FINDING_COUNT"
+STYLES = {CONES: "cones.qml", FINDINGS: "cone_findings.qml"}
+_CONES = {
+    "id": "string",
+    "order": "integer",
+    "heading": "double",
+    "colour": "string",
+    "role": "string",
+    "layout": "string",
+}
+_FINDINGS = {"kind": "string", "cone": "string", "text": "string"}
+
+
+def site_crs_parameter() -> QgsProcessingParameterDefinition:
+    """Return the parameter of the CRS that the cones get."""
+    title = "Site CRS, in metres (default: the project's, else the line's or the layer's)"
+    return QgsProcessingParameterCrs(SITE_CRS, title, optional=True)
+
+
+def add_layers(algorithm) -> None:
+    """Add the outputs to ``algorithm``."""
+    points = QgsProcessing.SourceType.TypeVectorPoint
+    algorithm.addParameter(QgsProcessingParameterFeatureSink(CONES, "Cones", points))
+    algorithm.addParameter(
+        QgsProcessingParameterFeatureSink(FINDINGS, "Findings", points, optional=True, createByDefault=True)
+    )
+    algorithm.addOutput(QgsProcessingOutputNumber(CONE_COUNT, "Cones"))
+    algorithm.addOutput(QgsProcessingOutputNumber(FINDING_COUNT, "Findings"))
+
+
+class ConeSetup:
+    """What is taken from the parameters in the main thread: fields, checks, and the CRS."""
+
+    def __init__(self, algorithm, parameters, context, source: QgsProcessingFeatureSource | None):
+        """:raises SiteCrsError: when the CRS cannot carry a site."""
+        self._fields = {CONES: fields_of(_CONES), FINDINGS: fields_of(_FINDINGS)}
+        self._ground = Ground(algorithm, parameters, context)
+        project = context.project()
+        self.crs = site_crs_for(
+            algorithm.parameterAsCrs(parameters, SITE_CRS, context),
+            project.crs() if project is not None else QgsCoordinateReferenceSystem(),
+            [source.sourceCrs()] if source is not None else [],
+        )
+        if not self.crs.isValid():
+            raise ParameterError("The CRS of the site is not known: give SITE_CRS, such as EPSG:32633.")
+
+    def write(self, algorithm, parameters, context, cones: Sequence[Cone], layout: str, feedback) -> dict:
+        """Check and write ``cones``; return the outputs, none after a cancel."""
+        findings = self._ground.check(cones, self.crs, feedback)
+        if findings is None:
+            return {}
+        rows = {
+            CONES: [(_point(cone), _values(cone, layout)) for cone in cones],
+            FINDINGS: [(_point(one), [one.kind.value, one.cone, one.text]) for one in findings],
+        }
+        made = {}
+        kind = QgsWkbTypes.Type.Point
+        for name, fields in self._fields.items():
+            sink, source = algorithm.parameterAsSink(parameters, name, context, fields, kind, self.crs)
+            if sink is not None:
+                made[name] = source
+                fill(sink, fields, rows[name], feedback)
+        algorithm.remember(made)
+        feedback.pushInfo(f"{len(cones)} cones")
+        return {**made, CONE_COUNT: len(cones), FINDING_COUNT: len(findings)}
+
+
+def theta_of(heading: float) -> float:
+    """Return radians counter-clockwise from x of ``heading``, degrees clockwise from north."""
+    return math.radians(90.0 - heading)
+
+
+def _point(what: Cone | Finding) -> QgsGeometry:
+    return QgsGeometry.fromPointXY(QgsPointXY(what.x, what.y))
+
+
+def _values(cone: Cone, layout: str) -> list:
+    heading = round((90.0 - math.degrees(cone.theta)) % 360.0, 6) % 360.0
+    return [cone.id, cone.order, heading, cone.colour, cone.role, layout]

@@ -1,0 +1,171 @@
+"""``fleet:conelayout``: a standard layout at a place or along a line, as a layer of cones."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from qgis.core import (
+    QgsCoordinateTransform,
+    QgsCsException,
+    QgsFeatureRequest,
+    QgsGeometry,
+    QgsProcessing,
+    QgsProcessingParameterBoolean,
+    QgsProcessingParameterEnum,
+    QgsProcessingParameterFeatureSource,
+    QgsProcessingParameterNumber,
+    QgsProcessingParameterPoint,
+    QgsProcessingParameterString,
+)
+
+from ...robot_bridge.layouts.catalogue import LAYOUTS
+from ...robot_bridge.layouts.cone import Cone
+from ...robot_bridge.layouts.placing import along, placed
+from ..sites.parts import parts_of
+from .cone_ground import ground_parameters
+from .cone_layer import STYLES, ConeSetup, add_layers, site_crs_parameter, theta_of
+from .errors import ParameterError, shown_by_processing
+from .fleet_algorithm import FleetAlgorithm
+
+LAYOUT, DIMENSIONS, PREFIX = "LAYOUT", "DIMENSIONS", "PREFIX"
+POINT, HEADING, LINE, LINE_ID, START, REVERSE = "POINT", "HEADING", "LINE", "LINE_ID", "START", "REVERSE"
+_REAL = QgsProcessingParameterNumber.Type.Double
+_WHOLE = QgsProcessingParameterNumber.Type.Integer
+
+
+class ConeLayout(FleetAlgorithm):
+    """Places the cones of a standard layout."""
+
+    GROUP = ("cones", "Cones")
+    NAME = "conelayout"
+    TITLE = "Cone layout"
+    SUMMARY = "Places a standard cone layout at a point and heading or along a line, and checks every cone."
+    ICON = "cone_layout.svg"
+    TAGS = ("cone", "slalom", "lane change", "ISO 3888", "ISO 4138", "Formula Student", "skid pad", "moose")
+    STYLES = STYLES
+    HELP = """
+    <p>Places a layout of traffic cones, either at a <b>point</b>, turned to a <b>heading</b> (degrees
+    clockwise from north), or along a <b>line</b> such as a road's centreline, from <b>start</b> metres after
+    its beginning. The layer has an id, the order of placing, the heading of travel, the colour and the role
+    of each cone.</p>
+    <p><b>Dimensions</b> change the standard's: <code>vehicle_width=1.7; lane_offset=3</code>. The log lists
+    those of the layout with their values. A wrong name or value is refused with what there is.</p>
+    <p>Every cone is <b>checked</b>: on one of the surfaces (of the allowed classes), away from obstacles and
+    from other cones. What is wrong becomes a layer of findings with the cone's id and the reason; the cones
+    are placed nevertheless.</p>
+    <pre>qgis_process run fleet:conelayout -- LAYOUT=iso3888_1 POINT="640450,5193531 [EPSG:32633]" \\
+    HEADING=90 DIMENSIONS="vehicle_width=1.7" SITE_CRS=EPSG:32633 CONES=cones.gpkg</pre>
+    """
+
+    def initAlgorithm(self, configuration=None):
+        for parameter in (
+            QgsProcessingParameterEnum(
+                LAYOUT, "Layout", list(LAYOUTS), defaultValue=next(iter(LAYOUTS)), usesStaticStrings=True
+            ),
+            QgsProcessingParameterString(
+                DIMENSIONS, "Dimensions other than the standard's, as name=value; ...", optional=True
+            ),
+            QgsProcessingParameterPoint(POINT, "Place of the layout's origin", optional=True),
+            QgsProcessingParameterNumber(HEADING, "Heading, clockwise from north [degrees]", _REAL, 0.0),
+            QgsProcessingParameterFeatureSource(
+                LINE,
+                "Line to lie along, instead of a place",
+                [QgsProcessing.SourceType.TypeVectorLine],
+                optional=True,
+            ),
+            QgsProcessingParameterNumber(
+                LINE_ID, "Id of the line's feature (default: the only one)", _WHOLE, optional=True
+            ),
+            QgsProcessingParameterNumber(START, "Begin so far along the line [m]", _REAL, 0.0),
+            QgsProcessingParameterBoolean(REVERSE, "Against the direction of the line", defaultValue=False),
+            QgsProcessingParameterString(PREFIX, "Ids begin with (default: the layout)", optional=True),
+            *ground_parameters(),
+            site_crs_parameter(),
+        ):
+            self.addParameter(parameter)
+        add_layers(self)
+
+    def checkParameterValues(self, parameters, context):
+        given = [name for name in (POINT, LINE) if parameters.get(name) not in (None, "")]
+        if len(given) != 1:
+            how = "Both POINT and LINE are" if given else "Neither POINT nor LINE is"
+            return False, f"{how} given: give the place of the layout, or a line that it lies along."
+        return super().checkParameterValues(parameters, context)
+
+    def prepareAlgorithm(self, parameters, context, feedback):
+        with shown_by_processing():
+            self._line = self.parameterAsSource(parameters, LINE, context)
+            self._setup = ConeSetup(self, parameters, context, self._line)
+        return True
+
+    def processAlgorithm(self, parameters, context, feedback):
+        with shown_by_processing():
+            kind = LAYOUTS[self.parameterAsEnumString(parameters, LAYOUT, context)]
+            layout = kind.of(dimensions_in(self.parameterAsString(parameters, DIMENSIONS, context)))
+            feedback.pushInfo(f"{kind.TITLE} ({kind.STANDARD})")
+            for one in kind.dimensions():
+                value = f"{one.name}={getattr(layout, one.name):g} {one.unit}".rstrip()
+                feedback.pushInfo(f"  {value}: {one.text}")
+            cones = layout.cones(self.parameterAsString(parameters, PREFIX, context).strip())
+            placed_cones = self._placed(cones, parameters, context)
+            return self._setup.write(self, parameters, context, placed_cones, kind.NAME, feedback)
+
+    def _placed(self, cones: list[Cone], parameters, context) -> list[Cone]:
+        if self._line is None:
+            point = self.parameterAsPoint(parameters, POINT, context, self._setup.crs)
+            theta = theta_of(self.parameterAsDouble(parameters, HEADING, context))
+            if not all(map(math.isfinite, (point.x(), point.y(), theta))):
+                raise ParameterError("POINT or HEADING is not finite: give numbers.")
+            return placed(cones, point.x(), point.y(), theta)
+        points = self._points(parameters, context)
+        if self.parameterAsBool(parameters, REVERSE, context):
+            points = points[::-1]
+        return along(cones, points, self.parameterAsDouble(parameters, START, context))
+
+    def _points(self, parameters, context) -> np.ndarray:
+        """Return the points of the one line, in the site CRS."""
+        request = QgsFeatureRequest()
+        wanted = parameters.get(LINE_ID)
+        if wanted not in (None, ""):
+            request.setFilterFid(self.parameterAsInt(parameters, LINE_ID, context))
+        features = list(self._line.getFeatures(request.setLimit(2)))
+        if len(features) != 1:
+            found = f"no feature {wanted}" if wanted not in (None, "") else "not exactly one feature"
+            raise ParameterError(
+                f"The layer {self._line.sourceName()} has {found}: choose one line by LINE_ID, or select "
+                "it and tick 'Selected features only'."
+            )
+        geometry = QgsGeometry(features[0].geometry())
+        transform = QgsCoordinateTransform(
+            self._line.sourceCrs(), self._setup.crs, context.transformContext()
+        )
+        try:
+            geometry.transform(transform)
+        except QgsCsException as error:
+            raise ParameterError(f"The line cannot be transformed into the site's CRS ({error}).") from error
+        lines = parts_of(geometry).lines
+        if len(lines) != 1:
+            raise ParameterError(
+                f"The feature {features[0].id()} of {self._line.sourceName()} has {len(lines)} lines: split "
+                "it, or choose one that has one."
+            )
+        return lines[0]
+
+
+def dimensions_in(text: str) -> dict[str, float]:
+    """Return the numbers of ``name=value; name=value``.
+
+    :raises ParameterError: naming the part that is none.
+    """
+    values = {}
+    for part in (part.strip() for part in text.replace(",", ";").split(";")):
+        name, _, number = (word.strip() for word in part.partition("="))
+        try:
+            if part:
+                values[name] = float(number)
+        except ValueError as error:
+            raise ParameterError(
+                f"DIMENSIONS has {part!r}, which is not name=value with a number: write such as spacing=15."
+            ) from error
+    return values

@@ -1,0 +1,174 @@
+"""``fleet:importconelayout``: cones from a CSV file or a layer, moved and turned to their place."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from qgis.core import (
+    NULL,
+    QgsCoordinateTransform,
+    QgsCsException,
+    QgsFeature,
+    QgsProcessing,
+    QgsProcessingParameterFeatureSource,
+    QgsProcessingParameterFile,
+    QgsProcessingParameterNumber,
+    QgsProcessingParameterPoint,
+    QgsProcessingParameterString,
+    QgsWkbTypes,
+)
+
+from ...robot_bridge.layouts.cone import Cone
+from ...robot_bridge.layouts.placing import placed
+from ...robot_bridge.layouts.table import Columns, cones_of, read_csv
+from .cone_ground import ground_parameters
+from .cone_layer import STYLES, ConeSetup, add_layers, site_crs_parameter
+from .errors import ParameterError, shown_by_processing
+from .fleet_algorithm import FleetAlgorithm
+
+FILE, INPUT, ORIGIN, ROTATION, NAME = "FILE", "INPUT", "ORIGIN", "ROTATION", "LAYOUT_NAME"
+X, Y = "X_FIELD", "Y_FIELD"
+_COLUMNS = {
+    X: ("x", "Column of x [m]", "x_m"),
+    Y: ("y", "Column of y [m]", "y_m"),
+    "ID_FIELD": ("id", "Column of ids", ""),
+    "ORDER_FIELD": ("order", "Column of the order of placing", ""),
+    "HEADING_FIELD": ("heading", "Column of headings, clockwise from the y axis [degrees]", ""),
+    "COLOUR_FIELD": ("colour", "Column of colours", ""),
+    "ROLE_FIELD": ("role", "Column of roles", ""),
+    "LAYOUT_FIELD": ("layout", "Column that names the layout of each row", ""),
+    "LAYOUT": ("only", "The one layout to take, by that column", ""),
+}
+
+
+class ImportConeLayout(FleetAlgorithm):
+    """Makes a layer of cones of a table or of another layer."""
+
+    GROUP = ("cones", "Cones")
+    NAME = "importconelayout"
+    TITLE = "Import cone layout"
+    SUMMARY = "Places the cones of a CSV file or a layer, turned and moved to their place, and checks them."
+    ICON = "import_cone_layout.svg"
+    TAGS = ("cone", "layout", "CSV", "import")
+    STYLES = STYLES
+    HELP = """
+    <p>Reads cones from a <b>CSV file</b> with a head line, in UTF-8, or from a <b>layer</b>. The columns are
+    named by parameters; only those of x and y are needed, and not even those for a layer of points with a
+    CRS, which is taken as it lies. A file or layer with several layouts gives one of them, by
+    <b>LAYOUT_FIELD</b> and <b>LAYOUT</b>.</p>
+    <p>Metres of a table are turned by <b>rotation</b> (degrees, counter-clockwise) and then moved to the
+    <b>origin</b>. A row that cannot be read is named with its column, and nothing is placed.</p>
+    <p>Every cone is <b>checked</b> as those of <i>Cone layout</i> are.</p>
+    <pre>qgis_process run fleet:importconelayout -- FILE=cone_layouts.csv COLOUR_FIELD=colour \\
+    LAYOUT_FIELD=track LAYOUT=eufs_skidpad ORIGIN="640520,5193530 [EPSG:32633]" ROTATION=90 \\
+    SITE_CRS=EPSG:32633 CONES=cones.gpkg</pre>
+    """
+
+    def initAlgorithm(self, configuration=None):
+        real = QgsProcessingParameterNumber.Type.Double
+        for parameter in (
+            QgsProcessingParameterFile(FILE, "CSV file", extension="csv", optional=True),
+            QgsProcessingParameterFeatureSource(
+                INPUT, "Layer, instead of a file", [QgsProcessing.SourceType.TypeVector], optional=True
+            ),
+            *(
+                QgsProcessingParameterString(name, title, default, optional=True)
+                for name, (_, title, default) in _COLUMNS.items()
+            ),
+            QgsProcessingParameterPoint(ORIGIN, "Where the table's 0,0 goes", optional=True),
+            QgsProcessingParameterNumber(ROTATION, "Rotation, counter-clockwise [degrees]", real, 0.0),
+            QgsProcessingParameterString(
+                NAME, "Name (default: the layout's, else the file's)", optional=True
+            ),
+            *ground_parameters(),
+            site_crs_parameter(),
+        ):
+            self.addParameter(parameter)
+        add_layers(self)
+
+    def checkParameterValues(self, parameters, context):
+        given = [name for name in (FILE, INPUT) if parameters.get(name) not in (None, "")]
+        if len(given) != 1:
+            how = "Both FILE and INPUT are" if given else "Neither FILE nor INPUT is"
+            return False, f"{how} given: give a CSV file, or a layer."
+        return super().checkParameterValues(parameters, context)
+
+    def prepareAlgorithm(self, parameters, context, feedback):
+        with shown_by_processing():
+            self._source = self.parameterAsSource(parameters, INPUT, context)
+            self._setup = ConeSetup(self, parameters, context, self._source)
+        return True
+
+    def processAlgorithm(self, parameters, context, feedback):
+        columns = Columns(
+            **{
+                field: self.parameterAsString(parameters, name, context).strip()
+                for name, (field, _, _) in _COLUMNS.items()
+            }
+        )
+        with shown_by_processing():
+            name = self._name(parameters, context, columns)
+            if self._lies():
+                cones = self._as_it_lies(columns, name, context)
+            else:
+                cones = self._moved(self._table(columns, name, parameters, context), parameters, context)
+            return self._setup.write(self, parameters, context, cones, name, feedback)
+
+    def _lies(self) -> bool:
+        """Whether the cones come from points that have a place already."""
+        source = self._source
+        if source is None or not source.sourceCrs().isValid():
+            return False
+        return QgsWkbTypes.geometryType(source.wkbType()) == QgsWkbTypes.GeometryType.PointGeometry
+
+    def _name(self, parameters, context, columns: Columns) -> str:
+        given = self.parameterAsString(parameters, NAME, context).strip() or columns.only
+        if given:
+            return given
+        file = self.parameterAsFile(parameters, FILE, context)
+        return self._source.sourceName() if self._source is not None else Path(file).stem
+
+    def _table(self, columns: Columns, name: str, parameters, context) -> list[Cone]:
+        if self._source is None:
+            head, rows = read_csv(Path(self.parameterAsFile(parameters, FILE, context)))
+            return cones_of(rows, head, columns, name)
+        rows = [_attributes(feature) for feature in self._source.getFeatures()]
+        return cones_of(rows, self._source.fields().names(), columns, name, first=1)
+
+    def _as_it_lies(self, columns: Columns, name: str, context) -> list[Cone]:
+        """Return the cones of the layer's points, in the site CRS."""
+        transform = QgsCoordinateTransform(
+            self._source.sourceCrs(), self._setup.crs, context.transformContext()
+        )
+        rows = []
+        for feature in self._source.getFeatures():
+            geometry = feature.geometry()
+            try:
+                geometry.transform(transform)
+                points = list(geometry.vertices())
+            except QgsCsException:
+                points = []
+            if len(points) != 1:
+                raise ParameterError(
+                    f"Feature {feature.id()} of {self._source.sourceName()} is not one point with a place in "
+                    "the site's CRS: correct it or leave it out."
+                )
+            rows.append({**_attributes(feature), "$x": points[0].x(), "$y": points[0].y()})
+        head = [*self._source.fields().names(), "$x", "$y"]
+        return cones_of(rows, head, replace(columns, x="$x", y="$y"), name, first=1)
+
+    def _moved(self, cones: list[Cone], parameters, context) -> list[Cone]:
+        if parameters.get(ORIGIN) in (None, ""):
+            raise ParameterError("ORIGIN is not given: say where the table's 0,0 goes.")
+        origin = self.parameterAsPoint(parameters, ORIGIN, context, self._setup.crs)
+        turn = math.radians(self.parameterAsDouble(parameters, ROTATION, context))
+        return placed(cones, origin.x(), origin.y(), turn)
+
+
+def _attributes(feature: QgsFeature) -> dict[str, Any]:
+    """Return the attributes by name, None where there is none."""
+    values = (None if value == NULL else value for value in feature.attributes())
+    return dict(zip(feature.fields().names(), values, strict=True))

@@ -1,0 +1,189 @@
+"""``fleet:conelayout``: standard layouts at a place or along a line, every cone checked."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from qgis.core import (
+    QgsCoordinateReferenceSystem,
+    QgsFeature,
+    QgsGeometry,
+    QgsProcessingContext,
+    QgsProcessingException,
+    QgsProject,
+    QgsVectorLayer,
+)
+
+UTM = "EPSG:32633"
+X, Y = 640500.0, 5193500.0
+
+
+def layer(kind, *texts, fields="", values=(), name="Given"):
+    """Return a layer in memory with the geometries of ``texts``, moved to the site."""
+    made = QgsVectorLayer(f"{kind}?crs={UTM}{fields}", name, "memory")
+    features = []
+    for text in texts:
+        feature = QgsFeature(made.fields())
+        geometry = QgsGeometry.fromWkt(text)
+        geometry.translate(X, Y)
+        feature.setGeometry(geometry)
+        feature.setAttributes(list(values))
+        features.append(feature)
+    made.dataProvider().addFeatures(features)
+    return made
+
+
+@pytest.fixture
+def place(provider, listener):
+    """Run the algorithm and return its outputs."""
+    import processing
+
+    project = QgsProject()
+
+    def run(**parameters):
+        context = QgsProcessingContext()
+        context.setProject(project)
+        project.setCrs(QgsCoordinateReferenceSystem(UTM))
+        everything = {"CONES": "memory:", "FINDINGS": "memory:", **parameters}
+        return processing.run("fleet:conelayout", everything, context=context, feedback=listener)
+
+    return run
+
+
+def rows(results):
+    return {
+        f["order"]: (f.geometry().asPoint().x() - X, f.geometry().asPoint().y() - Y, f["heading"])
+        for f in results["CONES"].getFeatures()
+    }
+
+
+def test_a_heading_is_clockwise_from_north(place):
+    results = place(LAYOUT="slalom", POINT=f"{X},{Y} [{UTM}]", HEADING=90, DIMENSIONS="spacing=10; count=2")
+    made = rows(results)
+    # Two cones of the gate, then those 6 and 16 m to the east.
+    assert made[3] == pytest.approx((6, 0, 90))
+    assert made[4] == pytest.approx((16, 0, 90))
+    assert results["CONES"].crs().authid() == UTM
+    north = rows(place(LAYOUT="slalom", POINT=f"{X},{Y} [{UTM}]"))
+    assert north[3] == pytest.approx((0, 6, 0), abs=1e-6)
+
+
+def test_each_cone_has_its_attributes_and_the_log_has_the_dimensions(place, listener):
+    results = place(LAYOUT="fs_acceleration", POINT=f"{X},{Y} [{UTM}]", PREFIX="a")
+    features = {f["id"]: f for f in results["CONES"].getFeatures()}
+    assert results["CONE_COUNT"] == len(features) == 78 - 1
+    first = features["a-1"]
+    assert (first["colour"], first["role"], first["layout"]) == (
+        "big_orange",
+        "start left",
+        "fs_acceleration",
+    )
+    assert "Formula Student acceleration (Formula Student Rules, D 5.1)" in listener.infos
+    assert any(info.strip().startswith("length=75 m: From the starting line") for info in listener.infos)
+
+
+def test_a_place_may_be_in_another_crs(place):
+    results = place(LAYOUT="slalom", POINT="16.8411,46.8818 [EPSG:4326]", SITE_CRS=UTM)
+    point = next(results["CONES"].getFeatures()).geometry().asPoint()
+    assert 640000 < point.x() < 641000 and 5193000 < point.y() < 5194000
+
+
+def test_along_a_line_cones_follow_it_and_reversed_they_come_back(place):
+    line = layer("LineString", "LINESTRING(0 0,100 0,100 100)")
+    given = {"LAYOUT": "corridor", "LINE": line, "DIMENSIONS": "length=150;width=4;cone_base=0;spacing=50"}
+    made = rows(place(**given, START=20))
+    assert made[1] == pytest.approx((20, 2, 90))
+    assert made[8] == pytest.approx((102, 70, 0))
+    back = rows(place(**given, START=20, REVERSE=True))
+    assert back[1] == pytest.approx((102, 80, 180))
+
+
+def test_a_line_is_chosen_by_its_id_where_there_are_several(place):
+    lines = layer("LineString", "LINESTRING(0 0,300 0)", "LINESTRING(0 50,300 50)")
+    assert rows(place(LAYOUT="slalom", LINE=lines, LINE_ID=2))[3][1] == pytest.approx(50)
+    with pytest.raises(QgsProcessingException, match="not exactly one feature: choose one line by LINE_ID"):
+        place(LAYOUT="slalom", LINE=lines)
+    with pytest.raises(QgsProcessingException, match="has no feature 9"):
+        place(LAYOUT="slalom", LINE=lines, LINE_ID=9)
+
+
+def test_each_cone_that_may_not_stand_there_is_a_finding(place, listener):
+    asphalt = layer("Polygon", "POLYGON((-5 -5,30 -5,30 5,-5 5,-5 -5))", fields="&field=surface:string")
+    for feature in asphalt.getFeatures():
+        asphalt.dataProvider().changeAttributeValues({feature.id(): {0: "asphalt"}})
+    post = layer("Point", "POINT(16.3 0)", name="Posts")
+    given = {
+        "LAYOUT": "slalom",
+        "DIMENSIONS": "count=3,spacing=10",
+        "POINT": f"{X},{Y} [{UTM}]",
+        "HEADING": 90,
+        "SURFACES": [asphalt],
+        "OBSTACLES": [post],
+    }
+    results = place(**given)
+    found = {(f["cone"], f["kind"]): f["text"] for f in results["FINDINGS"].getFeatures()}
+    assert set(found) == {("slalom-4", "obstacle"), ("slalom-6", "surface"), ("slalom-7", "surface")}
+    assert "0.30 m from Posts, feature 1: keep 0.5 m" in found["slalom-4", "obstacle"]
+    assert results["FINDING_COUNT"] == 3
+    assert found["slalom-4", "obstacle"] in listener.warnings
+    assert place(**given, ALLOWED="asphalt", OBSTACLE_DISTANCE=0.2)["FINDING_COUNT"] == 2
+    assert place(**given, ALLOWED="gravel", OBSTACLE_DISTANCE=0)["FINDING_COUNT"] == 7
+    assert "No surface is of class gravel: the layers have asphalt." in listener.warnings
+
+
+def test_without_surfaces_it_is_said_that_they_are_not_checked(place, listener):
+    assert place(LAYOUT="slalom", POINT=f"{X},{Y} [{UTM}]")["FINDING_COUNT"] == 0
+    assert any("whether the cones stand on the road is not checked" in info for info in listener.infos)
+
+
+@pytest.mark.parametrize(
+    ("parameters", "reason"),
+    [
+        ({}, "Neither POINT nor LINE is given"),
+        ({"POINT": "0,0", "DIMENSIONS": "spacing=ten"}, "'spacing=ten', which is not name=value"),
+        (
+            {"POINT": "0,0", "DIMENSIONS": "width=10"},
+            "slalom has no dimension 'width': give cone_base, count",
+        ),
+    ],
+)
+def test_what_cannot_be_is_refused_with_what_to_do(place, parameters, reason):
+    with pytest.raises(QgsProcessingException, match=reason):
+        place(LAYOUT="slalom", **parameters)
+
+
+def test_a_crs_whose_metres_are_none_is_refused(qgis_process, tmp_path):
+    where = ("POINT=0,0", "SITE_CRS=EPSG:3857", f"CONES={tmp_path / 'cones.gpkg'}")
+    done = qgis_process("run", "fleet:conelayout", "--", "LAYOUT=slalom", *where)
+    assert done.status != 0
+    assert "EPSG:3857" in done.said and "its metres are not metres" in done.said
+    assert "Traceback" not in done.said
+
+
+def test_a_line_that_is_too_short_says_how_much_is_missing(place):
+    line = layer("LineString", "LINESTRING(0 0,100 0)")
+    with pytest.raises(QgsProcessingException, match=r"100\.00 m long and the layout reaches to 156\.00 m"):
+        place(LAYOUT="slalom", LINE=line)
+
+
+def test_cancelling_gives_no_layer(place, listener):
+    listener.cancel()
+    assert place(LAYOUT="slalom", POINT=f"{X},{Y} [{UTM}]").get("CONES") is None
+
+
+def test_a_process_with_no_display_places_it_on_the_sample_sites_road(qgis_process, root, tmp_path):
+    site = root / "resources" / "sample_site" / "sample_site.gpkg"
+    target, findings = tmp_path / "cones.gpkg", tmp_path / "findings.gpkg"
+    done = qgis_process(
+        "run", "fleet:conelayout", "--", "LAYOUT=iso3888_1", "POINT=640450,5193531 [EPSG:32633]",
+        "HEADING=90", "DIMENSIONS=vehicle_width=1.7", f"SITE_CRS={UTM}",
+        f"SURFACES={site}|layername=road_surfaces", f"CONES={target}", f"FINDINGS={findings}",
+    )  # fmt: skip
+    assert done.status == 0, done.said
+    assert done.result("CONE_COUNT") == 18
+    made = {f["order"]: f for f in QgsVectorLayer(str(target)).getFeatures()}
+    assert done.result("FINDING_COUNT") == QgsVectorLayer(str(findings)).featureCount()
+    first, last = (made[k].geometry().asPoint() for k in (1, 17))
+    # From the first to the last left cone: 125 m along, and half of what the exit is wider.
+    assert math.dist((first.x(), first.y()), (last.x(), last.y())) == pytest.approx(125, abs=0.001)
