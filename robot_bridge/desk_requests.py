@@ -80,19 +80,19 @@ async def _get_positions(fleet: Fleet, _request: GetPositions, _caller: Caller) 
 
 
 async def _set_positions(fleet: Fleet, request: SetPositions, caller: Caller) -> Json:
-    return _commands(await fleet.set_positions(request.positions, caller.operator))
+    return _commands(await fleet.orders.set_positions(request.positions, caller.operator))
 
 
 async def _send(fleet: Fleet, request: Send, caller: Caller) -> Json:
-    return to_json(await fleet.send(request, caller.operator))
+    return to_json(await fleet.orders.send(request, caller.operator))
 
 
 async def _abort_all(fleet: Fleet, request: AbortAll, caller: Caller) -> Json:
-    return _commands(await fleet.abort_all(caller.operator, request.command, request.reason))
+    return _commands(await fleet.orders.abort_all(caller.operator, request.command, request.reason))
 
 
 async def _abort(fleet: Fleet, request: AbortTask, caller: Caller) -> Json:
-    return to_json(await fleet.abort(request, caller.operator))
+    return to_json(await fleet.orders.abort(request, caller.operator))
 
 
 async def _emergency_stop(fleet: Fleet, request: EmergencyStop, caller: Caller) -> Json:

@@ -9,31 +9,23 @@ from __future__ import annotations
 import asyncio
 import logging
 import time
-import uuid
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from copy import copy
-from dataclasses import replace
 from typing import Any, Protocol
 
 from sqlalchemy import Connection
 
 from . import exchange
 from .answering import Answering
-from .command_book import CommandBook, Order
+from .command_book import CommandBook
 from .emergency import HELD_BACK, EmergencyStops
-from .errors import RefusedError
 from .exchange import Outcome
 from .ground_track import GroundTracks
 from .handshake import Holds, refusal
 from .messages import (
-    COMMANDS,
-    Abort,
-    AbortTask,
-    Command,
     CommandReport,
     CommandState,
-    MessageError,
     ObservationReport,
     Observed,
     OpAck,
@@ -41,19 +33,16 @@ from .messages import (
     Ready,
     Request,
     RobotReport,
-    Send,
     SendGPS,
     SendPos,
     SetMap,
     Start,
     Stopped,
-    TargetPosition,
-    check_robot_name,
     to_json,
 )
 from .monitoring.tally import Tally
 from .observation_book import ObservationBook
-from .places import check_places, places_of
+from .ordering import Orders
 from .planning import Planner, StraightPlanner
 from .robots import Robot, Robots
 from .served_site import ServedSite
@@ -64,7 +53,6 @@ from .store.answers import AnswerRow
 from .store.database import Database
 from .store.trajectories import Fix
 from .trajectories.recorder import Recorder
-from .wire import decode_answer
 
 log = logging.getLogger(__name__)
 
@@ -99,6 +87,7 @@ class Fleet:
             self._outbox_changed,
             lambda message: self.emergency.check(message),
         )
+        self.orders = Orders(site, self.robots, self._book, database)
         self.emergency = EmergencyStops(self._book, database, clock, self.robots.names, self.announce)
         self.recorder = Recorder(lambda: self.site.settings.trajectories)
         self.observations = ObservationBook(site, database, clock, self._observation_changed)
@@ -235,51 +224,6 @@ class Fleet:
         """Return the robots that changed after revision ``since`` of :attr:`robots`."""
         return self.robots.reports(self._clock(), since)
 
-    async def send(self, send: Send, operator: str) -> CommandReport:
-        """Issue one command; returns when it is stored. Raises RefusedError, MessageError, StoreError."""
-        order = self._order(send.command, send.robot, send.op, send.params, operator)
-        order = replace(order, reason=send.reason, expires_in=send.expires_in)
-        return (await self._book.issue([order]))[0]
-
-    async def set_positions(self, positions: list[TargetPosition], operator: str) -> list[CommandReport]:
-        """Issue a target for each robot, all of them or none."""
-        names = [position.robot for position in positions]
-        twice = sorted({name for name in names if names.count(name) > 1})
-        if twice:
-            raise RefusedError(
-                f"positions: {', '.join(twice)} is named more than once; give each robot one target"
-            )
-        orders = []
-        for position in positions:
-            target = {name: value for name, value in to_json(position).items() if name != "robot"}
-            orders.append(self._order(str(uuid.uuid4()), position.robot, "SetPosEnd", target, operator))
-        return await self._book.issue(orders)
-
-    async def abort(self, request: AbortTask, operator: str) -> CommandReport:
-        """Tell a robot to abort its task, or to abort one command if that still is its task."""
-        robot = request.robot or self._book.robot_of(request.aborts or "")
-        if robot is None:
-            # Asked again, after what it aborts has ended: answered as it was.
-            known = await self._database.run(commands.find, request.command)
-            if known is not None:
-                return known
-            raise RefusedError(
-                f"command {request.aborts} has ended or was never issued, so there is nothing to abort"
-            )
-        order = self._order(request.command, robot, Abort.__name__, {}, operator)
-        order = replace(order, reason=request.reason, aborts=request.aborts)
-        return (await self._book.issue([order]))[0]
-
-    async def abort_all(
-        self, operator: str, command: str | None = None, reason: str | None = None
-    ) -> list[CommandReport]:
-        """Tell every robot to abort its task; asked again with the same ``command`` id it changes nothing."""
-        command = command or str(uuid.uuid4())
-        ids = {name: uuid.uuid5(uuid.NAMESPACE_OID, f"{command} {name}") for name in self.robots.names()}
-        return await self._book.issue(
-            [Order(str(id), name, Abort(), operator, reason) for name, id in ids.items()]
-        )
-
     async def commands(self, robot: str | None, limit: int) -> list[CommandReport]:
         """Return the newest commands first, of one robot or of all."""
         return await self._database.run(commands.newest, robot, limit)
@@ -392,20 +336,6 @@ class Fleet:
         self._unsaved.add(robot)
         self.recorder.observe(Fix(robot, now, pose))
         await self._book.observe(robot, pose)
-
-    def _order(self, id: str, robot: str, op: str, params: dict[str, object], operator: str) -> Order:
-        check_robot_name(robot)
-        if robot not in self.robots:
-            known = ", ".join(self.robots.names()) or "none yet"
-            raise RefusedError(f"robot {robot!r} is not known to this gateway; known are: {known}")
-        if op not in COMMANDS:
-            raise MessageError(f"op {op!r} cannot be sent to a robot; choose one of {', '.join(COMMANDS)}")
-        message = decode_answer(op, params)
-        assert isinstance(message, Command)
-        if isinstance(message, Abort) and message.emergency:
-            raise MessageError("Abort: emergency is for every robot; ask for emergency_stop")
-        check_places(self.site, places_of(message))
-        return Order(id, robot, message, operator)
 
     def _measure(self, robot: Robot, written_at: float | None) -> None:
         """Take the time from a message's writing to its OpAck for the latency of a link that has no pings."""

@@ -72,7 +72,7 @@ class Yard:
     async def send(self, id, op="SetPosEnd", robot="r1", **params):
         if op == "SetPosEnd":
             params = {"x": 50.0, "y": 40.0, **params}
-        return await self.fleet.send(Send(f"command-{id}", robot, op, params), "Ada")
+        return await self.fleet.orders.send(Send(f"command-{id}", robot, op, params), "Ada")
 
     async def states(self):
         """The state of every command as it is stored, oldest first, by the id's end."""

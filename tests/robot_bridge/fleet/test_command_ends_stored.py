@@ -22,7 +22,7 @@ async def ready(yard):
 
 
 async def abort(yard, id="x", by="Bob", **what):
-    return await yard.fleet.abort(AbortTask(f"command-{id}", **what), by)
+    return await yard.fleet.orders.abort(AbortTask(f"command-{id}", **what), by)
 
 
 # --- abort one --------------------------------------------------------------------------------------------
@@ -79,7 +79,7 @@ def test_an_abort_names_one_thing(what):
 
 async def test_why_all_were_aborted_is_kept(ready):
     await ready.send("a")
-    await ready.fleet.abort_all("Ada", reason="lunch")
+    await ready.fleet.orders.abort_all("Ada", reason="lunch")
     assert await ready.reason("a") == "before the robot acknowledged it: lunch"
 
 
@@ -87,7 +87,9 @@ async def test_why_all_were_aborted_is_kept(ready):
 
 
 async def send(yard, id, robot="r1", **how):
-    return await yard.fleet.send(Send(f"command-{id}", robot, "SetPosEnd", {"x": 50, "y": 40}, **how), "Ada")
+    return await yard.fleet.orders.send(
+        Send(f"command-{id}", robot, "SetPosEnd", {"x": 50, "y": 40}, **how), "Ada"
+    )
 
 
 async def test_a_command_expires_when_it_says_also_after_a_restart(ready):

@@ -101,7 +101,7 @@ async def test_a_target_sent_after_an_abort_outlives_it(ready):
 
 async def test_abort_all_tells_every_robot(ready):
     await ready.ready("r2", link="sql")
-    aborts = await ready.fleet.abort_all("Ada")
+    aborts = await ready.fleet.orders.abort_all("Ada")
     assert sorted(abort.robot for abort in aborts) == ["r1", "r2"]
     assert ready.waiting("r1") == ["Abort"]
     assert "Abort" in ready.waiting("r2")
@@ -109,11 +109,11 @@ async def test_abort_all_tells_every_robot(ready):
 
 async def test_abort_all_asked_again_under_its_id_changes_nothing(ready):
     await ready.ready("r2", link="sql")
-    first = await ready.fleet.abort_all("Ada", "one-press-of-the-button")
-    again = await ready.fleet.abort_all("Ada", "one-press-of-the-button")
+    first = await ready.fleet.orders.abort_all("Ada", "one-press-of-the-button")
+    again = await ready.fleet.orders.abort_all("Ada", "one-press-of-the-button")
     assert [abort.command for abort in again] == [abort.command for abort in first]
     assert ready.waiting("r1") == ["Abort"]
-    other = await ready.fleet.abort_all("Ada")
+    other = await ready.fleet.orders.abort_all("Ada")
     assert {abort.command for abort in other}.isdisjoint(abort.command for abort in first)
 
 
@@ -308,7 +308,7 @@ async def test_a_robot_is_where_it_was_when_the_gateway_starts_anew(ready):
 
 async def test_set_positions_sends_all_targets(ready):
     await ready.ready("r2")
-    reports = await ready.fleet.set_positions(
+    reports = await ready.fleet.orders.set_positions(
         [TargetPosition("r1", 1.0, 2.0), TargetPosition("r2", 3.0, 4.0, 0.5, cone=False)], "Ada"
     )
     assert [(r.robot, r.op, r.params, r.state.value) for r in reports] == [
@@ -328,7 +328,7 @@ async def test_set_positions_sends_all_targets(ready):
 async def test_set_positions_sends_none_when_one_is_refused(ready, second, text):
     await ready.ready("r2")
     with pytest.raises(RefusedError, match=text):
-        await ready.fleet.set_positions([TargetPosition("r1", 1.0, 2.0), second], "Ada")
+        await ready.fleet.orders.set_positions([TargetPosition("r1", 1.0, 2.0), second], "Ada")
     assert await ready.states() == {}
     assert ready.waiting() == []
 
@@ -340,7 +340,7 @@ async def test_a_transaction_that_fails_leaves_nothing_in_memory(ready):
     ready.told.clear()
     refuse_commands_of_r2(ready)
     with pytest.raises(StoreError, match=r"database .* refuses a value"):
-        await ready.fleet.set_positions(
+        await ready.fleet.orders.set_positions(
             [TargetPosition("r1", 1.0, 2.0), TargetPosition("r2", 3.0, 4.0)], "Ada"
         )
     assert await ready.states() == {"a": "queued"}
@@ -398,7 +398,7 @@ async def test_a_step_that_cannot_be_stored_is_not_told_and_not_lost(ready):
 )
 async def test_what_cannot_be_driven_is_refused_and_not_stored(ready, op, params, error, text):
     with pytest.raises(error, match=text):
-        await ready.fleet.send(Send("command-a", "r1", op, params), "Ada")
+        await ready.fleet.orders.send(Send("command-a", "r1", op, params), "Ada")
     assert await ready.states() == {}
 
 

@@ -113,7 +113,7 @@ async def test_nothing_that_drives_is_sent_while_it_is_in_force_and_an_abort_is(
         with pytest.raises(
             RefusedError, match=r"emergency stop is in force since 00:16:40 UTC, by Ada \(smoke\)"
         ):
-            await two.fleet.send(Send("command-a", "r1", op, params), "Bob")
+            await two.fleet.orders.send(Send("command-a", "r1", op, params), "Bob")
     assert (await two.send("x", "Abort")).state.value == "queued"
     await control.clear()
     assert (await two.send("b")).state.value == "queued"
@@ -378,4 +378,4 @@ def test_a_reason_that_is_no_line_of_the_log_is_refused(reason):
 
 async def test_nobody_makes_an_emergency_of_one_robot(two):
     with pytest.raises(MessageError, match="emergency is for every robot; ask for emergency_stop"):
-        await two.fleet.send(Send("command-a", "r1", "Abort", {"emergency": True}), "Bob")
+        await two.fleet.orders.send(Send("command-a", "r1", "Abort", {"emergency": True}), "Bob")

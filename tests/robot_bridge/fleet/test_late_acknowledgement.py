@@ -19,7 +19,7 @@ async def overtaken(yard):
     await yard.take()
     await yard.send("a")
     (row,) = await yard.fleet.outbox("r1", 0)
-    await yard.fleet.abort(AbortTask("command-x", robot="r1"), "Bob")
+    await yard.fleet.orders.abort(AbortTask("command-x", robot="r1"), "Bob")
     assert await yard.reason("a") == "before the robot acknowledged it"
     yard.told.clear()
     return row.id
