@@ -45,6 +45,7 @@ screenshots: $(READY) build/run ## make the pictures in docs/images, in real win
 	@$(RUN) scripts/desktop.py --screenshot docs/images/desktop.png
 	@$(RUN) scripts/roles_picture.py
 	@$(HEADLESS) $(RUN) scripts/robot_map_pictures.py
+	@$(HEADLESS) $(RUN) scripts/cone_pictures.py
 	@$(HEADLESS) $(RUN) scripts/roads_picture.py
 
 install: $(READY) ## put the plugin into your QGIS profile (PROFILE=name, LINK=1 links this folder)

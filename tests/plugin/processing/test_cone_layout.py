@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-import math
+import re
+import shlex
 
 import pytest
+from fleet_supervisor.robot_bridge.layouts.catalogue import LAYOUTS
 from qgis.core import (
     QgsCoordinateReferenceSystem,
     QgsFeature,
@@ -172,18 +174,48 @@ def test_cancelling_gives_no_layer(place, listener):
     assert place(LAYOUT="slalom", POINT=f"{X},{Y} [{UTM}]").get("CONES") is None
 
 
-def test_a_process_with_no_display_places_it_on_the_sample_sites_road(qgis_process, root, tmp_path):
-    site = root / "resources" / "sample_site" / "sample_site.gpkg"
-    target, findings = tmp_path / "cones.gpkg", tmp_path / "findings.gpkg"
-    done = qgis_process(
-        "run", "fleet:conelayout", "--", "LAYOUT=iso3888_1", "POINT=640450,5193531 [EPSG:32633]",
-        "HEADING=90", "DIMENSIONS=vehicle_width=1.7", f"SITE_CRS={UTM}",
-        f"SURFACES={site}|layername=road_surfaces", f"CONES={target}", f"FINDINGS={findings}",
-    )  # fmt: skip
+@pytest.fixture(scope="module")
+def guide(root):
+    """What the guide says."""
+    return (root / "docs" / "cones.md").read_text(encoding="utf-8")
+
+
+def words_of(guide, algorithm, root, folder):
+    """Return the words of the guide's command for ``algorithm``, with the files where they are here."""
+    block = re.search(rf"^    qgis_process\.bin (run fleet:{algorithm} (?:.*\\\n)*.*)$", guide, re.MULTILINE)
+    words = shlex.split(block[1].replace("\\\n", " "))
+    return [
+        word.replace("=build/", f"={folder}/").replace("=resources/", f"={root}/resources/") for word in words
+    ]
+
+
+def test_a_process_with_no_display_places_it_on_the_sample_site_as_the_guide_says(
+    qgis_process, guide, root, tmp_path
+):
+    done = qgis_process(*words_of(guide, "conelayout", root, tmp_path))
     assert done.status == 0, done.said
     assert done.result("CONE_COUNT") == 18
-    made = {f["order"]: f for f in QgsVectorLayer(str(target)).getFeatures()}
-    assert done.result("FINDING_COUNT") == QgsVectorLayer(str(findings)).featureCount()
-    first, last = (made[k].geometry().asPoint() for k in (1, 17))
-    # From the first to the last left cone: 125 m along, and half of what the exit is wider.
-    assert math.dist((first.x(), first.y()), (last.x(), last.y())) == pytest.approx(125, abs=0.001)
+    assert done.result("FINDING_COUNT") == 0
+    made = {
+        f["order"]: f.geometry().asPoint() for f in QgsVectorLayer(str(tmp_path / "cones.gpkg")).getFeatures()
+    }
+    # Left cones: 15 + 30 + 25 + 25 + 15 m along; the exit lane is 0.1 times 1.7 m wider on each side.
+    assert (made[17].x() - made[1].x(), made[17].y() - made[1].y()) == pytest.approx((110, 0.17), abs=1e-6)
+
+
+def test_a_table_is_imported_as_the_guide_says(qgis_process, guide, root, tmp_path):
+    (tmp_path / "cones.csv").write_text("x,y,colour\n0,0,blue\n5,0,yellow\n", encoding="utf-8")
+    words = words_of(guide, "importconelayout", root, tmp_path)
+    done = qgis_process(*(word.replace("FILE=", f"FILE={tmp_path}/") for word in words))
+    assert done.status == 0, done.said
+    assert done.result("CONE_COUNT") == 2
+
+
+def test_the_guide_has_every_dimension_with_its_value_and_a_picture_of_every_layout(guide, root):
+    for name, kind in LAYOUTS.items():
+        section = re.search(rf"^### .*`{name}`$[\s\S]*?(?=^### |\Z)", guide, re.MULTILINE)[0]
+        assert (root / "docs" / "images" / f"cones-{name.replace('_', '-')}.png").is_file()
+        for one in kind.dimensions():
+            if one.name != "cone_base":
+                assert f"| `{one.name}` | {one.standard:g}" in section, f"{name}: {one.name}"
+    assert "`cone_base`, 0.285 m" in guide
