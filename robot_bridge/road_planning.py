@@ -68,6 +68,10 @@ class RoadPlanner:
                 [line.points for line in site.centrelines],
                 width=[line.width_m for line in site.centrelines],
                 surface=[line.surface for line in site.centrelines],
+                direction=[line.direction for line in site.centrelines],
+                speed=[line.speed_ms for line in site.centrelines],
+                closed=[line.closed for line in site.centrelines],
+                level=[line.level for line in site.centrelines],
             )
         )
         router = Router(network)

@@ -185,10 +185,10 @@ class RoadSource:
             lines,
             width=[one.width or width for one in known],
             surface=[one.surface for one in known],
-            direction=[one.direction for one in known],
-            speed=[one.speed or speed for one in known],
-            closed=[one.closed for one in known],
-            level=[one.level for one in known],
+            direction=[one.traffic.direction for one in known],
+            speed=[one.traffic.speed or speed for one in known],
+            closed=[one.traffic.closed for one in known],
+            level=[one.traffic.level for one in known],
         )
 
 

@@ -9,12 +9,14 @@ from typing import Generic, TypeVar
 import numpy as np
 from qgis.core import QgsAbstractGeometry, QgsFeature, QgsFeedback, QgsGeometry
 
+from ...robot_bridge.roads.centrelines import DEFAULT_SPEED
 from ...robot_bridge.sites.features import Area, Centreline
 from .feature_filter import FeatureFilter
 from .layer_rules import LayerRules
 from .obstacle_source import ObstacleSource
 from .parts import parts_of
 from .placing import LayerPlacing, PlacingError, SitePlacing
+from .road_attributes import WIDTH_FIELDS, RoadExpressions, RoadRules
 from .roles import KEEPOUT, ROAD_CENTRELINE, ROAD_SURFACE
 from .shapes import SAGITTA_M, polygons_of, shapes_of
 from .soundness import lines_with_length
@@ -22,7 +24,6 @@ from .soundness import lines_with_length
 DEFAULT_WIDTH_M = 3.5
 """The width of a road where none is known: one lane."""
 
-WIDTH_FIELDS = ("width_m", "width")
 LABEL_FIELDS = {ROAD_CENTRELINE: "surface", ROAD_SURFACE: "surface", KEEPOUT: "name"}
 """The field that labels a feature of each role where no expression does."""
 
@@ -52,6 +53,7 @@ def read_centrelines(
     for source in sources:
         layer = _GroundLayer(source, site, ROAD_CENTRELINE)
         width = layer.rules.rule("width", source.expressions.width or layer.rules.column(*WIDTH_FIELDS))
+        roads = RoadRules(layer.rules, RoadExpressions())
         unknown: list[int] = []
         for feature, geometry in layer.features(reading, feedback):
             notes: list[str] = []
@@ -60,8 +62,18 @@ def read_centrelines(
                 unknown.append(feature.id())
             lines = lines_of(geometry, notes)
             label = layer.label(feature, notes)
+            traffic = roads.traffic(notes)
             reading.items += [
-                Centreline(layer.placing.to_site(line), metres or default_width, label) for line in lines
+                Centreline(
+                    layer.placing.to_site(line),
+                    metres or default_width,
+                    label,
+                    direction=traffic.direction,
+                    speed_ms=traffic.speed or DEFAULT_SPEED,
+                    closed=traffic.closed,
+                    level=traffic.level,
+                )
+                for line in lines
             ]
             layer.note(feature, notes, reading)
         reading.warnings += layer.rules.warnings

@@ -9,7 +9,6 @@ from typing import Any
 from qgis.core import QgsExpression
 
 from ...robot_bridge.roads.centrelines import BACKWARD, BOTH, FORWARD
-from .ground_reading import WIDTH_FIELDS
 from .layer_rules import LayerRules, as_flag, as_metres
 
 _DIRECTIONS = {
@@ -20,6 +19,7 @@ _DIRECTIONS = {
 _KMH = re.compile(r"\s*(\d+(?:[.,]\d+)?)\s*(km/h|kmh)?\s*", re.ASCII)
 _MPH = re.compile(r"\s*(\d+(?:[.,]\d+)?)\s*mph\s*", re.ASCII)
 
+WIDTH_FIELDS = ("width_m", "width")
 DIRECTION_FIELDS = ("direction", "oneway", "one_way")
 SPEED_FIELDS = ("speed_ms",)
 KMH_FIELDS = ("maxspeed", "speed_limit")
@@ -39,15 +39,22 @@ class RoadExpressions:
 
 
 @dataclass(frozen=True)
-class RoadAttributes:
-    """What is known of one road; ``width`` in metres and ``speed`` in m/s are None where it is not known."""
+class Traffic:
+    """How one road may be driven; ``speed`` in m/s is None where it is not known."""
 
-    width: float | None
-    surface: str
     direction: int
     speed: float | None
     closed: bool
     level: int
+
+
+@dataclass(frozen=True)
+class RoadAttributes:
+    """What is known of one road; ``width`` in metres is None where it is not known."""
+
+    width: float | None
+    surface: str
+    traffic: Traffic
 
 
 class RoadRules:
@@ -77,6 +84,12 @@ class RoadRules:
         return RoadAttributes(
             width=self._rules.metres("width", self._width, notes),
             surface="" if surface is None else str(surface),
+            traffic=self.traffic(notes),
+        )
+
+    def traffic(self, notes: list[str]) -> Traffic:
+        """Return how the road that the rules are at may be driven."""
+        return Traffic(
             direction=self._direction_of(notes),
             speed=self._speed_of(notes),
             closed=self._closed_of(notes),

@@ -59,7 +59,8 @@ def _obstacle_row(rows: Sequence[OutlineRow], frame: SiteFrame) -> SiteRow:
 
 def _centreline_rows(content: SiteContent, frame: SiteFrame) -> Iterator[SiteRow]:
     for line in content.centrelines:
-        yield SiteRow(line_wkb(frame.to_crs(line.points)), {"width_m": line.width_m, "surface": line.surface})
+        values = {name: getattr(line, name) for name in CENTRELINES.fields}
+        yield SiteRow(line_wkb(frame.to_crs(line.points)), values)
 
 
 def _area_rows(spec: LayerSpec, areas: Sequence[Area], frame: SiteFrame) -> Iterator[SiteRow]:

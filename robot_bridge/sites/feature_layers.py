@@ -30,6 +30,10 @@ def centreline_layer(centrelines: Sequence[Centreline], frame: SiteFrame) -> Lay
         {
             "width_m": [line.width_m for line in centrelines],
             "surface": [line.surface for line in centrelines],
+            "direction": [line.direction for line in centrelines],
+            "speed_ms": [line.speed_ms for line in centrelines],
+            "closed": [line.closed for line in centrelines],
+            "level": [line.level for line in centrelines],
         },
     )
 
@@ -40,16 +44,28 @@ def centrelines_of(layer: Layer, frame: SiteFrame, place: str) -> tuple[Centreli
     :raises LayerError: naming a road whose width is not above 0 or that is not a line.
     """
     _require(layer, "LineString", place)
-    widths = np.asarray(layer.values["width_m"], dtype=np.float64)
-    if (widths <= 0).any():
-        k = int(np.argmax(widths <= 0))
-        raise LayerError(
-            f"{place}, layer {layer.spec.name}, feature {layer.ids[k]}: width_m is {widths[k]:g}; "
-            "a road is wider than 0 m. Correct it in the source layer and publish the site again."
-        )
+    for name, wanted in (("width_m", "a road is wider than 0 m"), ("speed_ms", "a speed is above 0 m/s")):
+        numbers = np.asarray(layer.values[name], dtype=np.float64)
+        if (numbers <= 0).any():
+            k = int(np.argmax(numbers <= 0))
+            raise LayerError(
+                f"{place}, layer {layer.spec.name}, feature {layer.ids[k]}: {name} is {numbers[k]:g}; "
+                f"{wanted}. Correct it in the source layer and publish the site again."
+            )
+    columns = [layer.values[name] for name in layer.spec.fields]
     return tuple(
-        Centreline(frame.to_site(np.asarray(geometry.coords)[:, :2]), float(width), surface or "")
-        for geometry, width, surface in zip(layer.geometries, widths, layer.values["surface"], strict=True)
+        Centreline(
+            frame.to_site(np.asarray(geometry.coords)[:, :2]),
+            width_m=float(width),
+            surface=surface or "",
+            direction=int(np.sign(direction)),
+            speed_ms=float(speed),
+            closed=bool(closed),
+            level=int(level),
+        )
+        for geometry, width, surface, direction, speed, closed, level in zip(
+            layer.geometries, *columns, strict=True
+        )
     )
 
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from ..roads.centrelines import DEFAULT_SPEED
+
 
 @dataclass(frozen=True)
 class LayerSpec:
@@ -33,6 +35,11 @@ OBSTACLES = LayerSpec(
     },
     defaults={"base_m": 0.0, "ext": ""},
 )
-CENTRELINES = LayerSpec("road_centrelines", "LineString", {"width_m": float, "surface": str})
+CENTRELINES = LayerSpec(
+    "road_centrelines",
+    "LineString",
+    {"width_m": float, "surface": str, "direction": int, "speed_ms": float, "closed": bool, "level": int},
+    defaults={"direction": 0, "speed_ms": DEFAULT_SPEED, "closed": False, "level": 0},
+)
 SURFACES = LayerSpec("road_surfaces", "Polygon", {"surface": str})
 KEEPOUTS = LayerSpec("keepouts", "Polygon", {"name": str})

@@ -94,3 +94,28 @@ def test_who_stands_beside_the_middle_of_a_road_joins_it_aslant(sample):
     assert np.diff(points[:, 0]).min() > 0
     assert np.abs(points[:, 1]).max() == 2.0
     assert points[np.argmin(np.abs(points[:, 0] - 12.0)), 1] == pytest.approx(0.0, abs=0.3)
+
+
+def test_directions_closures_and_bridges_of_the_published_roads_are_honoured(sample):
+    square = [(0, 0), (50, 0), (50, 50), (0, 50), (0, 0)]
+
+    def highest(**south) -> float:
+        sides = [
+            Centreline(np.array(square[k : k + 2], float), 6.0, "asphalt", **(south if k == 0 else {}))
+            for k in range(4)
+        ]
+        site = replace(sample, centrelines=tuple(sides), keepouts=())
+        return max(y for _, y in RoadPlanner(lambda: site).path((0.0, 0.0), (50.0, 0.0)).points)
+
+    assert highest() == pytest.approx(0.0)
+    assert highest(direction=1) == pytest.approx(0.0)
+    assert highest(direction=-1) == pytest.approx(50.0)
+    assert highest(closed=True) == pytest.approx(50.0)
+    over = [(25.0, -10.0), (25.0, 10.0)]
+    crossing = [
+        Centreline(np.array([(0, 0), (50, 0)], float), 6.0, ""),
+        Centreline(np.array(over), 6.0, "", level=1),
+    ]
+    site = replace(sample, centrelines=tuple(crossing), keepouts=())
+    with pytest.raises(RefusedError, match="No way leads"):
+        RoadPlanner(lambda: site).path((0.0, 0.0), (25.0, 10.0))
