@@ -18,6 +18,7 @@ class FleetSupervisor:
         self._provider = None
         self._window = None
         self._roles = None
+        self._layouts = None
 
     @property
     def window(self):
@@ -35,13 +36,18 @@ class FleetSupervisor:
         if self._iface is None:
             return
         # Only here: qgis_process has no window, and needs nothing of what the window is made of.
+        from .desk.layout_action import LayoutAction
         from .desk.window import MENU, DeskWindow
         from .roles.roles_action import RolesAction
 
         self._window = DeskWindow(self._iface)
         self._roles = RolesAction(self._iface, MENU)
+        self._layouts = LayoutAction(self._iface, MENU)
 
     def unload(self):
+        if self._layouts is not None:
+            self._layouts.remove()
+            self._layouts = None
         if self._roles is not None:
             self._roles.remove()
             self._roles = None

@@ -85,7 +85,7 @@ class Ground:
         """
         site = SitePlacing(crs, SiteFrame(crs.authid(), (0.0, 0.0)), self._transforms)
         surfaces = self._read_surfaces(site, feedback)
-        obstacles = _read_obstacles(self._obstacles, site, feedback)
+        obstacles = read_obstacles(self._obstacles, site, feedback)
         if feedback.isCanceled():
             return None
         findings = find(cones, surfaces, obstacles, *self._distances)
@@ -111,7 +111,7 @@ class Ground:
         ]
 
 
-def _read_obstacles(sources: Sequence[ObstacleSource], site: SitePlacing, feedback) -> list[Shape]:
+def read_obstacles(sources: Sequence[ObstacleSource], site: SitePlacing, feedback) -> list[Shape]:
     """Return every part of every feature that counts, named by layer and feature."""
     shapes: list[Shape] = []
     for source in sources:

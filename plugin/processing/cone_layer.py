@@ -30,7 +30,7 @@ from .sinks import fill
 CONES, FINDINGS = "CONES", "FINDINGS"
 CONE_COUNT, FINDING_COUNT = "CONE_COUNT", "FINDING_COUNT"
 STYLES = {CONES: "cones.qml", FINDINGS: "cone_findings.qml"}
-_CONES = {
+CONE_FIELDS = {
     "id": "string",
     "order": "integer",
     "heading": "double",
@@ -63,7 +63,7 @@ class ConeSetup:
 
     def __init__(self, algorithm, parameters, context, source: QgsProcessingFeatureSource | None):
         """:raises SiteCrsError: when the CRS cannot carry a site."""
-        self._fields = {CONES: fields_of(_CONES), FINDINGS: fields_of(_FINDINGS)}
+        self._fields = {CONES: fields_of(CONE_FIELDS), FINDINGS: fields_of(_FINDINGS)}
         self._ground = Ground(algorithm, parameters, context)
         project = context.project()
         self.crs = site_crs_for(
@@ -80,7 +80,7 @@ class ConeSetup:
         if findings is None:
             return {}
         rows = {
-            CONES: [(_point(cone), _values(cone, layout)) for cone in cones],
+            CONES: [(_point(cone), cone_values(cone, layout)) for cone in cones],
             FINDINGS: [(_point(one), [one.kind.value, one.cone, one.text]) for one in findings],
         }
         made = {}
@@ -104,6 +104,7 @@ def _point(what: Cone | Finding) -> QgsGeometry:
     return QgsGeometry.fromPointXY(QgsPointXY(what.x, what.y))
 
 
-def _values(cone: Cone, layout: str) -> list:
+def cone_values(cone: Cone, layout: str) -> list:
+    """Return the values of the fields ``CONE_FIELDS``."""
     heading = round((90.0 - math.degrees(cone.theta)) % 360.0, 6) % 360.0
     return [cone.id, cone.order, heading, cone.colour, cone.role, layout]

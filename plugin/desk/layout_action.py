@@ -1,0 +1,54 @@
+"""The menu entries that put the cone layout tool into the operator's hand, one for each layout."""
+
+from __future__ import annotations
+
+from qgis.core import Qgis, QgsProject
+from qgis.gui import QgisInterface
+from qgis.PyQt.QtGui import QIcon
+from qgis.PyQt.QtWidgets import QAction, QMenu
+
+from ...robot_bridge.layouts.catalogue import LAYOUTS
+from ...robot_bridge.layouts.layout import Layout
+from .actions import ICONS
+from .layout_tool import LayoutTool
+
+
+class LayoutAction:
+    """An entry of ``menu`` with a menu of layouts. :meth:`remove` undoes the constructor."""
+
+    def __init__(self, iface: QgisInterface, menu: str):
+        self._iface, self._menu = iface, menu
+        window = iface.mainWindow()
+        self.action = QAction(QIcon(str(ICONS / "cone_layout.svg")), "Place cone layout", window)
+        self.action.setObjectName("fleet_cone_layout")
+        self.action.setToolTip(
+            "Place a cone layout: it is shown under the cursor, the wheel turns it (Shift: finely), a click "
+            "places it, Esc ends; nothing is sent to robots"
+        )
+        self.tool = LayoutTool(iface.mapCanvas(), QgsProject.instance(), self._say)
+        self._layouts = QMenu(window)
+        for kind in LAYOUTS.values():
+            entry = self._layouts.addAction(f"{kind.TITLE} ({kind.STANDARD})")
+            entry.setObjectName(f"fleet_cone_layout_{kind.NAME}")
+            entry.triggered.connect(lambda _=False, kind=kind: self.take(kind.of({})))
+        self.action.setMenu(self._layouts)
+        iface.addPluginToMenu(menu, self.action)
+
+    def take(self, layout: Layout) -> None:
+        """Put the tool into the operator's hand, with ``layout``."""
+        self.tool.layout = layout
+        self._iface.mapCanvas().setMapTool(self.tool)
+        self._iface.mapCanvas().setFocus()
+
+    def remove(self) -> None:
+        """Put the tool away and take the entries out of the menu."""
+        self._iface.mapCanvas().unsetMapTool(self.tool)
+        self.tool.remove()
+        self.tool.deleteLater()
+        self._iface.removePluginMenu(self._menu, self.action)
+        self._layouts.deleteLater()
+        self.action.deleteLater()
+
+    def _say(self, text: str, complaint: bool) -> None:
+        level = Qgis.MessageLevel.Warning if complaint else Qgis.MessageLevel.Info
+        self._iface.messageBar().pushMessage("Cone layout", text, level)

@@ -1,0 +1,189 @@
+"""The cone layout tool, with a real mouse and wheel on a real canvas."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from fleet_supervisor.plugin.desk.layout_action import LayoutAction
+from fleet_supervisor.plugin.sites.roles import ROAD_SURFACE, set_role
+from fleet_supervisor.robot_bridge.layouts.catalogue import LAYOUTS
+from qgis.core import QgsCoordinateReferenceSystem, QgsFeature, QgsGeometry, QgsProject, QgsVectorLayer
+from qgis.gui import QgsMapToolPan, QgsRubberBand
+from qgis.PyQt.QtCore import QEvent, QPoint, QPointF, Qt
+from qgis.PyQt.QtGui import QWheelEvent
+from qgis.PyQt.QtTest import QTest
+from qgis.PyQt.QtWidgets import QAction, QApplication
+
+ORIGIN = (488000.0, 5190000.0)
+NONE = Qt.KeyboardModifier.NoModifier
+
+
+@pytest.fixture
+def entry(iface):
+    made = LayoutAction(iface, "Fleet Supervisor")
+    iface.said = []
+    made.tool._say = lambda text, complaint: iface.said.append((text, complaint))
+    yield made
+    made.remove()
+
+
+@pytest.fixture
+def slalom(entry, iface):
+    entry.take(LAYOUTS["slalom"].of({"spacing": 5, "count": 3}))
+    return entry.tool
+
+
+def move(iface, x, y):
+    # A mouse that is there already does not move.
+    QTest.mouseMove(iface.canvas.viewport(), iface.pixel(x + 3, y + 3))
+    QTest.mouseMove(iface.canvas.viewport(), iface.pixel(x, y))
+    QApplication.processEvents()
+
+
+def turn(iface, notches, modifiers=NONE):
+    viewport = iface.canvas.viewport()
+    place = QPointF(iface.pixel(40, 50))
+    event = QWheelEvent(
+        place, QPointF(viewport.mapToGlobal(place.toPoint())), QPoint(), QPoint(0, 120 * notches),
+        Qt.MouseButton.NoButton, modifiers, Qt.ScrollPhase.NoScrollPhase, False,
+    )  # fmt: skip
+    QApplication.sendEvent(viewport, event)
+    QApplication.processEvents()
+
+
+def cones():
+    (layer,) = (
+        one for one in QgsProject.instance().mapLayers().values() if one.customProperty("fleet/cones")
+    )
+    return {
+        f["id"]: (
+            f.geometry().asPoint().x() - ORIGIN[0],
+            f.geometry().asPoint().y() - ORIGIN[1],
+            f["heading"],
+        )
+        for f in layer.getFeatures()
+    }
+
+
+def no_layer():
+    return not QgsProject.instance().mapLayers()
+
+
+def test_the_layout_is_under_the_cursor_and_goes_with_it(slalom, iface):
+    move(iface, 40, 50)
+    pixel = iface.canvas.mapUnitsPerPixel()
+    assert slalom.preview().shape == (7, 2)
+    # Gates and cones to the east of the cursor, which is where the layout begins.
+    assert slalom.preview()[2] - ORIGIN == pytest.approx((46, 50), abs=2 * pixel)
+    before = slalom.preview()
+    move(iface, 60, 30)
+    assert slalom.preview() - before == pytest.approx(np.tile((20, -20), (7, 1)), abs=2 * pixel)
+    assert no_layer()
+
+
+def test_the_wheel_turns_it_and_leaves_the_scale(slalom, iface):
+    move(iface, 40, 50)
+    scale = iface.canvas.scale()
+    turn(iface, 2)
+    assert slalom.heading == 120
+    first, last = slalom.preview()[2], slalom.preview()[4]
+    assert math.degrees(math.atan2(*(last - first))) == pytest.approx(120, abs=0.01)
+    turn(iface, -1, Qt.KeyboardModifier.ShiftModifier)
+    assert slalom.heading == 119
+    assert iface.canvas.scale() == scale
+
+
+def test_ctrl_and_the_wheel_zoom_as_with_every_tool(slalom, iface):
+    scale = iface.canvas.scale()
+    turn(iface, 1, Qt.KeyboardModifier.ControlModifier)
+    assert slalom.heading == 90
+    assert iface.canvas.scale() != scale
+
+
+def test_a_click_places_it_into_a_layer_and_another_one_beside_it(slalom, iface):
+    pixel = iface.canvas.mapUnitsPerPixel()
+    move(iface, 40, 50)
+    iface.click(40, 50)
+    made = cones()
+    assert len(made) == 7
+    assert made["slalom-3"] == pytest.approx((46, 50, 90), abs=2 * pixel)
+    turn(iface, 6)
+    iface.click(80, 60)
+    made = cones()
+    assert len(made) == 14
+    assert made["slalom-2-3"] == pytest.approx((80, 54, 180), abs=2 * pixel)
+    assert iface.said == [("7 cones are in the layer Cones.", False)] * 2
+
+
+def test_cones_that_should_not_stand_there_are_told_and_placed(slalom, iface):
+    road = QgsVectorLayer("Polygon?crs=EPSG:32633&field=surface:string", "Road", "memory")
+    feature = QgsFeature(road.fields())
+    box = QgsGeometry.fromWkt("POLYGON((30 40,53 40,53 60,30 60,30 40))")
+    box.translate(*ORIGIN)
+    feature.setGeometry(box)
+    road.dataProvider().addFeature(feature)
+    set_role(road, ROAD_SURFACE)
+    QgsProject.instance().addMapLayer(road)
+    iface.click(40, 50)
+    # The last cone stands 16 m from the first gate, and the second gate 22 m.
+    ((text, complaint),) = iface.said
+    assert complaint and text.startswith(
+        "3 of 7 cones should not stand there: Cone slalom-5 is on no surface"
+    )
+    assert len(cones()) == 7
+    iface.click(40, 50)
+    assert iface.said[1][0].startswith(
+        "7 of 7 cones should not stand there: Cone slalom-2-1 is 0.00 m from slalom-1"
+    )
+
+
+def test_a_map_without_true_metres_is_refused_with_what_to_do(slalom, iface):
+    iface.canvas.setDestinationCrs(QgsCoordinateReferenceSystem("EPSG:3857"))
+    QTest.mouseClick(iface.canvas.viewport(), Qt.MouseButton.LeftButton, NONE, QPoint(300, 300))
+    ((text, complaint),) = iface.said
+    assert complaint and "its metres are not metres" in text
+    assert no_layer()
+
+
+def test_a_right_click_a_drag_and_a_move_place_nothing(slalom, iface):
+    move(iface, 40, 50)
+    iface.click(40, 50, Qt.MouseButton.RightButton)
+    viewport = iface.canvas.viewport()
+    QTest.mousePress(viewport, Qt.MouseButton.LeftButton, NONE, iface.pixel(40, 50))
+    QTest.mouseRelease(viewport, Qt.MouseButton.LeftButton, NONE, iface.pixel(60, 50))
+    assert no_layer()
+
+
+def test_escape_and_another_tool_take_the_preview_away(slalom, iface):
+    def bands():
+        return [item for item in iface.canvas.items() if isinstance(item, QgsRubberBand) and item.isVisible()]
+
+    move(iface, 40, 50)
+    assert len(bands()) == 1
+    QTest.keyClick(iface.canvas, Qt.Key.Key_Escape)
+    assert slalom.preview().shape == (0, 2)
+    assert bands() == []
+    assert iface.canvas.mapTool() is not slalom
+    iface.canvas.setMapTool(slalom)
+    move(iface, 50, 50)
+    pan = QgsMapToolPan(iface.canvas)
+    iface.canvas.setMapTool(pan)
+    assert bands() == []
+
+
+def test_the_plugin_has_an_entry_for_each_layout_and_leaves_none(iface):
+    from fleet_supervisor.plugin.supervisor import FleetSupervisor
+
+    loaded = FleetSupervisor(iface)
+    loaded.initGui()
+    entry = iface.findChild(QAction, "fleet_cone_layout")
+    names = {one.objectName() for one in entry.menu().actions()}
+    assert names == {f"fleet_cone_layout_{name}" for name in LAYOUTS}
+    next(one for one in entry.menu().actions() if one.objectName().endswith("fs_skidpad")).trigger()
+    move(iface, 40, 50)
+    assert len(iface.canvas.mapTool().preview()) == 82
+    loaded.unload()
+    QApplication.sendPostedEvents(None, QEvent.Type.DeferredDelete)
+    assert iface.findChild(QAction, "fleet_cone_layout") is None
