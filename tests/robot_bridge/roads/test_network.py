@@ -71,6 +71,14 @@ def test_a_bridge_is_reached_at_its_ends() -> None:
     assert sorted(network.degrees.tolist()) == [1, 1, 1, 1, 2, 2]
 
 
+def test_a_bridge_may_begin_in_the_middle_of_a_road() -> None:
+    through = [(0.0, 0.0), (5.0, 0.0), (10.0, 0.0)]
+    network = build_network(centrelines([through, [(5.0, 0.0), (5.0, 9.0)]], level=[0, 1]))
+    assert len(network) == 3
+    over = build_network(centrelines([through, [(5.0, -9.0), (5.0, 0.0), (5.0, 9.0)]], level=[0, 1]))
+    assert len(over) == 2
+
+
 def test_a_roundabout_is_split_at_its_arms() -> None:
     roads = [ring((0.0, 0.0), 5.0), [(5.0, 0.0), (20.0, 0.0)], [(-5.0, 0.0), (-20.0, 0.0)]]
     network = build_network(centrelines(roads, direction=[FORWARD, BOTH, BOTH]))
