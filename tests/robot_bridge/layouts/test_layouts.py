@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import pytest
 
 from robot_bridge.layouts.catalogue import LAYOUTS
 from robot_bridge.layouts.cone import COLOURS, Cone
 from robot_bridge.layouts.errors import DimensionError
+from robot_bridge.layouts.table import Columns, cones_of, read_csv
 
 BASE = 0.2
 HALF = 0.1
@@ -197,3 +199,24 @@ def test_what_cannot_be_is_refused_with_what_to_give(
 ) -> None:
     with pytest.raises(DimensionError, match=reason):
         LAYOUTS[name].of(values).cones()
+
+
+def test_with_the_width_of_a_real_acceleration_every_cone_stands_where_it_stood(data: Path) -> None:
+    head, rows = read_csv(data / "cones" / "cone_layouts.csv")
+    columns = Columns(colour="colour", layout="track", only="fssim_acceleration")
+    real = {(c.colour, round(c.x, 6), round(c.y, 6)) for c in cones_of(rows, head, columns, "real")}
+    made = LAYOUTS["fs_acceleration"].of({"width": 3.8, "cone_base": 0}).cones()
+    assert {(c.colour, round(c.x, 6), round(c.y, 6)) for c in made} == real
+
+
+def test_with_the_size_of_a_real_skid_pad_every_cone_stands_within_2_cm_of_where_it_stood(data: Path) -> None:
+    head, rows = read_csv(data / "cones" / "cone_layouts.csv")
+    columns = Columns(colour="colour", layout="track", only="eufs_skidpad")
+    real = cones_of(rows, head, columns, "real")
+    sizes = {"centres": 18.5, "inner": 15.225, "outer": 21.225, "path_width": 3.275, "cone_base": 0.0}
+    made = LAYOUTS["fs_skidpad"].of(sizes).cones()
+    # It is drawn along y there, and two cones are in it twice.
+    places = {(c.colour, round(c.y, 6), round(-c.x, 6)) for c in real}
+    assert len(made) == len(places) == 82
+    for colour, x, y in places:
+        assert min(math.dist((x, y), (c.x, c.y)) for c in made if c.colour == colour) < 0.02
