@@ -6,6 +6,7 @@ The graph is ordered once; costs are laid over it afterwards, and a few of them 
 from __future__ import annotations
 
 import threading
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -50,23 +51,19 @@ class ContractionEngine:
     name = ContractionEngines.name
 
     def __init__(self, made_by: ContractionEngines, costs: Floats) -> None:
-        self._kit = made_by.kit
         self._graph = made_by.graph
         self._costs = costs.copy()
-        self._metric = self._kit.CCHMetric(made_by.hierarchy, _whole(costs).tolist())
-        self._updater = self._kit.CCHMetricPartialUpdater(made_by.hierarchy)
-        self._query = self._kit.CCHQuery(self._metric)
+        self._lengths = _Metric(made_by, _whole(costs))
+        # Ways are too short in arcs for this to overflow, so that it knows what cannot be reached.
+        self._arcs = _Metric(made_by, _one_each(costs))
         self._lock = threading.Lock()
 
     def set_costs(self, arcs: Ints, costs: Floats) -> None:
         """Give ``arcs`` other costs."""
-        changes = dict(zip(arcs.tolist(), _whole(costs).tolist(), strict=True))
         with self._lock:
             self._costs[arcs] = costs
-            # A query keeps hold of the costs that it was made with.
-            del self._query
-            self._updater.apply(self._metric, changes)
-            self._query = self._kit.CCHQuery(self._metric)
+            self._lengths.change(arcs, _whole(costs))
+            self._arcs.change(arcs, _one_each(costs))
 
     def way(self, starts: Ends, goals: Ends) -> list[int] | None:
         """Return the arcs of the cheapest way, None for none."""
@@ -74,14 +71,40 @@ class ContractionEngine:
             [(node, round(cost / _UNIT)) for node, cost in ends] for ends in (starts, goals)
         )
         with self._lock:
-            result = self._query.run_multi(from_there, to_there)
-            if result.distance is not None:
-                return list(result.arc_path)
+            way = self._lengths.way(from_there, to_there)
+            if way is not None or self._arcs.way(*_without_costs(starts, goals)) is None:
+                return way
             costs = self._costs.copy()
-        if costs[np.isfinite(costs)].sum() < _INFINITE * _UNIT:
-            return None
-        # No way, or one too long to be counted.
+        # There is a way, and it is too long to be counted.
         return PlainEngine(self._graph, costs).way(starts, goals)
+
+
+class _Metric:
+    """One set of whole costs over the ordered graph."""
+
+    def __init__(self, made_by: ContractionEngines, costs: Ints) -> None:
+        self._kit = made_by.kit
+        self._metric = self._kit.CCHMetric(made_by.hierarchy, costs.tolist())
+        self._updater = self._kit.CCHMetricPartialUpdater(made_by.hierarchy)
+        self._query = self._kit.CCHQuery(self._metric)
+
+    def change(self, arcs: Ints, costs: Ints) -> None:
+        # A query keeps hold of the costs that it was made with.
+        del self._query
+        self._updater.apply(self._metric, dict(zip(arcs.tolist(), costs.tolist(), strict=True)))
+        self._query = self._kit.CCHQuery(self._metric)
+
+    def way(self, starts: Sequence[tuple[int, int]], goals: Sequence[tuple[int, int]]) -> list[int] | None:
+        result = self._query.run_multi(starts, goals)
+        return None if result.distance is None else list(result.arc_path)
+
+
+def _without_costs(*ends: Ends) -> tuple[list[tuple[int, int]], ...]:
+    return tuple([(node, 0) for node, _ in some] for some in ends)
+
+
+def _one_each(costs: Floats) -> Ints:
+    return np.where(np.isfinite(costs), 1, _INFINITE)
 
 
 def _whole(costs: Floats) -> Ints:

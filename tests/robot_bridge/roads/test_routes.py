@@ -180,3 +180,14 @@ def test_random_networks_have_the_lengths_that_networkx_finds(seed: int, ways: i
             assert route.metres == pytest.approx(wanted, abs=1e-6 + 2e-4 * len(route.edges))
             assert np.hypot(*np.diff(route.points, axis=0).T).sum() == pytest.approx(route.metres)
             assert len(route.widths) == len(route.points) - 1
+
+
+def test_a_way_too_long_to_be_counted_in_tenths_of_a_millimetre_is_found(engine: str) -> None:
+    far = [[(0.0, 0.0), (200_000.0, 0.0)], [(200_000.0, 0.0), (400_000.0, 0.0)], [(0.0, 9.0), (9.0, 9.0)]]
+    router = Router(build_network(centrelines(far, direction=FORWARD)), engine)
+    assert router.route((0.0, 0.0), (400_000.0, 0.0)).metres == pytest.approx(400_000.0)
+    with pytest.raises(NoRouteError):
+        router.route((400_000.0, 0.0), (0.0, 0.0))
+    router.close([1])
+    with pytest.raises(OffNetworkError):
+        router.route((0.0, 0.0), (400_000.0, 0.0))
