@@ -7,11 +7,13 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
 from ..centrelines import Floats, Ints
 from .engine import Ends, Graph
+from .own_thread import Kept, OwnThread
 from .plain import PlainEngine
 
 _INFINITE = 2**31 - 1
@@ -80,23 +82,40 @@ class ContractionEngine:
 
 
 class _Metric:
-    """One set of whole costs over the ordered graph."""
+    """One set of whole costs over the ordered graph; its query and updater live in a thread of their own.
+
+    They may be used and let go in the thread alone that made them, and engines are asked from several.
+    """
 
     def __init__(self, made_by: ContractionEngines, costs: Ints) -> None:
         self._kit = made_by.kit
         self._metric = self._kit.CCHMetric(made_by.hierarchy, costs.tolist())
-        self._updater = self._kit.CCHMetricPartialUpdater(made_by.hierarchy)
-        self._query = self._kit.CCHQuery(self._metric)
+        self._thread = OwnThread("contraction hierarchy")
+        self._thread.run(_begin, self._kit, made_by.hierarchy, self._metric)
 
     def change(self, arcs: Ints, costs: Ints) -> None:
-        # A query keeps hold of the costs that it was made with.
-        del self._query
-        self._updater.apply(self._metric, dict(zip(arcs.tolist(), costs.tolist(), strict=True)))
-        self._query = self._kit.CCHQuery(self._metric)
+        changes = dict(zip(arcs.tolist(), costs.tolist(), strict=True))
+        self._thread.run(_change, self._kit, self._metric, changes)
 
     def way(self, starts: Sequence[tuple[int, int]], goals: Sequence[tuple[int, int]]) -> list[int] | None:
-        result = self._query.run_multi(starts, goals)
-        return None if result.distance is None else list(result.arc_path)
+        return self._thread.run(_way, starts, goals)
+
+
+def _begin(kept: Kept, kit: Any, hierarchy: Any, metric: Any) -> None:
+    kept["updater"] = kit.CCHMetricPartialUpdater(hierarchy)
+    kept["query"] = kit.CCHQuery(metric)
+
+
+def _change(kept: Kept, kit: Any, metric: Any, changes: dict[int, int]) -> None:
+    # A query keeps hold of the costs that it was made with.
+    del kept["query"]
+    kept["updater"].apply(metric, changes)
+    kept["query"] = kit.CCHQuery(metric)
+
+
+def _way(kept: Kept, starts: Sequence[tuple[int, int]], goals: Sequence[tuple[int, int]]) -> list[int] | None:
+    result = kept["query"].run_multi(starts, goals)
+    return None if result.distance is None else list(result.arc_path)
 
 
 def _without_costs(*ends: Ends) -> tuple[list[tuple[int, int]], ...]:
