@@ -21,12 +21,13 @@ from ..errors import BridgeError, NotReadyError, StoreError
 from ..exchange import Outcome
 from ..fleet import Fleet
 from ..messages import MessageError, OpAck, Ready, Request, to_json
-from ..wire import decode_request, error_code
+from ..wire import decode_position, decode_request, error_code
 from .delivery import Delivery
 
 log = logging.getLogger(__name__)
 
 NAME = "websocket"
+POSITION = jsonrpc.Call("SendPos", None)
 PING_TIMEOUT = 1.0
 """seconds after which a robot counts as gone when another one comes under its name."""
 REPLACED = 4001
@@ -143,6 +144,9 @@ class RobotSession:
         return self._connection.close_code in (1000, 1001)
 
     async def _receive(self, frame: str | bytes) -> None:
+        if (pose := decode_position(frame)) is not None:
+            await self._receive_call(POSITION, pose)
+            return
         try:
             message = jsonrpc.decode(frame)
         except jsonrpc.FrameError as error:
@@ -153,9 +157,9 @@ class RobotSession:
         else:
             await self._receive_reply(message)
 
-    async def _receive_call(self, call: jsonrpc.Call) -> None:
+    async def _receive_call(self, call: jsonrpc.Call, request: Request | None = None) -> None:
         try:
-            request = decode_request(call.method, call.params)
+            request = request or decode_request(call.method, call.params)
             outcome = await self._ask(request, call.id if isinstance(call.id, int) else None)
         except (MessageError, BridgeError) as error:
             self._fleet.tally.refused[NAME] += 1

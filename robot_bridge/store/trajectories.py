@@ -56,8 +56,15 @@ class Wanted:
 
 def add(connection: Connection, fixes: Sequence[Fix]) -> None:
     """Store positions."""
-    if fixes:
-        connection.execute(insert(trajectories), [_row(fix) for fix in fixes])
+    if not fixes:
+        return
+    # Thousands a second: the driver takes the rows as they are, and nothing is looked up for each.
+    statement = insert(trajectories).inline().values(dict.fromkeys(_row(fixes[0])))
+    compiled = statement.compile(dialect=connection.dialect)
+    rows: list[Any] = [_row(fix) for fix in fixes]
+    if compiled.positional:
+        rows = [tuple(row.values()) for row in rows]
+    connection.exec_driver_sql(str(compiled), rows)
 
 
 def read(connection: Connection, wanted: Wanted, limit: int, after: Mark | None = None) -> list[Place]:

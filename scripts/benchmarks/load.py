@@ -45,9 +45,10 @@ beside it.
 
 {load}
 
-The last row is a WebSocket server of a few lines on the same library that forwards every position to every
-operator (`scripts/benchmarks/plain_fanout.py`). Not measured here: a rosbridge server in Rust, which on 100
-000 messages/s delivered 18 500 of them at 147 % of a core with 13 s of delay.
+The last two rows are a WebSocket server of a few lines on the same library and loop
+(`scripts/benchmarks/plain_fanout.py`): what the wire alone costs on this machine, and what it comes to
+without conflation. Not measured here: a rosbridge server in Rust, which on 100 000 messages/s delivered
+18 500 of them at 147 % of a core with 13 s of delay.
 
 ### Operators who do not read
 
@@ -76,8 +77,8 @@ class Measured:
             self.name,
             f"{seen['sent'] / seen['seconds']:,.0f}",
             f"{100 * seen['cpu']:.0f} %",
-            " / ".join(f"{value}" for value in seen["delays"]),
-            " / ".join(f"{value}" for value in seen["ages"]),
+            " / ".join(f"{value}" for value in seen["delays"]) or "–",
+            " / ".join(f"{value}" for value in seen["ages"]) or "–",
             f"{seen['late']:.0f}",
             f"{seen['megabytes_before']:.0f} → {seen['megabytes']:.0f}",
         ]
@@ -97,21 +98,25 @@ HEAD = [
 def measure(_data: Path) -> Part:
     """Measure on the sample site."""
     load = [_run(f"{robots} robots × 10 Hz, 20 operators", robots, 10.0) for robots in (100, 1000)]
-    peer = _run("the same, every position to every operator", 1000, 10.0, peer=True)
+    peers = [
+        _run("the wire alone: positions decoded and dropped", 1000, 10.0, peer="--drop", operators=0),
+        _run("every position forwarded to every operator", 1000, 10.0, peer="--forward"),
+    ]
     stuck = _run("1000 robots × 10 Hz, 20 operators, 10 stuck", 1000, 10.0, stuck=10)
     most = _run("1000 robots, as fast as the gateway takes them", 1000, 0.0)
     text = TEXT.format(
-        load=table(HEAD, [run.row() for run in [*load, peer]]),
+        load=table(HEAD, [run.row() for run in [*load, *peers]]),
         stuck=table(HEAD, [load[-1].row(), stuck.row()]),
-        most=f"1000 robots that send as fast as it takes them: {most.accepted:,.0f} positions/s accepted, at "
-        f"{100 * most.seen['cpu']:.0f} % of a core.",
+        most=f"1000 robots that send as fast as it takes them: {most.accepted:,.0f} positions/s accepted.",
     )
     return Part("Load", text)
 
 
-def _run(name: str, robots: int, rate: float, *, stuck: int = 0, peer: bool = False) -> Measured:
-    with tempfile.TemporaryDirectory() as folder, _server(Path(folder), peer=peer) as (pid, port):
-        plan = Plan("127.0.0.1", port, robots, rate, SECONDS, stuck=stuck, pid=pid, rpc=not peer)
+def _run(
+    name: str, robots: int, rate: float, *, stuck: int = 0, peer: str = "", operators: int = 20
+) -> Measured:
+    with tempfile.TemporaryDirectory() as folder, _server(Path(folder), peer) as (pid, port):
+        plan = Plan("127.0.0.1", port, robots, rate, SECONDS, operators, stuck=stuck, pid=pid, rpc=not peer)
         before = 0.0 if peer else _accepted(port)
         done = subprocess.run(
             ["taskset", "-c", "1", sys.executable, HERE / "swarm.py", json.dumps(asdict(plan))],
@@ -125,8 +130,8 @@ def _run(name: str, robots: int, rate: float, *, stuck: int = 0, peer: bool = Fa
 
 
 @contextmanager
-def _server(folder: Path, *, peer: bool) -> Iterator[tuple[int, int]]:
-    command: list[str | Path] = [sys.executable, HERE / "plain_fanout.py"]
+def _server(folder: Path, peer: str) -> Iterator[tuple[int, int]]:
+    command: list[str | Path] = [sys.executable, HERE / "plain_fanout.py", peer]
     if not peer:
         site = folder / "site"
         site.mkdir()

@@ -1,11 +1,13 @@
-"""The peer of the load: every position is forwarded to every operator at once, as plain WebSocket servers do.
+"""The peers of the load, on the same library: messages decoded and dropped, or forwarded to every operator.
 
-``python plain_fanout.py`` prints ``listening on ws://127.0.0.1:PORT``.
+``python plain_fanout.py [--drop]`` prints ``listening on ws://127.0.0.1:PORT``.
 """
 
 from __future__ import annotations
 
 import asyncio
+import json
+import sys
 
 from websockets.asyncio.server import ServerConnection, broadcast, serve
 
@@ -13,6 +15,7 @@ from websockets.asyncio.server import ServerConnection, broadcast, serve
 async def main() -> None:
     """Serve until the process is ended."""
     operators: set[ServerConnection] = set()
+    drop = "--drop" in sys.argv
 
     async def connected(connection: ServerConnection) -> None:
         assert connection.request is not None
@@ -22,7 +25,10 @@ async def main() -> None:
             operators.discard(connection)
             return
         async for frame in connection:
-            broadcast(operators, frame)
+            if drop:
+                json.loads(frame)
+            else:
+                broadcast(operators, frame)
 
     async with serve(connected, "127.0.0.1", 0, compression=None, ping_interval=None) as server:
         print(f"listening on ws://127.0.0.1:{server.sockets[0].getsockname()[1]}", flush=True)
