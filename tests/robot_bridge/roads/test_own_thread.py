@@ -8,6 +8,7 @@ import sys
 import threading
 
 import pytest
+
 from robot_bridge.roads.engines.own_thread import OwnThread
 
 ROUTE = """
