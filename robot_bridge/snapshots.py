@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 import time
 from collections.abc import Callable, Sequence
@@ -15,14 +16,24 @@ from .robots import Robots
 EVERYTHING = -1
 
 
+_Row = msgspec.defstruct(
+    "_Row",
+    [
+        (f.name, Any) if f.default is not None else (f.name, Any, None)
+        for f in dataclasses.fields(RobotReport)
+    ],
+    omit_defaults=True,
+)
+"""A report as it is encoded: what is unknown is left out."""
+
+
 def positions(robots: Sequence[RobotReport]) -> dict[str, Any]:
-    """Return reports as the parameters of ``positions`` and the result of ``get_positions``."""
-    return {"t": round(time.time(), 3), "robots": [_plain(robot) for robot in robots]}
+    """Return reports as the parameters of ``positions`` and the result of ``get_positions``.
 
-
-def _plain(robot: RobotReport) -> dict[str, Any]:
-    # Thousands of them are told every second; a state is a string already.
-    return {name: value for name, value in vars(robot).items() if value is not None}
+    They are for :func:`msgspec.json.encode`, which takes rows twice as fast as dictionaries: thousands of
+    them are told every second.
+    """
+    return {"t": round(time.time(), 3), "robots": [_Row(*vars(robot).values()) for robot in robots]}
 
 
 class Snapshot(NamedTuple):
