@@ -77,11 +77,15 @@ class Measured:
             self.name,
             f"{seen['sent'] / seen['seconds']:,.0f}",
             f"{100 * seen['cpu']:.0f} %",
-            " / ".join(f"{value}" for value in seen["delays"]) or "–",
-            " / ".join(f"{value}" for value in seen["ages"]) or "–",
+            _both(seen["delays"]),
+            _both(seen["ages"]),
             f"{seen['late']:.0f}",
             f"{seen['megabytes_before']:.0f} → {seen['megabytes']:.0f}",
         ]
+
+
+def _both(times: list[float | None]) -> str:
+    return "–" if None in times else " / ".join(f"{value}" for value in times)
 
 
 HEAD = [
