@@ -45,31 +45,24 @@ def _robot(*, index: bool = True) -> Column[str]:
     return Column("robot", String(63), nullable=False, index=index)
 
 
-rr = Table(
-    "rr",
-    metadata,
-    _id(),
-    _robot(),
-    Column("op", String(32), nullable=False),
-    Column("params", _LongText, nullable=True),
-    Column("payload", _LongBytes, nullable=True),
-    Column("created_at", DateTime, nullable=False, server_default=func.now()),
-    sqlite_autoincrement=True,
-)
+def _messages(name: str, *more: Column[int]) -> Table:
+    return Table(
+        name,
+        metadata,
+        _id(),
+        _robot(),
+        Column("op", String(32), nullable=False),
+        Column("params", _LongText, nullable=True),
+        Column("payload", _LongBytes, nullable=True),
+        Column("created_at", DateTime, nullable=False, server_default=func.now()),
+        *more,
+        sqlite_autoincrement=True,
+    )
 
+
+rr = _messages("rr")
 # Robots read their rows "order by urgent desc, id": an emergency stop overtakes what waits.
-sa = Table(
-    "sa",
-    metadata,
-    _id(),
-    _robot(),
-    Column("op", String(32), nullable=False),
-    Column("params", _LongText, nullable=True),
-    Column("payload", _LongBytes, nullable=True),
-    Column("created_at", DateTime, nullable=False, server_default=func.now()),
-    Column("urgent", SmallInteger, nullable=False, server_default="0"),
-    sqlite_autoincrement=True,
-)
+sa = _messages("sa", Column("urgent", SmallInteger, nullable=False, server_default="0"))
 
 # Facts about the database itself: "id" tells it from every other database.
 bridge = Table(

@@ -22,8 +22,8 @@ from dataclasses import asdict, dataclass, field
 class Plan:
     """How many of whom do what for how long.
 
-    ``rate`` is positions a second of each robot, 0 for as many as the gateway takes. ``operators`` subscribe
-    at ``operator_rate``, ``stuck`` ones subscribe and never read. One more operator, the probe, subscribes at
+    ``rate`` is positions a second of each robot. ``operators`` subscribe at ``operator_rate``, ``stuck`` ones
+    subscribe and never read. One more operator, the probe, subscribes at
     ``probe_rate`` and measures. ``pid`` is the gateway's process, whose time and memory are read.
     ``rpc`` is false for the peer, which forwards every position to every operator as it is.
     """
@@ -175,14 +175,13 @@ class Swarm:
         return stream
 
     async def _drive(self, number: int, robot: Stream) -> None:
-        interval = 1 / self.plan.rate if self.plan.rate else 0.0
+        interval = 1 / self.plan.rate
         due = time.monotonic() + interval * (number / self.plan.robots)
         x, step = 10.0 + number % 30, 0
         while True:
-            if interval:
-                due += interval
-                await asyncio.sleep(max(0.0, due - time.monotonic()))
-                self.seen.late = max(self.seen.late, (time.monotonic() - due) * 1e3)
+            due += interval
+            await asyncio.sleep(max(0.0, due - time.monotonic()))
+            self.seen.late = max(self.seen.late, (time.monotonic() - due) * 1e3)
             step += 1
             robot.writer.write(
                 frame(
@@ -191,8 +190,6 @@ class Swarm:
                 )
             )
             self.seen.sent += 1
-            if not interval:
-                await robot.writer.drain()
 
     async def _measure(self, probe: Stream) -> None:
         newest: dict[str, float] = {}
