@@ -17,6 +17,7 @@ from fleet_supervisor.robot_bridge.robotmap.model import RobotMap
 from fleet_supervisor.robot_bridge.robotmap.text import read_text
 from qgis.core import (
     QgsApplication,
+    QgsCoordinateReferenceSystem,
     QgsProcessingContext,
     QgsProcessingFeedback,
     QgsProject,
@@ -128,6 +129,23 @@ class Finished:
 
     def result(self, name: str) -> float:
         return float(re.search(rf"^{name}:\s*(\S+)$", self.stdout, re.MULTILINE)[1])
+
+
+@pytest.fixture
+def run_for_cones(provider, listener):
+    """Run an algorithm that makes cones, in a project in UTM 33 N, and return its outputs."""
+    import processing
+
+    project = QgsProject()
+
+    def run(algorithm, **parameters):
+        context = QgsProcessingContext()
+        context.setProject(project)
+        project.setCrs(QgsCoordinateReferenceSystem("EPSG:32633"))
+        everything = {"CONES": "memory:", "FINDINGS": "memory:", **parameters}
+        return processing.run(algorithm, everything, context=context, feedback=listener)
+
+    return run
 
 
 @pytest.fixture(scope="session")

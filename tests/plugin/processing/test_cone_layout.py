@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import re
 import shlex
+from functools import partial
 
 import pytest
 from fleet_supervisor.robot_bridge.layouts.catalogue import LAYOUTS
 from qgis.core import (
-    QgsCoordinateReferenceSystem,
     QgsFeature,
     QgsGeometry,
-    QgsProcessingContext,
     QgsProcessingException,
-    QgsProject,
     QgsVectorLayer,
 )
 
@@ -37,20 +35,9 @@ def layer(kind, *texts, fields="", values=(), name="Given"):
 
 
 @pytest.fixture
-def place(provider, listener):
+def place(run_for_cones):
     """Run the algorithm and return its outputs."""
-    import processing
-
-    project = QgsProject()
-
-    def run(**parameters):
-        context = QgsProcessingContext()
-        context.setProject(project)
-        project.setCrs(QgsCoordinateReferenceSystem(UTM))
-        everything = {"CONES": "memory:", "FINDINGS": "memory:", **parameters}
-        return processing.run("fleet:conelayout", everything, context=context, feedback=listener)
-
-    return run
+    return partial(run_for_cones, "fleet:conelayout")
 
 
 def rows(results):

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import pytest
 from qgis.core import (
-    QgsCoordinateReferenceSystem,
     QgsFeature,
     QgsGeometry,
-    QgsProcessingContext,
     QgsProcessingException,
-    QgsProject,
     QgsVectorLayer,
 )
 
@@ -19,20 +18,9 @@ PLACE = f"{X},{Y} [{UTM}]"
 
 
 @pytest.fixture
-def bring(provider, listener):
+def bring(run_for_cones):
     """Run the algorithm and return its outputs."""
-    import processing
-
-    project = QgsProject()
-
-    def run(**parameters):
-        context = QgsProcessingContext()
-        context.setProject(project)
-        project.setCrs(QgsCoordinateReferenceSystem(UTM))
-        everything = {"CONES": "memory:", "FINDINGS": "memory:", **parameters}
-        return processing.run("fleet:importconelayout", everything, context=context, feedback=listener)
-
-    return run
+    return partial(run_for_cones, "fleet:importconelayout")
 
 
 @pytest.fixture
