@@ -14,9 +14,12 @@ JOBS ?= 3
 SIDE_BY_SIDE = $(if $(filter 0,$(JOBS)),,-n $(JOBS) --dist loadfile)
 PROFILE ?= default
 LINK ?=
-export PYTHON DESTDIR PREFIX PROGRAM
+# For plugins.qgis.org: make package REPOSITORY=https://... TRACKER=https://...
+REPOSITORY ?=
+TRACKER ?=
+export PYTHON DESTDIR PREFIX PROGRAM ARGS JOBS REPOSITORY TRACKER
 
-.PHONY: help setup demo test lint desktop screenshots install install-service uninstall-service package clean bench
+.PHONY: help setup demo test test-newer lint desktop screenshots install install-service uninstall-service translations package clean bench
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-18s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -35,6 +38,9 @@ demo: $(READY) build/run ## run the main job once, headless, on the sample site;
 test: $(READY) build/run ## run every test, style and import rules included, headless
 	@$(HEADLESS) $(RUN) -m pytest -q -rfE $(SIDE_BY_SIDE) --durations=5 --durations-min=1 $(ARGS)
 
+test-newer: ## run every test on the newer QGIS of Debian forky, in a root folder of its own (as root)
+	@scripts/newer.sh
+
 lint: $(READY) ## check style, types and import rules only
 	@$(RUN) -m pytest -q tests/packaging/test_style.py
 
@@ -46,7 +52,10 @@ screenshots: $(READY) build/run ## make the pictures in docs/images, in real win
 	@$(RUN) scripts/roles_picture.py
 	@$(HEADLESS) $(RUN) scripts/robot_map_pictures.py
 	@$(HEADLESS) $(RUN) scripts/cone_pictures.py
+	@$(HEADLESS) $(RUN) scripts/assignment_picture.py
+	@$(RUN) scripts/cone_plan_pictures.py
 	@$(HEADLESS) $(RUN) scripts/roads_picture.py
+	@$(HEADLESS) $(RUN) scripts/surfaces_pictures.py
 
 install: $(READY) ## put the plugin into your QGIS profile (PROFILE=name, LINK=1 links this folder)
 	@$(RUN) scripts/install_plugin.py --profile "$(PROFILE)" $(if $(LINK),--link)
@@ -56,6 +65,9 @@ install-service: ## put the gateway on this computer as a systemd service (DESTD
 
 uninstall-service: ## take that service away; settings and data stay
 	@scripts/service.sh uninstall
+
+translations: $(READY) ## bring resources/translations up to date with the source
+	@$(RUN) scripts/translations.py
 
 package: $(READY) ## build the zip for plugins.qgis.org
 	@$(RUN) scripts/package.py

@@ -1,130 +1,81 @@
-"""The command line: ``robot-bridge serve`` and ``robot-bridge robot``."""
+"""The command line: ``robot-bridge serve``, ``robot-bridge robot`` and all that looks after the two.
+
+A command is imported when it is asked for: none waits for what only others need.
+"""
 
 from __future__ import annotations
 
-import asyncio
-import signal
+import os
 import sys
-from pathlib import Path
-from typing import Annotated
+from collections.abc import Sequence
+from importlib import import_module
 
 import typer
 
-from .commands import audit, operators, robot_tokens, robots, schemas, serve, sessions, tls, trajectories
-from .commands import database as databases
-from .commands.database_option import PasswordFileOption, database_address
 from .errors import BridgeError
-from .messages import MessageError, SetObject
 from .monitoring.logs import set_up_log
-from .robot.sightings import Thing
-from .robotmap.errors import RobotMapError
-from .sites.errors import SiteError
 
-app = typer.Typer(
-    help="The bridge between operators and robots.", no_args_is_help=True, pretty_exceptions_enable=False
-)
-app.add_typer(databases.app, name="database")
-app.add_typer(robots.app, name="robots")
-app.add_typer(trajectories.app, name="trajectories")
-app.add_typer(operators.app, name="operators")
-app.add_typer(sessions.app, name="sessions")
-app.add_typer(tls.app, name="tls")
-app.command()(serve.serve)
-app.command()(audit.audit)
-app.command()(schemas.schemas)
-robot_tokens.add_to(robots.app)
+COMMANDS = {
+    "database": "Make, upgrade and check the database.",
+    "robots": "Who may connect as a robot.",
+    "trajectories": "Where robots have been.",
+    "placements": "Where cones were put down.",
+    "operators": "Accounts of operators: their roles and tokens.",
+    "sessions": "Connections of operators to the desk.",
+    "tls": "Certificates for wss://.",
+    "serve": "Serve one site to robots (/robot, and tables rr and sa) and to operators (/desk).",
+    "audit": "Print who did what, oldest first: when, who, role, from where, what, to what, done or refused.",
+    "schemas": "Write the JSON Schema of every message, and the AsyncAPI document of both endpoints.",
+    "robot": "Run the reference robot: a simulated body that speaks the protocol.",
+}
+"""The modules of ``commands`` with what each says of itself: a group ``app``, or a function of its name."""
 
 
-@app.command()
-def robot(
-    name: Annotated[str, typer.Option(help="The robot's name.")],
-    url: Annotated[str | None, typer.Option(help="Gateway, as ws://127.0.0.1:8765/robot.")] = None,
-    database: Annotated[str | None, typer.Option(help="Database with rr and sa, instead of --url.")] = None,
-    database_password_file: PasswordFileOption = None,
-    token_file: Annotated[Path | None, typer.Option(help="File that holds the robot's token.")] = None,
-    ca: Annotated[Path | None, typer.Option(help="The site's ca.pem, for wss://.")] = None,
-    pose: Annotated[str, typer.Option(help="Where it starts: X,Y,THETA in metres and radians.")] = "0,0,0",
-    speed: Annotated[float, typer.Option(help="Largest speed, m/s.", min=0.05, max=20)] = 1.5,
-    turn_rate: Annotated[float, typer.Option(help="Largest turn rate, rad/s.", min=0.05, max=10)] = 1.2,
-    rate: Annotated[float, typer.Option(help="Positions a second.", min=0.1, max=50)] = 5.0,
-    noise: Annotated[float, typer.Option(help="Noise of the reported position, metres.", min=0)] = 0.01,
-    seed: Annotated[int, typer.Option(help="Seed of the noise.")] = 1,
-    see: Annotated[
-        list[str] | None, typer.Option(help="X,Y,ID of a thing that it tells of once it is within 10 m.")
-    ] = None,
-    image: Annotated[Path | None, typer.Option(help="Image (JPEG, PNG, WebP) that it sends of each.")] = None,
-    ask_path: Annotated[bool, typer.Option(help="Ask for a path to every target.")] = False,
-) -> None:
-    """Run the reference robot: a simulated body that speaks the protocol."""
-    from .access.credentials import Credentials
-    from .robot.body import BodyLimits
-    from .robot.runner import RobotSettings, run
-
-    if (url is None) == (database is None):
-        raise BridgeError("a robot has one link: give either --url or --database")
-    settings = RobotSettings(
-        name=name,
-        url=url,
-        database=None if database is None else database_address(database, database_password_file),
-        pose=_pose(pose),
-        limits=BodyLimits(speed=speed, turn_rate=turn_rate),
-        rate=rate,
-        noise=noise,
-        seed=seed,
-        credentials=Credentials(token_file, ca),
-        things=tuple(_thing(text) for text in see or ()),
-        image=None if image is None else _bytes(image),
-        asks_path=ask_path,
+def command_line(arguments: Sequence[str]) -> typer.Typer:
+    """Return the command line: with the command that ``arguments`` ask for, and the names of the others."""
+    app = typer.Typer(
+        help="The bridge between operators and robots.", no_args_is_help=True, pretty_exceptions_enable=False
     )
-
-    async def work() -> None:
-        await run(settings, _stop_event())
-
-    asyncio.run(work())
-
-
-def _pose(text: str) -> tuple[float, float, float]:
-    try:
-        x, y, theta = (float(part) for part in text.split(","))
-    except ValueError:
-        raise BridgeError(f"pose {text!r} cannot be read; write X,Y,THETA such as 10,20,1.57") from None
-    return x, y, theta
-
-
-def _thing(text: str) -> Thing:
-    x, y, id = (*text.split(",", 2), "", "")[:3]
-    try:
-        thing = Thing(float(x), float(y), id)
-        SetObject(thing.x, thing.y, thing.id)
-    except ValueError as error:
-        raise BridgeError(
-            f"thing {text!r} cannot be read ({error}); write X,Y,ID such as 10,20,cone-7"
-        ) from None
-    return thing
-
-
-def _bytes(file: Path) -> bytes:
-    try:
-        return file.read_bytes()
-    except OSError as error:
-        raise BridgeError(f"image {file} cannot be read: {error.strerror or error}") from None
-
-
-def _stop_event() -> asyncio.Event:
-    stop = asyncio.Event()
-    loop = asyncio.get_running_loop()
-    for number in (signal.SIGINT, signal.SIGTERM):
-        loop.add_signal_handler(number, stop.set)
-    return stop
+    # A shell that completes words asks for every name that there is.
+    completing = any(name.endswith("_COMPLETE") for name in os.environ)
+    for name, does in COMMANDS.items():
+        if completing or name in arguments[:1]:
+            _add(app, name)
+        else:
+            app.command(name, help=does)(_only_named)
+    return app
 
 
 def main() -> None:
     """Run the command line; what cannot be done is said in one line and ends with status 1."""
     set_up_log()
     try:
-        app()
-    except (BridgeError, SiteError, RobotMapError, MessageError) as error:
+        command_line(sys.argv[1:])()
+    except Exception as error:
+        if not isinstance(error, _foreseen()):
+            raise
         sys.exit(f"robot-bridge: {error}")
+
+
+def _add(app: typer.Typer, name: str) -> None:
+    module = import_module(f"{__package__}.commands.{name}")
+    if hasattr(module, "app"):
+        app.add_typer(module.app, name=name)
+    else:
+        app.command(name)(getattr(module, name))
+
+
+def _only_named() -> None:
+    """Stand for a command that was not asked for."""
+
+
+def _foreseen() -> tuple[type[Exception], ...]:
+    """Return the families of errors whose text is for people."""
+    from .messages import MessageError
+    from .robotmap.errors import RobotMapError
+    from .sites.errors import SiteError
+
+    return (BridgeError, SiteError, RobotMapError, MessageError)
 
 
 if __name__ == "__main__":

@@ -1,12 +1,16 @@
-"""What a robot's questions are answered with (paper 1, table II: GetMap, GetPath, GetPosIni, GetPosEnd)."""
+"""What a robot's questions are answered with.
+
+GetMap, GetPath, GetPosIni and GetPosEnd are of the paper (1, table II), GetSurface is this project's own.
+"""
 
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Sequence
 from typing import NamedTuple, Protocol
 
-from .command_book import CommandBook
-from .command_life import is_open
+from .command_life.states import is_open
+from .commanding.book import CommandBook
 from .errors import RefusedError
 from .messages import (
     Answer,
@@ -14,13 +18,17 @@ from .messages import (
     GetMap,
     GetPath,
     GetPosIni,
+    GetSurface,
     Question,
     SetMap,
     SetPath,
     SetPosEnd,
     SetPosIni,
+    SetSurface,
 )
 from .planning import Planner, way_left
+from .road_traffic.ways import Ways
+from .roads.surfaces.surface import Surface
 from .robots import Robots
 from .store import tracks
 from .store.database import Database
@@ -33,11 +41,14 @@ class Maps(Protocol):
     def map_around(self, x: float, y: float, area: float) -> bytes:
         """Return the map of a square of ``area`` square metres centred on (x, y)."""
 
+    def surfaces_at(self, points: Sequence[tuple[float, float]], crs: str | None) -> list[Surface | None]:
+        """Return the road surface at each of ``points``, None where there is none."""
+
 
 class Reply(NamedTuple):
     """An answer, and what the robot is told with it."""
 
-    message: SetMap | SetPath | SetPosIni | SetPosEnd
+    message: SetMap | SetPath | SetPosIni | SetPosEnd | SetSurface
     note: str = ""
 
 
@@ -45,13 +56,20 @@ class Answering:
     """Answers questions from what is known of the robots, their commands and the site."""
 
     def __init__(
-        self, maps: Maps, database: Database, robots: Robots, book: CommandBook, planner: Planner
+        self,
+        maps: Maps,
+        database: Database,
+        robots: Robots,
+        book: CommandBook,
+        planner: Planner,
+        ways: Ways,
     ) -> None:
         self._maps = maps
         self._database = database
         self._robots = robots
         self._book = book
         self._planner = planner
+        self._ways = ways
 
     async def answer(self, robot: str, question: Question) -> Reply:
         """Return the answer to ``question``; raises RefusedError where there is none, saying why."""
@@ -60,6 +78,8 @@ class Answering:
             return Reply(SetMap(await asyncio.to_thread(self._maps.map_around, *around)))
         if isinstance(question, GetPath):
             return await self._path(robot)
+        if isinstance(question, GetSurface):
+            return Reply(await self._surfaces(question))
         if isinstance(question, GetPosIni):
             return Reply(await self._begin(robot))
         return Reply(await self._end(robot))
@@ -72,7 +92,16 @@ class Answering:
         if pose is None:
             raise RefusedError(f"GetPath: it is not known where robot {robot!r} is; send SendPos first")
         message, driven = task
-        return Reply(*await asyncio.to_thread(way_left, message, (pose.x, pose.y), driven, self._planner))
+        left = await asyncio.to_thread(way_left, message, (pose.x, pose.y), driven, self._planner)
+        self._ways.told(robot, message, left.message)
+        return Reply(*left)
+
+    async def _surfaces(self, question: GetSurface) -> SetSurface:
+        try:
+            found = await asyncio.to_thread(self._maps.surfaces_at, question.points, question.crs)
+        except RefusedError as error:
+            raise RefusedError(f"GetSurface: {error}") from error
+        return SetSurface([None if one is None else one.label for one in found], question.source)
 
     async def _begin(self, robot: str) -> SetPosIni:
         given = await self._given("GetPosIni", robot, "SetPosIni", "SetPath")

@@ -5,36 +5,61 @@
 
 from __future__ import annotations
 
+import asyncio
 import base64
 from collections.abc import Awaitable, Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from . import map_requests
 from .access import supervision
-from .errors import ForbiddenError
+from .errors import ForbiddenError, RefusedError
 from .fleet import Fleet
 from .messages import (
     AbortAll,
     AbortTask,
+    AddTasks,
     ClearEmergencyStop,
+    CloseRoad,
+    CollectLayout,
     CommandReport,
     DeskRequest,
     EmergencyStop,
     EndSession,
     GetAudit,
+    GetClosures,
     GetCommands,
+    GetConflicts,
     GetImage,
     GetObservations,
+    GetPlacements,
     GetPositions,
+    GetQueue,
+    GetRoute,
     GetSessions,
+    GetSurfaces,
     GetTrajectory,
+    MakeCurrent,
+    MoveTask,
+    OpenRoad,
+    PauseQueue,
+    QueueReport,
+    RemoveTask,
+    ResolveConflict,
+    ResumeQueue,
     ReviewObservation,
     Role,
     Send,
+    SendMap,
     SetPositions,
+    SetQueue,
+    SurfaceAt,
+    TakeOver,
     to_json,
 )
+from .road_traffic import road_requests
 from .snapshots import positions
+from .store import placements
 from .trajectories.reading import get_trajectory
 
 Json = dict[str, Any]
@@ -76,15 +101,31 @@ def _commands(reports: Sequence[CommandReport]) -> Json:
 
 
 async def _get_positions(fleet: Fleet, _request: GetPositions, _caller: Caller) -> Json:
-    return positions(fleet.reports())
+    return positions(fleet.rows())
 
 
 async def _set_positions(fleet: Fleet, request: SetPositions, caller: Caller) -> Json:
     return _commands(await fleet.orders.set_positions(request.positions, caller.operator))
 
 
+def _check_override(fleet: Fleet, request: Send | AddTasks, caller: Caller) -> None:
+    """Raise ForbiddenError for an override that the caller's role does not reach."""
+    least = Role(fleet.site.settings.commands.override_role)
+    if request.override is not None and not caller.role.includes(least):
+        raise ForbiddenError(
+            f"{request.method}: {caller.operator} is {caller.role.value}, and an override takes "
+            f"{least.value}; choose another place or way, or ask one (override_role in the site's settings)"
+        )
+
+
 async def _send(fleet: Fleet, request: Send, caller: Caller) -> Json:
+    _check_override(fleet, request, caller)
     return to_json(await fleet.orders.send(request, caller.operator))
+
+
+async def _send_map(fleet: Fleet, request: SendMap, _caller: Caller) -> Json:
+    await map_requests.send_map(fleet, request)
+    return {}
 
 
 async def _abort_all(fleet: Fleet, request: AbortAll, caller: Caller) -> Json:
@@ -137,14 +178,114 @@ async def _get_trajectory(fleet: Fleet, request: GetTrajectory, _caller: Caller)
     return to_json(await get_trajectory(fleet.database, request))
 
 
+async def _set_queue(fleet: Fleet, request: SetQueue, caller: Caller) -> Json:
+    return to_json(await fleet.queues.set(request, caller.operator))
+
+
+async def _add_tasks(fleet: Fleet, request: AddTasks, caller: Caller) -> Json:
+    _check_override(fleet, request, caller)
+    return to_json(await fleet.queues.add(request, caller.operator))
+
+
+async def _move_task(fleet: Fleet, request: MoveTask, caller: Caller) -> Json:
+    return to_json(await fleet.queues.move(request, caller.operator))
+
+
+async def _remove_task(fleet: Fleet, request: RemoveTask, caller: Caller) -> Json:
+    return to_json(await fleet.queues.remove(request, caller.operator))
+
+
+async def _make_current(fleet: Fleet, request: MakeCurrent, caller: Caller) -> Json:
+    return to_json(await fleet.queues.make_current(request, caller.operator))
+
+
+async def _pause_queue(fleet: Fleet, request: PauseQueue, caller: Caller) -> Json:
+    return to_json(await fleet.queues.pause(request, caller.operator))
+
+
+async def _resume_queue(fleet: Fleet, request: ResumeQueue, caller: Caller) -> Json:
+    return to_json(await fleet.queues.resume(request, caller.operator))
+
+
+async def _take_over(fleet: Fleet, request: TakeOver, caller: Caller) -> Json:
+    return _queues(await fleet.queues.take_over(request, caller.operator))
+
+
+async def _get_queue(fleet: Fleet, request: GetQueue, _caller: Caller) -> Json:
+    return _queues(await fleet.queues.read(request))
+
+
+def _queues(reports: Sequence[QueueReport]) -> Json:
+    return {"queues": [to_json(report) for report in reports]}
+
+
+async def _get_placements(fleet: Fleet, request: GetPlacements, _caller: Caller) -> Json:
+    found = await fleet.database.read(placements.newest, request)
+    return {"placements": [to_json(report) for report in found]}
+
+
+async def _collect_layout(fleet: Fleet, request: CollectLayout, _caller: Caller) -> Json:
+    return to_json(await fleet.queues.collecting(request))
+
+
+async def _get_surface(fleet: Fleet, request: GetSurfaces, _caller: Caller) -> Json:
+    return await asyncio.to_thread(_surfaces, fleet, request)
+
+
+def _surfaces(fleet: Fleet, request: GetSurfaces) -> Json:
+    try:
+        found = fleet.site.surfaces_at(request.points, request.crs)
+    except RefusedError as error:
+        raise RefusedError(f"get_surface: {error}") from error
+    told = [one and to_json(SurfaceAt(one.label, one.origin, one.name or None)) for one in found]
+    return {"surfaces": told}
+
+
+async def _get_route(fleet: Fleet, request: GetRoute, _caller: Caller) -> Json:
+    return to_json(await road_requests.route(fleet.roads, fleet.robots, fleet.ways, request))
+
+
+async def _close_road(fleet: Fleet, request: CloseRoad, caller: Caller) -> Json:
+    return to_json(await fleet.closures.close(request, caller.operator))
+
+
+async def _open_road(fleet: Fleet, request: OpenRoad, caller: Caller) -> Json:
+    return to_json(await fleet.closures.open(request, caller.operator))
+
+
+async def _get_closures(fleet: Fleet, _request: GetClosures, _caller: Caller) -> Json:
+    return to_json(fleet.closures.report())
+
+
+async def _get_conflicts(fleet: Fleet, _request: GetConflicts, _caller: Caller) -> Json:
+    return to_json(await fleet.traffic.conflicts())
+
+
+async def _resolve_conflict(fleet: Fleet, request: ResolveConflict, caller: Caller) -> Json:
+    return to_json(await fleet.traffic.resolve(request, caller.operator))
+
+
 SERVICES: dict[type[DeskRequest], Service] = {
     GetPositions: Service(Role.VIEWER, _get_positions),
     GetCommands: Service(Role.VIEWER, _get_commands),
+    GetSurfaces: Service(Role.VIEWER, _get_surface),
     GetTrajectory: Service(Role.VIEWER, _get_trajectory),
     GetObservations: Service(Role.VIEWER, _get_observations),
     GetImage: Service(Role.VIEWER, _get_image),
     ReviewObservation: Service(Role.OPERATOR, _review_observation),
+    GetQueue: Service(Role.VIEWER, _get_queue),
+    GetPlacements: Service(Role.VIEWER, _get_placements),
+    CollectLayout: Service(Role.VIEWER, _collect_layout),
+    SetQueue: Service(Role.OPERATOR, _set_queue),
+    AddTasks: Service(Role.OPERATOR, _add_tasks),
+    MoveTask: Service(Role.OPERATOR, _move_task),
+    RemoveTask: Service(Role.OPERATOR, _remove_task),
+    MakeCurrent: Service(Role.OPERATOR, _make_current),
+    PauseQueue: Service(Role.OPERATOR, _pause_queue),
+    ResumeQueue: Service(Role.OPERATOR, _resume_queue),
+    TakeOver: Service(Role.OPERATOR, _take_over),
     Send: Service(Role.OPERATOR, _send),
+    SendMap: Service(Role.OPERATOR, _send_map),
     SetPositions: Service(Role.OPERATOR, _set_positions),
     AbortAll: Service(Role.OPERATOR, _abort_all),
     AbortTask: Service(Role.OPERATOR, _abort),
@@ -153,4 +294,10 @@ SERVICES: dict[type[DeskRequest], Service] = {
     GetSessions: Service(Role.SUPERVISOR, _get_sessions),
     EndSession: Service(Role.SUPERVISOR, _end_session),
     GetAudit: Service(Role.SUPERVISOR, _get_audit),
+    GetRoute: Service(Role.VIEWER, _get_route),
+    GetClosures: Service(Role.VIEWER, _get_closures),
+    GetConflicts: Service(Role.VIEWER, _get_conflicts),
+    CloseRoad: Service(Role.OPERATOR, _close_road),
+    OpenRoad: Service(Role.OPERATOR, _open_road),
+    ResolveConflict: Service(Role.OPERATOR, _resolve_conflict),
 }

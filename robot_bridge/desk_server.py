@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import logging
-import secrets
 import time
 from typing import Any
 
@@ -14,8 +14,9 @@ from websockets.exceptions import ConnectionClosed
 from . import jsonrpc
 from .access.gate import Gate
 from .access.visitor import Visitor
+from .desk_lanes import Asked, DeskLanes
 from .desk_requests import Caller, answer
-from .errors import BridgeError
+from .errors import BridgeError, OutdatedError
 from .fleet import Fleet
 from .messages import (
     DESK_REQUESTS,
@@ -23,14 +24,18 @@ from .messages import (
     DeskRequest,
     Hello,
     MessageError,
+    PositionForm,
     Subscribe,
     to_json,
 )
-from .snapshots import EVERYTHING, next_tick
+from .monitoring.unforeseen import note_unforeseen
+from .snapshots import EVERYTHING, Tick
 from .wire import decode_desk_request, error_code
 
 log = logging.getLogger(__name__)
 
+OWN = (Hello, Subscribe)
+"""Requests that concern the connection itself; everything later goes by them."""
 UNNOTED = ("hello", "subscribe")
 """Requests that change nothing but the connection they come from."""
 
@@ -51,6 +56,7 @@ class DeskSession:
         self._news: dict[tuple[str, str], dict[str, Any]] = {}
         self._news_event = asyncio.Event()
         self._tasks: dict[str, asyncio.Task[None]] = {}
+        self._lanes = DeskLanes(self._settle)
 
     async def run(self) -> None:
         """Serve the connection to its end."""
@@ -58,43 +64,63 @@ class DeskSession:
         self._start("news", self._push_news())
         try:
             async for frame in self._connection:
-                await self._connection.send(await self._answer(frame))
+                await self._take(frame)
         except ConnectionClosed:
             pass
         finally:
             self._fleet.unlisten(self)
             for task in self._tasks.values():
                 task.cancel()
+            await self._lanes.finish()
 
     def notify(self, method: str, key: str, params: dict[str, Any]) -> None:
         """Keep the newest news of ``key`` until they can be sent."""
         self._news[method, key] = params
         self._news_event.set()
 
-    async def _answer(self, frame: str | bytes) -> str:
+    async def _take(self, frame: str | bytes) -> None:
         call = None
         try:
             call = jsonrpc.decode(frame)
             if not isinstance(call, jsonrpc.Call):
                 raise jsonrpc.FrameError(jsonrpc.INVALID_REQUEST, "a desk sends requests only", call.id)
-            result = jsonrpc.result(call.id, await self._do(decode_desk_request(call.method, call.params)))
-        except jsonrpc.FrameError as error:
-            return jsonrpc.error(error.id, error.code, str(error))
-        except (MessageError, BridgeError) as error:
-            log.warning("desk of %s: %s", self._operator, error)
-            return self._refused(call, error_code(error), str(error))
-        except Exception:
-            number = secrets.token_hex(4)
-            log.exception("desk of %s: internal error %s", self._operator, number)
-            text = f"internal error {number}; the gateway's log says more under this number"
-            return self._refused(call, jsonrpc.INTERNAL_ERROR, text)
-        self._note(call)
+            asked = Asked(call, decode_desk_request(call.method, call.params), len(frame))
+        except Exception as error:
+            await self._connection.send(self._refused(call, error))
+            return
+        if isinstance(asked.request, OWN):
+            await self._settle(asked, None)
+        else:
+            await self._lanes.take(asked)
+
+    async def _settle(self, asked: Asked, refusal: Exception | None) -> None:
+        """Do what is asked, unless it is refused, and tell what came of it."""
+        with contextlib.suppress(ConnectionClosed):
+            await self._connection.send(await self._answer(asked, refusal))
+
+    async def _answer(self, asked: Asked, refusal: Exception | None) -> str:
+        try:
+            if refusal is not None:
+                raise refusal
+            result = jsonrpc.result(asked.call.id, await self._do(asked.request))
+        except Exception as error:
+            return self._refused(asked.call, error)
+        self._note(asked.call)
         return result
 
-    def _refused(self, call: jsonrpc.Call | jsonrpc.Reply | None, code: int, text: str) -> str:
+    def _refused(self, call: jsonrpc.Call | jsonrpc.Reply | None, error: Exception) -> str:
+        """Return the answer that tells why; called where ``error`` was caught."""
+        if isinstance(error, jsonrpc.FrameError):
+            return jsonrpc.error(error.id, error.code, str(error))
+        code, text, newer = jsonrpc.INTERNAL_ERROR, str(error), None
+        if isinstance(error, (MessageError, BridgeError)):
+            log.warning("desk of %s: %s", self._operator, error)
+            code, newer = error_code(error), error.newer if isinstance(error, OutdatedError) else None
+        else:
+            text = note_unforeseen(log, f"desk of {self._operator}")
         if isinstance(call, jsonrpc.Call):
             self._note(call, text, code)
-        return jsonrpc.error(call.id if call else None, code, text)
+        return jsonrpc.error(call.id if call else None, code, text, newer)
 
     def _note(self, call: jsonrpc.Call, refusal: str | None = None, code: int | None = None) -> None:
         """Write down who asked for what to be changed, done or refused, and what a role does not reach."""
@@ -111,7 +137,8 @@ class DeskSession:
             role=self._gate.role(self._connection).value,
             address=self._connection.address,
             subject=next((str(name) for name in names if name is not None), None),
-            detail=params if refusal is None else f"{refusal}; {params}",
+            # First, since what is too long is cut at its end.
+            detail="; ".join(str(text) for text in (refusal, asked.get("override"), params) if text),
         )
 
     async def _do(self, request: DeskRequest) -> dict[str, Any]:
@@ -119,7 +146,7 @@ class DeskSession:
         if isinstance(request, Hello):
             return self._hello(request)
         if isinstance(request, Subscribe):
-            self._start("positions", self._push_positions(1 / request.rate))
+            self._start("positions", self._push_positions(1 / request.rate, request.form))
             return {}
         role = self._gate.role(self._connection)
         return await answer(self._fleet, request, Caller(self._operator, role, self._connection.address))
@@ -146,17 +173,19 @@ class DeskSession:
             self._tasks[name].cancel()
         self._tasks[name] = asyncio.create_task(work)
 
-    async def _push_positions(self, interval: float) -> None:
-        seen = EVERYTHING
+    async def _push_positions(self, interval: float, form: PositionForm) -> None:
+        frame, seen = self._fleet.snapshots.after(EVERYTHING, form=form)
+        tick = Tick.last(interval, time.monotonic())
         try:
             while True:
-                frame, revision = self._fleet.snapshots.after(seen)
-                tick = time.monotonic() // interval
                 if frame is not None:
-                    await self._connection.send(frame, text=True)
-                await asyncio.sleep(next_tick(interval))
-                missed = time.monotonic() // interval > tick + 1.5
-                seen = EVERYTHING if missed else revision
+                    await self._connection.send(frame, text=form is PositionForm.ROWS)
+                now = time.monotonic()
+                due = tick.following(now)
+                await asyncio.sleep(due.wait(now))
+                missed = due.number > tick.number + 1
+                frame, seen = self._fleet.snapshots.after(EVERYTHING if missed else seen, due, form)
+                tick = due
         except ConnectionClosed:
             return
 

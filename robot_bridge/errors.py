@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 
 class BridgeError(Exception):
     """Something the bridge cannot do; the text names what was wrong, where, and what to do."""
@@ -25,6 +27,18 @@ class RefusedError(BridgeError):
 
 class ForbiddenError(RefusedError):
     """A request that the operator's role does not allow."""
+
+
+class OutdatedError(RefusedError):
+    """A change to something that has changed since it was looked at; ``newer`` is how it is now, as JSON."""
+
+    def __init__(self, text: str, newer: dict[str, Any]) -> None:
+        super().__init__(text)
+        self.newer = newer
+
+
+class BusyError(RefusedError):
+    """A request that is not dealt with because too many others wait."""
 
 
 class HopelessError(BridgeError):

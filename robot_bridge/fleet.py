@@ -10,22 +10,25 @@ import asyncio
 import logging
 import time
 from collections import Counter
-from collections.abc import Callable, Iterable, Sequence
-from copy import copy
+from collections.abc import Callable, Coroutine, Iterable, Sequence
 from typing import Any, Protocol
 
 from sqlalchemy import Connection
 
 from . import exchange
 from .answering import Answering
-from .command_book import CommandBook
-from .emergency import HELD_BACK, EmergencyStops
+from .commanding.book import CommandBook
+from .commanding.orders import Orders
+from .emergency.journal import StopJournal
+from .emergency.stops import HELD_BACK, EmergencyStops
 from .exchange import Outcome
 from .ground_track import GroundTracks
 from .handshake import Holds, refusal
 from .messages import (
+    Command,
     CommandReport,
     CommandState,
+    GetPath,
     ObservationReport,
     Observed,
     OpAck,
@@ -42,15 +45,24 @@ from .messages import (
 )
 from .monitoring.tally import Tally
 from .observation_book import ObservationBook
-from .ordering import Orders
 from .planning import Planner, StraightPlanner
+from .queueing.book import QueueBook
+from .queueing.driving import QueueDriving
+from .queueing.orders import QueueOrders
+from .road_traffic.closure_book import ClosureBook
+from .road_traffic.detours import Detours
+from .road_traffic.road_planning import RoadPlanner
+from .road_traffic.traffic_control import TrafficControl
+from .road_traffic.waiting_robots import WaitingRobots
+from .road_traffic.ways import Ways
 from .robots import Robot, Robots
 from .served_site import ServedSite
-from .snapshots import Snapshots
+from .snapshots import ReportRow, Snapshots
 from .store import answers, commands, facts, requests, trajectories
 from .store import robots as stored_robots
 from .store.answers import AnswerRow
 from .store.database import Database
+from .store.rows import Row
 from .store.trajectories import Fix
 from .trajectories.recorder import Recorder
 
@@ -73,25 +85,55 @@ class Fleet:
         database: Database,
         clock: Callable[[], float] = time.time,
         planner: Planner | None = None,
+        stops: StopJournal | None = None,
     ) -> None:
         self.site = site
         self._database = database
         self._clock = clock
         self.robots = Robots(site.report.stale_after, site.report.lost_after)
-        self.snapshots = Snapshots(self.robots, self.reports)
+        self.snapshots = Snapshots(self.robots, clock)
         self._book = CommandBook(
             database,
             site.report.reached_tolerance,
             clock,
             self._command_changed,
             self._outbox_changed,
-            lambda message: self.emergency.check(message),
+            self._check,
+            self._consider,
         )
+        self.ways = Ways(self.robots, self._book)
+        self.roads = planner if isinstance(planner, RoadPlanner) else None
         self.orders = Orders(site, self.robots, self._book, database)
-        self.emergency = EmergencyStops(self._book, database, clock, self.robots.names, self.announce)
+        self.emergency = EmergencyStops(self._book, database, clock, self.robots.names, self.announce, stops)
+        self._queue_book = QueueBook(database, self.robots, self.announce)
+        about_queues = (site, self.robots, self._book, self._queue_book, database, clock)
+        self.queues = QueueOrders(*about_queues)
+        self.driving = QueueDriving(*about_queues)
+        self._detours = Detours(
+            self.ways,
+            self.roads,
+            self.orders,
+            self.driving,
+            self._book,
+            lambda: self.site.settings.routes.no_way == "stop",
+        )
+        self.closures = ClosureBook(database, clock, self.roads, self._detours, self.announce)
+        self._waiting = WaitingRobots(database, self._book, self._detours)
+        self.traffic = TrafficControl(
+            clock,
+            self.robots,
+            self.ways,
+            self.roads,
+            self._detours,
+            self._waiting,
+            lambda: self.site.settings.routes,
+            self.announce,
+        )
         self.recorder = Recorder(lambda: self.site.settings.trajectories)
         self.observations = ObservationBook(site, database, clock, self._observation_changed)
-        self._answering = Answering(site, database, self.robots, self._book, planner or StraightPlanner())
+        self._answering = Answering(
+            site, database, self.robots, self._book, planner or StraightPlanner(), self.ways
+        )
         self._tracks = GroundTracks()
         self.holds = Holds()
         self.tally = Tally()
@@ -115,6 +157,9 @@ class Fleet:
         for robot in known:
             self.robots.assign(robot.name, self._book.busy_with(robot.name))
         await self.emergency.restore()
+        await self.closures.restore()
+        await self._waiting.restore()
+        await self._queue_book.restore()
         await self.observations.restore()
         greetings = [Outcome(robot.name, answer=self.greeting()) for robot in known if robot.link == "sql"]
         await self.finish(greetings, [], acks=False)
@@ -138,7 +183,8 @@ class Fleet:
         if isinstance(request, SendGPS):
             request = self._pose_of(robot, request, now)
         if isinstance(request, SendPos):
-            await self._receive_pose(robot, link, request, now)
+            if (rest := self._take_pose(robot, link, request, now)) is not None:
+                await rest
             return Outcome(robot)
         # Only driving sets a robot that said Stopped in motion.
         stopped = isinstance(request, Stopped) or self.robots.get(robot).ended_in_order
@@ -150,9 +196,19 @@ class Fleet:
         elif isinstance(request, Observed):
             await self.observations.add(known, link, request, id)
         elif isinstance(request, Question):
+            if isinstance(request, GetPath):
+                self._waiting.check(robot)
             answer, note = await self._answering.answer(robot, request)
             self.emergency.check(answer)
         return Outcome(robot, OpAck(id=id, reason=note or None) if request.acknowledged else None, answer)
+
+    def take_pose(self, robot: str, link: str, pose: SendPos) -> Coroutine[Any, Any, None] | None:
+        """Deal with a position as :meth:`receive` does, at once but for what is returned, to be awaited.
+
+        That is the storing of a command that the robot has carried out, nearly always None.
+        """
+        self.tally.requests[link, "SendPos"] += 1
+        return self._take_pose(robot, link, pose, self._clock())
 
     async def finish(self, outcomes: list[Outcome], request_ids: list[int], *, acks: bool) -> None:
         """Write the answers of requests into SA, with their OpAcks if ``acks``, and delete them from RR.
@@ -224,6 +280,10 @@ class Fleet:
         """Return the robots that changed after revision ``since`` of :attr:`robots`."""
         return self.robots.reports(self._clock(), since)
 
+    def rows(self, since: int = -1) -> list[Any]:
+        """Return them as they are encoded (see :mod:`.snapshots`)."""
+        return self.robots.rows(self._clock(), since, ReportRow)
+
     async def commands(self, robot: str | None, limit: int) -> list[CommandReport]:
         """Return the newest commands first, of one robot or of all."""
         return await self._database.run(commands.newest, robot, limit)
@@ -256,9 +316,15 @@ class Fleet:
         self.robots.limit(report.stale_after, report.lost_after)
         self._book.tolerance = report.reached_tolerance
         await self.observations.restore()
+        await self.closures.site_changed()
         self.announce("site", report.id, to_json(report))
 
     # --- time -----------------------------------------------------------------------------------------
+
+    async def watch_roads(self) -> None:
+        """Open the roads that were closed until now, and see to robots in each other's way."""
+        await self.closures.expire()
+        await self.traffic.watch(listened_to=bool(self._listeners))
 
     def age(self) -> None:
         """Bring the liveness of every robot up to now."""
@@ -276,10 +342,6 @@ class Fleet:
         self.recorder.finish()
         await self.save()
 
-    async def prune(self) -> None:
-        """Delete what the site's settings do not keep any longer, in small pieces."""
-        await self.recorder.prune(self._database, self._clock())
-
     async def _save(self, *robots: str) -> None:
         """Store where robots have been and then where they are, those of ``robots`` in any case.
 
@@ -292,7 +354,7 @@ class Fleet:
                 unsaved, self._unsaved = self._unsaved.union(robots), set()
             try:
                 # As they are now: by the time they are written they may be further on than what is stored.
-                known = [copy(self.robots.get(name)) for name in unsaved if name in self.robots]
+                known = [stored_robots.row(self.robots.get(name)) for name in unsaved if name in self.robots]
                 await self._database.run(_save, known, fixes)
             except Exception:
                 self.recorder.give_back(fixes)
@@ -330,12 +392,14 @@ class Fleet:
         known, limit = self.robots.get(robot), self.site.report.stale_after
         return await refusal(known, magic, self._clock() - known.received_at, limit, self.holds)
 
-    async def _receive_pose(self, robot: str, link: str, pose: SendPos, now: float) -> None:
+    def _take_pose(
+        self, robot: str, link: str, pose: SendPos, now: float
+    ) -> Coroutine[Any, Any, None] | None:
         if not self.robots.observe(robot, pose, link, now):
-            return
+            return None
         self._unsaved.add(robot)
         self.recorder.observe(Fix(robot, now, pose))
-        await self._book.observe(robot, pose)
+        return self._book.observe(robot, pose)
 
     def _measure(self, robot: Robot, written_at: float | None) -> None:
         """Take the time from a message's writing to its OpAck for the latency of a link that has no pings."""
@@ -345,10 +409,20 @@ class Fleet:
             if 0 <= took < self.site.report.lost_after:
                 self.robots.measured(robot.name, took)
 
+    def _check(self, message: Command) -> None:
+        """Raise RefusedError for a message that must not be sent to any robot now."""
+        self.emergency.check(message)
+        self.closures.check(message)
+
+    async def _consider(self, message: Command) -> None:
+        await self.closures.consider(message)
+
     def _command_changed(self, command: CommandReport) -> None:
         self.robots.assign(command.robot, self._book.busy_with(command.robot))
         self.tally.steps[command.state.value] += 1
         self.emergency.take(command)
+        self.driving.take(command)
+        self._waiting.take(command)
         self.announce("command", command.command, to_json(command))
 
     def _observation_changed(self, observation: ObservationReport) -> None:
@@ -358,6 +432,6 @@ class Fleet:
         self.outbox_event(robot).set()
 
 
-def _save(connection: Connection, robots: Sequence[Robot], fixes: Sequence[Fix]) -> None:
+def _save(connection: Connection, robots: Sequence[Row], fixes: Sequence[Fix]) -> None:
     stored_robots.save(connection, robots)
     trajectories.add(connection, fixes)

@@ -9,6 +9,7 @@ import logging
 import socket
 import time
 from collections.abc import Callable, Coroutine
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
 from urllib.parse import parse_qs, urlsplit
@@ -24,6 +25,7 @@ from .access.tls import ServerFiles, ServerTls
 from .access.tokens import TokenKind
 from .access.visitor import Visitor
 from .desk_server import DeskSession
+from .emergency.journal import StopJournal, journal_file
 from .errors import StoreError
 from .farewell import say_farewell
 from .fleet import Fleet
@@ -32,7 +34,8 @@ from .links.websocket import WebSocketLink
 from .messages import MessageError, check_robot_name
 from .monitoring.metrics import Metrics
 from .monitoring.tasks import Work, every, keep_all_going
-from .road_planning import RoadPlanner
+from .retention import Retention
+from .road_traffic.road_planning import RoadPlanner
 from .schemas.documents import served
 from .site_maps import SiteMaps
 from .site_watch import SiteWatch, stamp_of
@@ -48,19 +51,25 @@ AGE_INTERVAL = 0.25
 SAVE_INTERVAL = 1.0
 STUCK_INTERVAL = 5.0
 PRUNE_INTERVAL = 60.0
+ROADS_INTERVAL = 1.0
+MOST_THREADS = 32
 SAVE_WITHIN, CLOSE_WITHIN = 2.2, 0.5
 """seconds for the last words to the database, so that a gateway ends within five in all."""
 
 
 @dataclass(frozen=True)
 class GatewaySettings:
-    """What a gateway is started with; port 0 takes any free one."""
+    """What a gateway is started with; port 0 takes any free one.
+
+    ``state`` is the folder for what it notes on this computer, None for the one that the site's lies in.
+    """
 
     site: Path
     database: URL
     host: str = "127.0.0.1"
     port: int = 8765
     tls: ServerFiles | None = None
+    state: Path | None = None
 
 
 @dataclass
@@ -82,6 +91,7 @@ class Gateway:
         metrics = Metrics(fleet.tally)
         fleet.database.observe = metrics.database.observe
         self._status = StatusPages(fleet, metrics)
+        self._retention = Retention(fleet.database, lambda: fleet.site.settings, time.time)
 
     async def serve(self, host: str, port: int) -> Server:
         """Listen for robots and operators; raises BridgeError when that cannot be done there."""
@@ -94,8 +104,10 @@ class Gateway:
         works: dict[str, Work] = {
             "sql link": SqlLink(fleet, fleet.database).run,
             "liveness": lambda: every(AGE_INTERVAL, self._age, "liveness", tally),
+            "queues": fleet.driving.run,
             "save": lambda: every(SAVE_INTERVAL, fleet.save, "save", tally),
-            "prune": lambda: every(PRUNE_INTERVAL, fleet.prune, "prune", tally),
+            "prune": lambda: every(PRUNE_INTERVAL, self._retention.prune, "prune", tally),
+            "roads": lambda: every(ROADS_INTERVAL, fleet.watch_roads, "roads", tally),
             "accounts": self._gate.watch,
             "audit log": self._gate.journal.run,
         }
@@ -161,6 +173,8 @@ async def run(settings: GatewaySettings, signals: Signals, started: Callable[[st
     :raises BridgeError: when it may not listen there, another gateway runs on its database, or it cannot go
         on; SiteError and StoreError for its site and database.
     """
+    # Threads that wait for one another's ways must not keep others waiting.
+    asyncio.get_running_loop().set_default_executor(ThreadPoolExecutor(MOST_THREADS, "gateway"))
     tls = ServerTls(settings.tls) if settings.tls else None
     stamp = await asyncio.to_thread(stamp_of, settings.site)
     site = await asyncio.to_thread(read_site, settings.site)
@@ -171,13 +185,14 @@ async def run(settings: GatewaySettings, signals: Signals, started: Callable[[st
         sole = SoleGateway(settings.database)
         await sole.take()
         stack.push_async_callback(sole.release)
+        journal = await asyncio.to_thread(_journal, settings)
         gate = Gate(database, site.settings.limits, may_be_open=is_loopback(settings.host))
         await gate.open()
         accounts = gate.book.has_operator(time.time())
         check_reach(settings.host, tls=tls is not None, accounts=accounts)
         maps = SiteMaps(site)
         planner = await asyncio.to_thread(RoadPlanner, lambda: maps.site)
-        fleet = Fleet(maps, database, planner=planner)
+        fleet = Fleet(maps, database, planner=planner, stops=journal)
         await fleet.start()
         stack.push_async_callback(_save_last, fleet, gate)
         gateway = Gateway(fleet, gate, tls)
@@ -188,6 +203,16 @@ async def run(settings: GatewaySettings, signals: Signals, started: Callable[[st
         watch = SiteWatch(settings.site, stamp, maps, fleet, signals.reload)
         works = {**gateway.works(), "site": watch.run, "sole gateway": sole.hold}
         await _until_stopped(keep_all_going(works, fleet.tally), signals.stop)
+
+
+def _journal(settings: GatewaySettings) -> StopJournal | None:
+    folder = settings.state or settings.site.resolve().parent
+    file = journal_file(settings.database, folder)
+    if file is None:
+        return None
+    journal = StopJournal(file)
+    journal.check()
+    return journal
 
 
 async def _until_stopped(watch: Coroutine[None, None, None], stop: asyncio.Event) -> None:

@@ -16,6 +16,7 @@ REFUSED = -32000
 NOT_READY = -32001
 FORBIDDEN = -32003
 TOO_MANY = -32005
+OUTDATED = -32006
 
 
 class FrameError(ValueError):
@@ -92,9 +93,10 @@ def result(id: int | str | None, value: Any) -> str:
     return _encode({"jsonrpc": "2.0", "id": id, "result": value})
 
 
-def error(id: int | str | None, code: int, text: str) -> str:
-    """Return the frame that tells why call ``id`` failed."""
-    return _encode({"jsonrpc": "2.0", "id": id, "error": {"code": code, "message": text}})
+def error(id: int | str | None, code: int, text: str, data: Any = None) -> str:
+    """Return the frame that tells why call ``id`` failed, with ``data`` that its caller needs to know."""
+    more = {} if data is None else {"data": data}
+    return _encode({"jsonrpc": "2.0", "id": id, "error": {"code": code, "message": text, **more}})
 
 
 def _encode(frame: dict[str, Any]) -> str:

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Protocol
 
 from .messages import ObservationReport, SiteReport
+from .roads.surfaces.surface import Surface
 from .sites.settings import SiteSettings
 
 
@@ -28,6 +29,9 @@ class ServedSite(Protocol):
 
     def map_around(self, x: float, y: float, area: float) -> bytes:
         """Return the map of a square of ``area`` square metres centred on (x, y)."""
+
+    def surfaces_at(self, points: Sequence[tuple[float, float]], crs: str | None) -> list[Surface | None]:
+        """Return the road surface at each of ``points``; raises RefusedError for a CRS that leads nowhere."""
 
     def place_on_earth(
         self, lat: float, lon: float, heading: float | None

@@ -9,8 +9,11 @@ from typing import NamedTuple
 from .errors import RefusedError
 from .messages import ObservationReport, SiteReport
 from .observed_objects import ObservedObjects
+from .roads.surfaces.index import NOWHERE
+from .roads.surfaces.surface import Surface
 from .robotmap.binary import encode
 from .robotmap.errors import RobotMapError
+from .sites.any_crs import AnyCrs
 from .sites.earth import Earth
 from .sites.errors import CrsError
 from .sites.settings import SiteSettings
@@ -33,6 +36,8 @@ class SiteMaps:
         self._drawn = Drawn(site, ObservedObjects([], site.settings.observations.object_radius_m))
         self._whole_map: tuple[Drawn, bytes] | None = None
         self._making = threading.Lock()
+        self._any_crs = AnyCrs(site.frame)
+        self._indexing = threading.Lock()
 
     def take_over(self, site: Site) -> None:
         """Serve ``site`` from now on, another publication with the same frame."""
@@ -94,6 +99,21 @@ class SiteMaps:
         """Draw accepted objects, and no others, on the maps from now on."""
         site = self._site
         self._drawn = Drawn(site, ObservedObjects(objects, site.settings.observations.object_radius_m))
+
+    def surfaces_at(self, points: Sequence[tuple[float, float]], crs: str | None) -> list[Surface | None]:
+        """Return the road surface at each of ``points``, None where there is none.
+
+        They are metres in the site frame, or in ``crs``, x before y. Raises RefusedError for a CRS that leads
+        nowhere.
+        """
+        site = self._site
+        try:
+            places = points if crs is None else self._any_crs.to_site(points, crs)
+        except CrsError as error:
+            raise RefusedError(str(error)) from error
+        with self._indexing:
+            index = site.surface_index
+        return [None if k == NOWHERE else site.surfaces[k] for k in index.at_many(places).tolist()]
 
     def place_on_earth(
         self, lat: float, lon: float, heading: float | None

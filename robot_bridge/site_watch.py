@@ -11,6 +11,7 @@ from .errors import BridgeError
 from .exchange import Outcome
 from .fleet import Fleet
 from .messages import RobotState, SetMap
+from .road_traffic.road_planning import check_roads
 from .site_maps import SiteMaps
 from .sites.errors import SiteError
 from .sites.geopackage import GEOPACKAGE_FILE
@@ -63,6 +64,7 @@ class SiteWatch:
         try:
             site = await asyncio.to_thread(read_site, self._folder)
             self._check(site)
+            await asyncio.to_thread(check_roads, site)
         except (SiteError, BridgeError) as error:
             # Two files are replaced one after the other: what is wrong may be half of something right.
             if stamp == self._doubtful or asked:

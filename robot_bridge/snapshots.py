@@ -10,69 +10,99 @@ from typing import Any, NamedTuple
 
 import msgspec
 
-from .messages import RobotReport
+from .messages import PositionForm, RobotReport
+from .position_columns import frame
 from .robots import Robots
 
 EVERYTHING = -1
+MOST_RATES = 64
+"""rates whose last snapshot is kept."""
 
-
-_Row = msgspec.defstruct(
-    "_Row",
+ReportRow = msgspec.defstruct(
+    "ReportRow",
     [
         (f.name, Any) if f.default is not None else (f.name, Any, None)
         for f in dataclasses.fields(RobotReport)
     ],
     omit_defaults=True,
+    gc=False,
 )
-"""A report as it is encoded: what is unknown is left out."""
+"""A report as it is encoded: what is unknown is left out, and msgspec makes and writes it several times as
+fast as a dataclass. Thousands of them are told every second."""
 
 
-def positions(robots: Sequence[RobotReport]) -> dict[str, Any]:
-    """Return reports as the parameters of ``positions`` and the result of ``get_positions``.
-
-    They are for :func:`msgspec.json.encode`, which takes rows twice as fast as dictionaries: thousands of
-    them are told every second.
-    """
-    return {"t": round(time.time(), 3), "robots": [_Row(*vars(robot).values()) for robot in robots]}
+def positions(rows: Sequence[Any]) -> dict[str, Any]:
+    """Return rows as the parameters of ``positions`` and the result of ``get_positions``."""
+    return {"t": round(time.time(), 3), "robots": rows}
 
 
 class Snapshot(NamedTuple):
-    """A ``positions`` notification as a text frame; None where nothing changed up to ``revision``."""
+    """A ``positions`` notification as a frame; None where nothing changed up to ``revision``."""
 
     frame: bytes | None
     revision: int
 
 
-class Snapshots:
-    """Makes the frames. Who misses one is sent everything, which others who missed one are sent too.
+class Tick(NamedTuple):
+    """A moment that all who are told every ``interval`` seconds share."""
 
-    So a hundred operators cost two encodings a tick at most, however slow some of them are.
+    interval: float
+    number: int
+
+    @classmethod
+    def last(cls, interval: float, now: float) -> Tick:
+        """Return the newest tick at ``now``, seconds of :func:`time.monotonic`."""
+        return cls(interval, math.floor(now / interval))
+
+    def following(self, now: float) -> Tick:
+        """Return the next tick that is still to come; a timer that went off early counts as on time."""
+        return Tick(self.interval, max(self.number, math.floor(now / self.interval)) + 1)
+
+    def wait(self, now: float) -> float:
+        """Return the seconds until this tick."""
+        return max(0.0, self.number * self.interval - now)
+
+
+class Snapshots:
+    """Makes the frames: at each tick what changed since the one before, and everything for who missed that.
+
+    So a hundred operators at one rate cost two encodings a tick and form at most, however slow some of them
+    are. ``clock`` is the one by which robots' messages came in.
     """
 
-    def __init__(self, robots: Robots, reports: Callable[[int], list[RobotReport]]) -> None:
+    def __init__(self, robots: Robots, clock: Callable[[], float]) -> None:
         self._robots = robots
-        self._reports = reports
-        self._made: dict[int, Snapshot] = {}
-        self._made_at = EVERYTHING
+        self._clock = clock
+        self._made: dict[float, tuple[int, dict[tuple[PositionForm, int], Snapshot]]] = {}
 
-    def after(self, revision: int) -> Snapshot:
-        """Return what changed after ``revision``, an earlier snapshot's or EVERYTHING."""
-        now = self._robots.revision
-        if now != self._made_at:
-            self._made.clear()
-            self._made_at = now
-        if revision not in self._made:
-            self._made[revision] = Snapshot(self._encode(revision), now)
-        return self._made[revision]
+    def after(
+        self, revision: int, tick: Tick | None = None, form: PositionForm = PositionForm.ROWS
+    ) -> Snapshot:
+        """Return what changed after ``revision``, an earlier snapshot's or EVERYTHING.
 
-    def _encode(self, revision: int) -> bytes | None:
-        changed = self._reports(revision)
+        Who asks for the same ``tick`` is told the same; without one it is what is known now.
+        """
+        if tick is None:
+            return self._make(revision, form)
+        number, made = self._made.pop(tick.interval, (tick.number, {}))
+        if number != tick.number:
+            made = {}
+        if (form, revision) not in made:
+            made[form, revision] = self._make(revision, form)
+        # Clients choose their rates; the one that was asked for longest ago is forgotten.
+        self._made[tick.interval] = (tick.number, made)
+        if len(self._made) > MOST_RATES:
+            del self._made[next(iter(self._made))]
+        return made[form, revision]
+
+    def _make(self, revision: int, form: PositionForm) -> Snapshot:
+        return Snapshot(self._encoded(revision, form), self._robots.revision)
+
+    def _encoded(self, revision: int, form: PositionForm) -> bytes | None:
+        now, changed = self._clock(), self._robots.changed(revision)
         if not changed:
             return None
-        return msgspec.json.encode({"jsonrpc": "2.0", "method": "positions", "params": positions(changed)})
-
-
-def next_tick(interval: float, now: float | None = None) -> float:
-    """Return the seconds to the next tick of ``interval``: the same moments for all who share it."""
-    now = time.monotonic() if now is None else now
-    return interval - math.fmod(now, interval)
+        if form is PositionForm.COLUMNS:
+            return frame(round(time.time(), 3), changed, now)
+        params = positions(self._robots.rows(now, revision, ReportRow))
+        return msgspec.json.encode({"jsonrpc": "2.0", "method": "positions", "params": params})

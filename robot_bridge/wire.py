@@ -9,7 +9,7 @@ from typing import Any, Literal, cast
 import msgspec
 
 from . import jsonrpc
-from .errors import ForbiddenError, NotReadyError, StoreError
+from .errors import BusyError, ForbiddenError, NotReadyError, OutdatedError, StoreError
 from .messages import (
     ANSWERS,
     DESK_REQUESTS,
@@ -102,6 +102,8 @@ def error_code(error: Exception) -> int:
         MessageError: jsonrpc.INVALID_PARAMS,
         NotReadyError: jsonrpc.NOT_READY,
         ForbiddenError: jsonrpc.FORBIDDEN,
+        OutdatedError: jsonrpc.OUTDATED,
+        BusyError: jsonrpc.TOO_MANY,
         StoreError: jsonrpc.INTERNAL_ERROR,
     }
     return next((code for kind, code in codes.items() if isinstance(error, kind)), jsonrpc.REFUSED)

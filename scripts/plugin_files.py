@@ -9,7 +9,8 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGE = "fleet_supervisor"
-PARTS = ("__init__.py", "metadata.txt", "LICENSE", "CHANGELOG.md", "plugin", "robot_bridge", "resources")
+FILES = ("__init__.py", "metadata.txt", "LICENSE", "CHANGELOG.md")
+PARTS = (*FILES, "plugin", "robot_bridge", "resources", "docs")
 VENDORED = "websockets"
 VENDOR = Path("plugin") / "vendor"
 VENDOR_NOTE = '"""Packages that come with the release, unchanged; each holds its own licence."""\n'
@@ -17,6 +18,7 @@ VENDOR_NOTE = '"""Packages that come with the release, unchanged; each holds its
 KINDS = {
     "plugin": {".py"},
     "robot_bridge": {".py"},
+    "docs": {".md"},
     "resources": {".gpkg", ".png", ".qgz", ".qm", ".qml", ".svg", ".tif", ".toml"},
 }
 """What each part holds, by suffix; whatever else lies there (caches, backups, makers of resources) stays."""

@@ -21,8 +21,9 @@ import shapely
 ROOT = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(ROOT), str(ROOT / "resources" / "styles")]
 
+from robot_bridge.roads.surfaces.surface import Surface  # noqa: E402
 from robot_bridge.robotmap.outlines import Outlines  # noqa: E402
-from robot_bridge.sites.features import Area, Centreline  # noqa: E402
+from robot_bridge.sites.features import Centreline  # noqa: E402
 from robot_bridge.sites.frame import SiteFrame  # noqa: E402
 from robot_bridge.sites.projections import projections  # noqa: E402
 from robot_bridge.sites.publication import write_site  # noqa: E402
@@ -92,10 +93,10 @@ def _pyogrio():
     return pyogrio
 
 
-def areas(surfaces: list[tuple[str, shapely.Geometry]], frame: SiteFrame) -> list[Area]:
+def areas(surfaces: list[tuple[str, shapely.Geometry]], frame: SiteFrame) -> list[Surface]:
     """Return the road surfaces as polygons in the site frame."""
     return [
-        Area(
+        Surface(
             tuple(frame.to_site(shapely.get_coordinates(r)) for r in (part.exterior, *part.interiors)),
             surface,
         )

@@ -9,6 +9,7 @@ import numpy as np
 import shapely
 from plan import CRS, HEIGHT, ORIGIN, SITE_ID, SITE_NAME, WIDTH, Item, Plan
 
+from robot_bridge.roads.surfaces.surface import Surface
 from robot_bridge.robotmap.chords import ramp_normal
 from robot_bridge.robotmap.model import ShapeType
 from robot_bridge.robotmap.outlines import OutlineRow, Outlines
@@ -34,7 +35,7 @@ def publish(folder: Path, plan: Plan) -> None:
         Outlines.from_rows(list(obstacle_rows(plan))),
         [Centreline(road.points, road.width, road.surface) for road in plan.roads],
         [
-            Area(_rings(part), surface)
+            Surface(_rings(part), surface)
             for surface, whole in plan.surfaces.items()
             for part in shapely.get_parts(whole)
         ],

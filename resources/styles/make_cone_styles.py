@@ -11,7 +11,6 @@ from qgis.core import (
     QgsApplication,
     QgsCategorizedSymbolRenderer,
     QgsFeatureRenderer,
-    QgsMapLayer,
     QgsMarkerSymbol,
     QgsPalLayerSettings,
     QgsRendererCategory,
@@ -22,6 +21,7 @@ from qgis.core import (
     QgsVectorLayerSimpleLabeling,
 )
 from qgis.PyQt.QtGui import QFont
+from style_file import write_style
 
 HERE = Path(__file__).resolve().parent
 COLOURS = {
@@ -88,13 +88,7 @@ def save(look: str) -> None:
     layer.setRenderer(renderer())
     layer.setLabeling(_labels(label, scale))
     layer.setLabelsEnabled(True)
-    category = QgsMapLayer.StyleCategory
-    file = HERE / f"{look}.qml"
-    message, saved = layer.saveNamedStyle(
-        str(file), QgsMapLayer.StyleCategories(category.Symbology | category.Labeling | category.Rendering)
-    )
-    if not saved:
-        raise SystemExit(f"{file} cannot be written: {message}")
+    write_style(layer, HERE / f"{look}.qml")
 
 
 if __name__ == "__main__":

@@ -18,7 +18,6 @@ from qgis.core import (
     QgsGraduatedSymbolRenderer,
     QgsHashedLineSymbolLayer,
     QgsLineSymbol,
-    QgsMapLayer,
     QgsMarkerSymbol,
     QgsPalLayerSettings,
     QgsRendererCategory,
@@ -33,6 +32,7 @@ from qgis.core import (
 )
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtGui import QColor, QFont
+from style_file import write_style
 
 HERE = Path(__file__).resolve().parent
 HEIGHTS = (
@@ -158,13 +158,7 @@ def save(look: str) -> None:
     if label:
         layer.setLabeling(_labels(label))
         layer.setLabelsEnabled(True)
-    category = QgsMapLayer.StyleCategory
-    file = HERE / f"robot_map_{look}.qml"
-    message, saved = layer.saveNamedStyle(
-        str(file), QgsMapLayer.StyleCategories(category.Symbology | category.Labeling | category.Rendering)
-    )
-    if not saved:
-        raise SystemExit(f"{file} cannot be written: {message}")
+    write_style(layer, HERE / f"robot_map_{look}.qml")
 
 
 if __name__ == "__main__":

@@ -8,6 +8,7 @@ from typing import Any
 
 from sqlalchemy import Connection, insert, select
 
+from ..store.ageing import delete_oldest
 from ..store.schema import audit
 
 LONGEST_DETAIL = 2000
@@ -51,6 +52,11 @@ def newest(
     if before is not None:
         query = query.where(audit.c.id < before)
     return [_entry(row) for row in connection.execute(query).mappings()]
+
+
+def forget(connection: Connection, before: float, limit: int) -> int:
+    """Delete at most ``limit`` entries from before a time; return how many."""
+    return len(delete_oldest(connection, audit.c.id, audit.c.at, before, limit))
 
 
 def _row(entry: Entry) -> dict[str, Any]:

@@ -25,6 +25,10 @@ class Bucket:
         self._left -= 1.0
         return True
 
+    def give_back(self) -> None:
+        """Undo a taking."""
+        self._left = min(self._burst, self._left + 1.0)
+
     def wait(self) -> float:
         """Return the seconds until the next one can be taken."""
         missing = 1.0 - min(self._burst, self._left + (self._clock() - self._at) * self._rate)

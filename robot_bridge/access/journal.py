@@ -23,8 +23,6 @@ Work = Callable[[Connection], None]
 LARGEST_BACKLOG = 20_000
 BATCH = 500
 RETRY_AFTER = 1.0
-KEEP_SESSIONS = 90 * 86400.0
-TIDY_EVERY = 3600.0
 
 
 class Journal:
@@ -79,12 +77,8 @@ class Journal:
 
     async def run(self) -> None:
         """Write what is noted until cancelled."""
-        tidied = 0.0
         while True:
             try:
-                if self._clock() - tidied > TIDY_EVERY:
-                    tidied = self._clock()
-                    await self._database.run(session_rows.forget_ended, tidied - KEEP_SESSIONS)
                 await self._event.wait()
                 self._event.clear()
                 await self.flush()

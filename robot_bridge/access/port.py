@@ -5,7 +5,6 @@ from __future__ import annotations
 import http
 import logging
 import resource
-import secrets
 import ssl
 from collections.abc import Awaitable, Callable
 from functools import partial
@@ -17,6 +16,7 @@ from websockets.frames import CloseCode
 from websockets.http11 import Request, Response
 
 from ..errors import BridgeError
+from ..monitoring.unforeseen import note_unforeseen
 from ..sites.limit_settings import LimitSettings
 from .gate import Gate
 from .visitor import Visitor
@@ -88,10 +88,8 @@ async def _ask(doorman: Doorman, visitor: Visitor, request: Request) -> Response
     try:
         return await doorman(visitor, request)
     except Exception:
-        number = secrets.token_hex(4)
-        log.exception("somebody from %s: internal error %s", visitor.address, number)
-        text = f"Internal error {number}; the gateway's log says more under this number.\n"
-        return visitor.respond(http.HTTPStatus.INTERNAL_SERVER_ERROR, text)
+        text = note_unforeseen(log, f"somebody from {visitor.address}")
+        return visitor.respond(http.HTTPStatus.INTERNAL_SERVER_ERROR, f"{text}\n")
 
 
 def _is_path(path: str) -> bool:
@@ -107,6 +105,5 @@ async def _serve(handler: Handler, visitor: Visitor) -> None:
     try:
         await handler(visitor)
     except Exception:
-        number = secrets.token_hex(4)
-        log.exception("%s from %s: internal error %s", visitor.who, visitor.address, number)
-        await visitor.expel(CloseCode.INTERNAL_ERROR, f"internal error {number}")
+        text = note_unforeseen(log, f"{visitor.who} from {visitor.address}")
+        await visitor.expel(CloseCode.INTERNAL_ERROR, text)

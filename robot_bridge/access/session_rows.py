@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Collection
 from dataclasses import asdict, dataclass
 
-from sqlalchemy import Connection, delete, func, insert, select, update
+from sqlalchemy import Connection, func, insert, select, update
 
+from ..store.ageing import delete_oldest
 from ..store.schema import sessions
 from .errors import AccessError
 
@@ -63,9 +64,9 @@ def end_all(connection: Connection, at: float, reason: str) -> None:
     connection.execute(query.values(ended_at=at, reason=reason))
 
 
-def forget_ended(connection: Connection, before: float) -> None:
-    """Forget the sessions that ended before a time."""
-    connection.execute(delete(sessions).where(sessions.c.ended_at < before))
+def forget_ended(connection: Connection, before: float, limit: int) -> int:
+    """Delete at most ``limit`` sessions that ended before a time; return how many."""
+    return len(delete_oldest(connection, sessions.c.id, sessions.c.ended_at, before, limit))
 
 
 def ended_among(connection: Connection, open_here: Collection[str]) -> dict[str, str]:

@@ -14,10 +14,12 @@ from typing import Any, Protocol, cast
 
 from websockets.asyncio.server import ServerConnection
 from websockets.frames import CloseCode, Frame, Opcode
+from websockets.protocol import OPEN
 
 from .. import jsonrpc
 from ..sites.limit_settings import LimitSettings
 from .buckets import Bucket
+from .short_cut import ShortCut
 from .tokens import TokenKind
 
 log = logging.getLogger(__name__)
@@ -28,6 +30,7 @@ NEVER_REFUSED = "emergency_stop"
 """Who has talked too much may stop the fleet all the same."""
 CLOSE_WITHIN = 0.5
 """Seconds that a client that is shown the door has for a close in good order."""
+_OF_MESSAGES = (Opcode.TEXT, Opcode.BINARY, Opcode.CONT)
 
 
 @dataclass(frozen=True)
@@ -67,6 +70,7 @@ class Visitor(ServerConnection):
         self._expelled = False
         self._control = Bucket(CONTROL_FRAMES_PER_S, CONTROL_BURST)
         self._messages = self._patience = Bucket(1.0, 1.0)
+        self.short_cut = ShortCut()
         self.identity: Identity | None = None
         self.address = ""
         self.round_trip: float | None = None
@@ -116,6 +120,25 @@ class Visitor(ServerConnection):
 
     # --- what comes in --------------------------------------------------------------------------------
 
+    def data_received(self, data: bytes) -> None:
+        """Take in bytes: short messages are dealt with at once where that is possible, the others queued."""
+        start = self._deal_with(data)
+        if start < len(data):
+            rest, asked = data[start:] if start else data, self.request is not None
+            super().data_received(rest)
+            if not asked and self.request is not None:
+                self.short_cut.begin(rest)
+            else:
+                self.short_cut.pass_over(rest)
+
+    def _deal_with(self, data: bytes) -> int:
+        if self.protocol.state is not OPEN or self.protocol.current_size is not None or self._expelled:
+            return 0
+        start = self.short_cut.take(data, self._messages)
+        if start:
+            self._heard_at = self.loop.time()
+        return start
+
     async def __aiter__(self) -> AsyncIterator[Any]:
         """Yield the messages; those beyond the limit are refused, and then the connection is closed."""
         async for frame in super().__aiter__():
@@ -131,6 +154,7 @@ class Visitor(ServerConnection):
                 log.warning("%s from %s: too many messages; closed", self.who, self.address)
                 await self.expel(CloseCode.POLICY_VIOLATION, "too many messages a second")
                 return
+            self.short_cut.on_the_long_way -= 1
 
     async def ping(self, data: Any = None) -> Awaitable[float]:
         """Send a ping and take its time, since some event loops count in whole milliseconds."""
@@ -149,6 +173,8 @@ class Visitor(ServerConnection):
             log.warning("%s from %s: too many control frames; cut off", self.who, self.address)
             self.transport.abort()
             return
+        if isinstance(event, Frame) and event.fin and event.opcode in _OF_MESSAGES:
+            self.short_cut.on_the_long_way += 1
         super().process_event(event)
 
     @property

@@ -1,1 +1,1 @@
-"""The groups of the command line, one file each; :mod:`robot_bridge.__main__` puts them together."""
+"""The commands of ``robot-bridge``, one file each; :mod:`robot_bridge.__main__` names them."""

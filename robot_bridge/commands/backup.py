@@ -12,6 +12,7 @@ from ..store.address import shown
 from ..store.backups.backing_up import back_up
 from ..store.backups.backing_up import restore as put_back
 from .database_option import DEFAULT, DatabaseOption, PasswordFileOption, database_address
+from .noted import noting
 
 
 def backup(
@@ -21,7 +22,9 @@ def backup(
     replace: Annotated[bool, typer.Option("--replace", help="Replace FILE if it is there.")] = False,
 ) -> None:
     """Write all that the database holds into one file; the gateway may run meanwhile."""
-    size = back_up(database_address(database, database_password_file), file, replace=replace)
+    address = database_address(database, database_password_file)
+    with noting(address, "database backup", shown(address), str(file.absolute())):
+        size = back_up(address, file, replace=replace)
     typer.echo(f"{file}: {size} bytes")
 
 
@@ -33,7 +36,8 @@ def restore(
 ) -> None:
     """Put a backup in the place of what the database holds; no gateway may run on it."""
     address = database_address(database, database_password_file)
-    asyncio.run(put_back(address, file, replace=replace))
+    with noting(address, "database restore", shown(address), str(file.absolute())):
+        asyncio.run(put_back(address, file, replace=replace))
     typer.echo(f"{file} is restored into {shown(address)}")
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import Callable
 from pathlib import Path
 from typing import TypeVar
@@ -15,8 +16,10 @@ from ..store.accounts.choice import has_accounts, keeper_on
 from ..store.address import shown
 from ..store.database import run_once
 from ..store.engines.sqlite import SQLite
+from ..store.sole_gateway import no_gateway
 from . import backup, gateway_account
 from .database_option import DEFAULT, DatabaseOption, PasswordFileOption, database_address
+from .noted import noting
 
 T = TypeVar("T")
 
@@ -29,17 +32,17 @@ backup.add_to(app)
 def create(database: DatabaseOption = DEFAULT, database_password_file: PasswordFileOption = None) -> None:
     """Make the tables in an empty database; a server's database itself must be there."""
     address = database_address(database, database_password_file)
-    _run(address, revisions.create)
+    with noting(address, "database create", shown(address)):
+        _run(address, revisions.create)
     print(f"{shown(address)}: made the tables, revision {revisions.NEEDED}")
 
 
 @app.command()
 def upgrade(database: DatabaseOption = DEFAULT, database_password_file: PasswordFileOption = None) -> None:
-    """Bring the tables of an older version up to date, with all that is in them; end the gateway first."""
-    address = database_address(database, database_password_file)
-    found = _run(_there(address), revisions.upgrade)
-    if has_accounts(address.drivername):
-        _run(address, lambda connection: keeper_on(connection).renew_rights())
+    """Bring the tables of an older version up to date, with all that is in them; no gateway may run on it."""
+    address = _there(database_address(database, database_password_file))
+    with noting(address, "database upgrade", shown(address), f"to revision {revisions.NEEDED}"):
+        found = asyncio.run(_upgrade(address))
     if found == revisions.NEEDED:
         print(f"{shown(address)}: revision {found}, nothing is to be done")
     else:
@@ -58,6 +61,15 @@ def check(database: DatabaseOption = DEFAULT, database_password_file: PasswordFi
     if not report.good:
         raise StoreError(f"database {shown(address)} cannot be used as it is; {report.advice}")
     print("the tables are those that this version works with")
+
+
+async def _upgrade(address: URL) -> str:
+    """Upgrade while no gateway runs; return the revision that was there."""
+    async with no_gateway(address, "robot-bridge database upgrade"):
+        found = await asyncio.to_thread(_run, address, revisions.upgrade)
+        if has_accounts(address.drivername):
+            await asyncio.to_thread(_run, address, lambda connection: keeper_on(connection).renew_rights())
+    return found
 
 
 def _there(address: URL) -> URL:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
-from sqlalchemy import URL
 
-from ..store.address import read_address
+if TYPE_CHECKING:
+    from sqlalchemy import URL
 
 DEFAULT = "sqlite:///robot-bridge.db"
 
@@ -32,4 +32,6 @@ PasswordFileOption = Annotated[
 
 def database_address(database: str, password_file: Path | None) -> URL:
     """Return the address that the two options give; raises StoreError."""
+    from ..store.address import read_address
+
     return read_address(database, password_file)

@@ -1,21 +1,25 @@
-"""What the command line does to accounts is done and written into the audit log in one transaction."""
+"""What the command line does to accounts and to the database is written into the audit log."""
 
 from __future__ import annotations
 
 import asyncio
-import getpass
+import contextlib
+import os
+import pwd
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from datetime import datetime
 from typing import TypeVar
 
+import typer
 from sqlalchemy import URL, Connection
 
 from ..access import audit
 from ..access.audit import Entry
-from ..errors import BridgeError
+from ..errors import BridgeError, StoreError
 from ..messages import MessageError
-from ..store.database import Database
+from ..store import revisions
+from ..store.database import Database, run_once
 
 T = TypeVar("T")
 
@@ -26,25 +30,42 @@ def read(address: URL, work: Callable[[Connection], T]) -> T:
 
 
 def act(address: URL, action: str, subject: str, detail: str | None, work: Callable[[Connection], T]) -> T:
-    """Do ``work``, and note ``action`` on ``subject``; what is refused is noted too, and raised again."""
+    """Do ``work`` and note ``action`` on ``subject`` in one transaction.
 
-    def note(connection: Connection, done: bool, detail: str | None) -> None:
-        entry = Entry(
-            time.time(), _who(), action, done, address="command line", subject=subject, detail=detail
-        )
-        audit.add(connection, [entry])
+    What is refused is noted too, and raised again.
+    """
 
     def noted(connection: Connection) -> T:
         result = work(connection)
-        note(connection, True, detail)
+        _note(connection, action, subject, True, detail)
         return result
 
     try:
         return read(address, noted)
     except (BridgeError, MessageError) as error:
         reason = str(error)
-        read(address, lambda connection: note(connection, False, reason))
+        read(address, lambda connection: _note(connection, action, subject, False, reason))
         raise
+
+
+@contextlib.contextmanager
+def noting(address: URL, action: str, subject: str, detail: str | None = None) -> Iterator[None]:
+    """Note ``action`` on ``subject`` once the work inside is done, or was refused.
+
+    For work that is no transaction. What is done stays done where the log cannot be written; that is said on
+    standard error.
+    """
+    try:
+        yield
+    except BridgeError as error:
+        reason = str(error)
+        with contextlib.suppress(BridgeError):  # what keeps the log from being written is said already
+            run_once(address, _note_if_there, action, subject, False, reason)
+        raise
+    try:
+        run_once(address, _note_if_there, action, subject, True, detail)
+    except BridgeError as error:
+        typer.echo(f"robot-bridge: this is done, and not in the audit log: {error}", err=True)
 
 
 def moment(seconds: float | None) -> str:
@@ -68,8 +89,25 @@ async def _run(address: URL, work: Callable[[Connection], T]) -> T:
         await database.close()
 
 
-def _who() -> str:
+def _note(connection: Connection, action: str, subject: str, done: bool, detail: str | None) -> None:
+    entry = Entry(time.time(), who(), action, done, address="command line", subject=subject, detail=detail)
+    audit.add(connection, [entry])
+
+
+def _note_if_there(connection: Connection, action: str, subject: str, done: bool, detail: str | None) -> None:
+    found = revisions.current(connection)
+    if found != revisions.NEEDED:
+        raise StoreError(f"its tables are at revision {found or 'none'}, which this version does not write")
+    _note(connection, action, subject, done, detail)
+
+
+def who() -> str:
+    """Return the account of this computer that runs the command, and behind sudo whose it is."""
+    uid = os.getuid()
     try:
-        return getpass.getuser()
-    except (OSError, KeyError):
-        return "unknown account"
+        name = pwd.getpwuid(uid).pw_name
+    except KeyError:
+        name = f"account {uid}"
+    # Only root is believed: everybody else can write into the environment what they like.
+    behind = os.environ.get("SUDO_USER") if uid == 0 else None
+    return f"{name} (sudo by {behind})" if behind and behind != name else name

@@ -14,6 +14,7 @@ from ..access.errors import AccessError
 from ..messages import check_robot_name
 from ..store.accounts.choice import has_accounts, keeper_on
 from ..store.address import shown
+from . import robot_tokens
 from .database_option import DEFAULT, DatabaseOption, PasswordFileOption, database_address
 from .noted import act, read
 from .passwords import NewPasswordOption, new_password
@@ -144,3 +145,6 @@ def _refuse_password(file: Path | None) -> None:
 
 def _say(text: str) -> None:
     typer.echo(text, err=True)
+
+
+robot_tokens.add_to(app)

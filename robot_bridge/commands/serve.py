@@ -10,17 +10,18 @@ import sys
 import threading
 from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from ..access.tls import server_files
 from ..errors import BridgeError
-from ..gateway import GatewaySettings, Signals, run
+from ..monitoring.garbage import spare_what_lasts
 from ..monitoring.logs import LogFormat, LogLevel, set_up_log
 from ..monitoring.notify import notify, watchdog_interval
-from ..sites.settings import SETTINGS_FILE, GatewayOptions, read_settings
 from .database_option import DEFAULT, DatabaseOption, PasswordFileOption, database_address
+
+if TYPE_CHECKING:
+    from ..gateway import GatewaySettings, Signals
 
 log = logging.getLogger(__name__)
 
@@ -48,6 +49,14 @@ def serve(
         Path | None, typer.Option(help="The gateway's certificate (PEM), for wss://.")
     ] = None,
     key: Annotated[Path | None, typer.Option(help="Its key (PEM).")] = None,
+    state: Annotated[
+        Path | None,
+        typer.Option(
+            help="Folder in which emergency stops are noted that are not in the database yet; unless given, "
+            "the one that the site's folder lies in. With SQLite they are beside the database.",
+            envvar=["ROBOT_BRIDGE_STATE", "STATE_DIRECTORY"],
+        ),
+    ] = None,
     log_format: Annotated[
         LogFormat, typer.Option(help="Lines for people, or JSON.", envvar="ROBOT_BRIDGE_LOG_FORMAT")
     ] = "text",
@@ -60,6 +69,10 @@ def serve(
 
     What is not given is taken from [gateway] of site.toml. SIGHUP reads the site anew.
     """
+    from ..access.tls import server_files
+    from ..gateway import GatewaySettings
+    from ..sites.settings import SETTINGS_FILE, GatewayOptions, read_settings
+
     set_up_log(log_format, log_level)
     # A folder that is not there is named by whoever reads the whole site.
     given = read_settings(site / SETTINGS_FILE).gateway if site.is_dir() else GatewayOptions()
@@ -70,12 +83,15 @@ def serve(
         host=host or given.host or HOST,
         port=next(number for number in (port, given.port, PORT) if number is not None),
         tls=server_files(*files),
+        state=state,
     )
     with asyncio.Runner(loop_factory=_loop_factory(loop)) as runner:
         runner.run(_serve(settings))
 
 
 async def _serve(settings: GatewaySettings) -> None:
+    from ..gateway import Signals, run
+
     signals = Signals()
     running = asyncio.get_running_loop()
     for number in (signal.SIGINT, signal.SIGTERM):
@@ -89,6 +105,7 @@ async def _serve(settings: GatewaySettings) -> None:
 
 
 def _started(address: str) -> None:
+    spare_what_lasts()
     print(f"listening on {address}", flush=True)
     notify("READY=1", f"STATUS=listening on {address}")
 

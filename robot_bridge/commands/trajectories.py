@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-from datetime import UTC, datetime
 from pathlib import Path
 from typing import Annotated
 
@@ -17,6 +16,7 @@ from ..store.trajectories import Wanted
 from ..trajectories.exporting import export as write
 from ..trajectories.geopackage import TrajectoryFile
 from .database_option import DEFAULT, DatabaseOption, PasswordFileOption, database_address
+from .times import seconds_of
 
 app = typer.Typer(help="Where robots have been.", no_args_is_help=True)
 
@@ -50,8 +50,8 @@ def export(
         raise BridgeError(f"{file} is there already; choose another name, or give --replace")
     wanted = Wanted(
         robots=tuple(check_robot_name(name) for name in robot or ()),
-        since=_seconds("--since", since),
-        until=_seconds("--until", until),
+        since=seconds_of("--since", since),
+        until=seconds_of("--until", until),
         bounds=_bounds(bounds),
     )
     frame = read_settings(site / SETTINGS_FILE).frame
@@ -66,16 +66,6 @@ def export(
 
     written = asyncio.run(work())
     typer.echo(f"{file}: {written.positions} positions, {written.tracks} tracks")
-
-
-def _seconds(option: str, text: str | None) -> float | None:
-    if text is None:
-        return None
-    try:
-        time = datetime.fromisoformat(text)
-    except ValueError:
-        raise BridgeError(f"{option} {text!r} is no time; write it like 2026-11-21T08:00") from None
-    return (time if time.tzinfo else time.replace(tzinfo=UTC)).timestamp()
 
 
 def _bounds(text: str | None) -> tuple[float, float, float, float] | None:

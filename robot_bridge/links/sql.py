@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import asyncio
 import logging
-import uuid
 from collections.abc import Iterable
 
 from ..errors import DataRefusedError, NotReadyError, RefusedError, StoreError
 from ..exchange import Outcome
 from ..fleet import Fleet
 from ..messages import PAYLOADS, MessageError, OpAck, check_robot_name
+from ..monitoring.unforeseen import note_unforeseen
 from ..store import requests
 from ..store.database import Database
 from ..store.requests import AT_ONCE, RequestRow
@@ -101,9 +101,8 @@ class SqlLink:
         except StoreError:
             raise
         except Exception:
-            number = uuid.uuid4().hex[:8]
-            log.exception("link sql: request %d of robot %r failed: error %s", row.id, row.robot, number)
-            return _refusal(row, f"{row.op}: internal error {number}; the gateway's log says more")
+            text = note_unforeseen(log, f"link sql: request {row.id} of robot {row.robot!r}")
+            return _refusal(row, f"{row.op}: {text}")
 
     async def _payload(self, row: RequestRow) -> bytes | None:
         if row.op not in PAYLOADS:

@@ -6,10 +6,26 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import Any, ClassVar
 
-from .checks import MessageError, check_command_id, check_finite
+from .checks import MessageError, check_command_id, check_finite, check_robot_name
 from .observations import GetImage, GetObservations, ReviewObservation
-from .stopping import AbortTask, ClearEmergencyStop, EmergencyStop, check_reason
+from .placements import CollectLayout, GetPlacements
+from .position_columns import PositionForm
+from .queues import (
+    AddTasks,
+    GetQueue,
+    MakeCurrent,
+    MoveTask,
+    PauseQueue,
+    RemoveTask,
+    ResumeQueue,
+    SetQueue,
+    TakeOver,
+)
+from .roads import CloseRoad, GetClosures, GetConflicts, GetRoute, OpenRoad, ResolveConflict
+from .robot_state import RobotState
+from .stopping import AbortTask, ClearEmergencyStop, EmergencyStop, check_override, check_reason
 from .supervision import EndSession, GetAudit, GetSessions
+from .surfaces import GetSurfaces
 from .trajectories import GetTrajectory
 
 PROTOCOL_VERSION = 1
@@ -28,15 +44,6 @@ class Role(str, Enum):
         """Tell whether this role may do what ``other`` may."""
         order = list(Role)
         return order.index(self) >= order.index(other)
-
-
-class RobotState(str, Enum):
-    """How far the knowledge of a robot can be trusted (see :mod:`.liveness`)."""
-
-    FRESH = "fresh"
-    STALE = "stale"
-    LOST = "lost"
-    OFFLINE = "offline"
 
 
 class CommandState(str, Enum):
@@ -94,7 +101,10 @@ class CommandStep:
 
 @dataclass(frozen=True)
 class CommandReport:
-    """A command with every step so far; ``deviation`` is metres between target and robot when reached."""
+    """A command with every step so far; ``deviation`` is metres between target and robot when reached.
+
+    ``stood`` is where the robot stood then: x, y in metres and theta in radians, site frame.
+    """
 
     command: str
     robot: str
@@ -104,6 +114,7 @@ class CommandReport:
     state: CommandState
     steps: list[CommandStep] = field(default_factory=list)
     deviation: float | None = None
+    stood: tuple[float, float, float] | None = None
 
 
 @dataclass(frozen=True)
@@ -136,10 +147,14 @@ class Hello:
 
 @dataclass(frozen=True)
 class Subscribe:
-    """Ask for ``positions`` up to ``rate`` times a second, what changed only; everything at first."""
+    """Ask for ``positions`` up to ``rate`` times a second, what changed only; everything at first.
+
+    ``form`` says whether they come as an object for each robot or as a table of numbers.
+    """
 
     method: ClassVar[str] = "subscribe"
     rate: float = 5.0
+    form: PositionForm = PositionForm.ROWS
 
     def __post_init__(self) -> None:
         check_finite(rate=self.rate)
@@ -181,7 +196,8 @@ class Send:
     """Ask for one command. ``command`` is an id that the operator's side invents: sent twice, done once.
 
     It is given up when the robot has not fetched it within ``expires_in`` seconds, if that is given, else
-    within the time that the site's settings say.
+    within the time that the site's settings say. ``override`` says what speaks against it, and why it is
+    asked for all the same: it stands in the command's log, and takes the role that the site's settings say.
     """
 
     method: ClassVar[str] = "send"
@@ -191,10 +207,12 @@ class Send:
     params: dict[str, Any] = field(default_factory=dict)
     expires_in: float | None = None
     reason: str | None = None
+    override: str | None = None
 
     def __post_init__(self) -> None:
         check_command_id(self.command)
         check_reason(self.reason)
+        check_override(self.override)
         if self.expires_in is not None and not 0 < self.expires_in <= LONGEST_EXPIRY:
             raise MessageError(
                 f"expires_in is {self.expires_in}; give seconds, above 0 and up to {LONGEST_EXPIRY:g}"
@@ -219,6 +237,17 @@ class AbortAll:
 
 
 @dataclass(frozen=True)
+class SendMap:
+    """Have a robot sent the map of the whole site now, as it is sent one when it connects."""
+
+    method: ClassVar[str] = "send_map"
+    robot: str
+
+    def __post_init__(self) -> None:
+        check_robot_name(self.robot)
+
+
+@dataclass(frozen=True)
 class GetCommands:
     """Ask for the newest ``limit`` commands with their steps, newest first, of one robot or of all."""
 
@@ -237,6 +266,7 @@ DeskRequest = (
     | GetPositions
     | SetPositions
     | Send
+    | SendMap
     | AbortAll
     | AbortTask
     | EmergencyStop
@@ -249,6 +279,24 @@ DeskRequest = (
     | EndSession
     | GetAudit
     | GetTrajectory
+    | GetSurfaces
+    | SetQueue
+    | AddTasks
+    | MoveTask
+    | RemoveTask
+    | MakeCurrent
+    | PauseQueue
+    | ResumeQueue
+    | GetQueue
+    | TakeOver
+    | GetPlacements
+    | CollectLayout
+    | GetRoute
+    | CloseRoad
+    | OpenRoad
+    | GetClosures
+    | GetConflicts
+    | ResolveConflict
 )
 
 DESK_REQUESTS: dict[str, type[DeskRequest]] = {
@@ -259,6 +307,7 @@ DESK_REQUESTS: dict[str, type[DeskRequest]] = {
         GetPositions,
         SetPositions,
         Send,
+        SendMap,
         AbortAll,
         AbortTask,
         EmergencyStop,
@@ -271,5 +320,23 @@ DESK_REQUESTS: dict[str, type[DeskRequest]] = {
         EndSession,
         GetAudit,
         GetTrajectory,
+        GetSurfaces,
+        SetQueue,
+        AddTasks,
+        MoveTask,
+        RemoveTask,
+        MakeCurrent,
+        PauseQueue,
+        ResumeQueue,
+        GetQueue,
+        TakeOver,
+        GetPlacements,
+        CollectLayout,
+        GetRoute,
+        CloseRoad,
+        OpenRoad,
+        GetClosures,
+        GetConflicts,
+        ResolveConflict,
     )
 }

@@ -6,8 +6,11 @@ import dataclasses
 from enum import Enum
 from typing import Any
 
-from .desk import CommandReport, CommandState, CommandStep, RobotReport, RobotState, SiteReport
+from .desk import CommandReport, CommandState, CommandStep, RobotReport, SiteReport
 from .observations import ObservationReport, ObservationState
+from .placements import PlacementReport
+from .queues import QueueReport, QueueState, TaskKind, TaskReport, TaskState
+from .robot_state import RobotState
 from .stopping import EmergencyReport
 
 
@@ -41,9 +44,13 @@ def command_report(values: dict[str, Any]) -> CommandReport:
         CommandStep(**{**_known(CommandStep, step), "state": CommandState(step["state"])})
         for step in values.get("steps", [])
     ]
-    return CommandReport(
+    report = CommandReport(
         **{**_known(CommandReport, values), "state": CommandState(values["state"]), "steps": steps}
     )
+    if report.stood is None:
+        return report
+    x, y, theta = report.stood
+    return dataclasses.replace(report, stood=(x, y, theta))
 
 
 def site_report(values: dict[str, Any]) -> SiteReport:
@@ -56,6 +63,30 @@ def observation_report(values: dict[str, Any]) -> ObservationReport:
     """Return the observation that a gateway sent as JSON."""
     known = _known(ObservationReport, values)
     return ObservationReport(**{**known, "state": ObservationState(values["state"])})
+
+
+def queue_report(values: dict[str, Any]) -> QueueReport:
+    """Return the queue that a gateway sent as JSON."""
+    enums = {
+        "state": QueueState(values["state"]),
+        "robot_state": RobotState(values["robot_state"]),
+        "tasks": [task_report(task) for task in values.get("tasks", [])],
+        "ended": [task_report(task) for task in values.get("ended", [])],
+    }
+    return QueueReport(**{**_known(QueueReport, values), **enums})
+
+
+def task_report(values: dict[str, Any]) -> TaskReport:
+    """Return the task of a queue that a gateway sent as JSON."""
+    typed: dict[str, Any] = {"kind": TaskKind(values["kind"]), "state": TaskState(values["state"])}
+    if values.get("path") is not None:
+        typed["path"] = [tuple(point) for point in values["path"]]
+    return TaskReport(**{**_known(TaskReport, values), **typed})
+
+
+def placement_report(values: dict[str, Any]) -> PlacementReport:
+    """Return the placed cone that a gateway sent as JSON."""
+    return PlacementReport(**_known(PlacementReport, values))
 
 
 def emergency_report(values: dict[str, Any]) -> EmergencyReport:

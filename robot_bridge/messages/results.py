@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from .desk import CommandReport, RobotReport, Role, SiteReport
 from .observations import ObservationReport
+from .queues import QueueReport
 from .stopping import EmergencyReport
 from .supervision import AuditReport, SessionReport
 
@@ -68,3 +69,10 @@ class Audit:
     """Who did what, newest first."""
 
     entries: list[AuditReport]
+
+
+@dataclass(frozen=True)
+class Queues:
+    """What robots are to do one after the other, by robot."""
+
+    queues: list[QueueReport]

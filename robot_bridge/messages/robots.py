@@ -19,6 +19,7 @@ from .checks import (
     check_stored_number,
     check_texts,
 )
+from .surfaces import GetSurface, SetSurface
 
 LONGEST_LABEL = 128
 """characters; of an object's id, its label and a robot's own number of an observation."""
@@ -258,15 +259,21 @@ class SetPath:
 
 @dataclass(frozen=True)
 class SetPosEnd:
-    """The end of the track: a target, the heading to stand in if it matters; ``cone``: place one there."""
+    """The end of the track: a target, the heading to stand in if it matters; ``cone``: place one there.
+
+    ``collect`` (an addition of ours): pick up the cone that stands there.
+    """
 
     x: float
     y: float
     theta: float | None = None
     cone: bool = False
+    collect: bool | None = None
 
     def __post_init__(self) -> None:
         check_finite(x=self.x, y=self.y, theta=self.theta)
+        if self.cone and self.collect:
+            raise MessageError("cone and collect are both true; a cone is placed or collected, not both")
 
 
 @dataclass(frozen=True)
@@ -283,10 +290,10 @@ class SetPosIni:
 
 Position = SendPos | SendGPS
 Observed = SetObject | SendImage
-Question = GetMap | GetPath | GetPosIni | GetPosEnd
+Question = GetMap | GetPath | GetPosIni | GetPosEnd | GetSurface
 Request = Ready | Stopped | Alive | OpAck | Position | Question | Observed
 Command = SetPosEnd | SetPath | SetPosIni | Abort
-Answer = Start | OpAck | SetMap | Command
+Answer = Start | OpAck | SetMap | SetSurface | Command
 
 REQUESTS: dict[str, type[Request]] = {
     cls.__name__: cls
@@ -303,10 +310,11 @@ REQUESTS: dict[str, type[Request]] = {
         GetPosIni,
         GetPosEnd,
         SetObject,
+        GetSurface,
     )
 }
 ANSWERS: dict[str, type[Answer]] = {
-    cls.__name__: cls for cls in (Start, OpAck, Abort, SetMap, SetPath, SetPosIni, SetPosEnd)
+    cls.__name__: cls for cls in (Start, OpAck, Abort, SetMap, SetPath, SetPosIni, SetPosEnd, SetSurface)
 }
 COMMANDS: dict[str, type[Command]] = {cls.__name__: cls for cls in (SetPosEnd, SetPath, SetPosIni, Abort)}
 """The answers that an operator can ask for as a command."""

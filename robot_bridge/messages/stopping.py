@@ -9,6 +9,8 @@ from .checks import MessageError, check_command_id, check_robot_name
 
 LONGEST_REASON = 500
 """characters."""
+LONGEST_OVERRIDE = 1000
+"""characters."""
 
 
 def check_reason(reason: str | None) -> None:
@@ -16,6 +18,17 @@ def check_reason(reason: str | None) -> None:
     if reason is not None and not (len(reason) <= LONGEST_REASON and reason.isprintable()):
         raise MessageError(
             f"reason has {len(reason)} characters; give one line of at most {LONGEST_REASON} printable ones"
+        )
+
+
+def check_override(override: str | None) -> None:
+    """Refuse an override that does not say in one line of the log what is overridden; raises MessageError."""
+    if override is None:
+        return
+    if not (override.strip() and len(override) <= LONGEST_OVERRIDE and override.isprintable()):
+        raise MessageError(
+            f"override has {len(override)} characters; say in one line of at most {LONGEST_OVERRIDE} "
+            "printable ones what speaks against it and why it is asked for all the same"
         )
 
 

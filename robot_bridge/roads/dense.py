@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
+from numpy.typing import NDArray
 
-from .centrelines import Floats
+from .centrelines import Floats, ranges
 from .errors import RoadInputError
 
 _STRAIGHT = math.radians(0.5)
@@ -58,112 +58,140 @@ def dense_path(points: Floats, widths: Floats, driving: Driving) -> DensePath:
     """
     line, width, wobble = _without_wobble(points, widths, driving)
     if len(line) < 3:
-        return DensePath(_filled([line], driving.spacing), np.empty((0, 2)), math.inf, 0.0)
-    corners = [_Corner.at(line, width - 2 * wobble, k, driving) for k in range(1, len(line) - 1)]
-    parts = [line[:1], *(corner.arc() for corner in corners), line[-1:]]
-    bends = [corner for corner in corners if corner.turn > _STRAIGHT]
-    tight = [corner.point for corner in bends if corner.radius < driving.turning_radius * (1 - 1e-6)]
+        return DensePath(_filled(line, driving.spacing), np.empty((0, 2)), math.inf, 0.0)
+    corners = _corners(line, width - 2 * wobble, driving)
+    bends = corners.turn > _STRAIGHT
+    tight = bends & (corners.radius < driving.turning_radius * (1 - 1e-6))
     return DensePath(
-        _filled(parts, driving.spacing),
-        np.array(tight).reshape(-1, 2),
-        min((corner.radius for corner in bends), default=math.inf),
-        max((corner.offset for corner in bends), default=0.0),
+        _filled(np.concatenate([line[:1], corners.arcs(), line[-1:]]), driving.spacing),
+        corners.point[tight],
+        float(corners.radius[bends].min(initial=math.inf)),
+        float(corners.offset[bends].max(initial=0.0)),
     )
 
 
 @dataclass(frozen=True)
-class _Corner:
-    """A bend of ``turn`` radians at ``point``, from direction ``u`` to ``v``, with an arc of ``radius``."""
+class _Corners:
+    """Bends of ``turn`` radians, (n,), at ``point``, from direction ``u`` to ``v``, all (n, 2).
+
+    Each has an arc of ``radius``, (n,), or none where that is 0.
+    """
 
     point: Floats
     u: Floats
     v: Floats
-    turn: float
-    radius: float
-
-    @classmethod
-    def at(cls, line: Floats, width: Floats, k: int, driving: Driving) -> _Corner:
-        before, after = line[k] - line[k - 1], line[k + 1] - line[k]
-        metres = math.hypot(*before), math.hypot(*after)
-        u, v = before / metres[0], after / metres[1]
-        turn = abs(math.atan2(u[0] * v[1] - u[1] * v[0], float(u @ v)))
-        if turn <= _STRAIGHT or turn > math.pi - _STRAIGHT:
-            return cls(line[k], u, v, turn, 0.0)
-        room = max((min(width[k - 1], width[k]) - driving.robot_width) / 2, 0.0)
-        # Neighbouring corners share the stretch between them; the ends of the path share with nobody.
-        share = (1.0 if k == 1 else 0.5, 1.0 if k == len(line) - 2 else 0.5)
-        tangent = min(metres[0] * share[0], metres[1] * share[1])
-        by_length = tangent / math.tan(turn / 2)
-        by_width = room / (1 / math.cos(turn / 2) - 1)
-        radius = min(driving.turning_radius, by_length, by_width)
-        return cls(line[k], u, v, turn, radius if radius >= _LEAST_RADIUS else 0.0)
+    turn: Floats
+    radius: Floats
 
     @property
-    def offset(self) -> float:
-        """How far the arc is off the corner."""
-        if self.radius == 0.0:
-            return 0.0
-        return self.radius * (1 / math.cos(self.turn / 2) - 1)
+    def offset(self) -> Floats:
+        """How far the arcs are off the corners, (n,)."""
+        offset = np.zeros(len(self.turn))
+        arc = self.radius > 0.0
+        offset[arc] = self.radius[arc] * (1 / np.cos(self.turn[arc] / 2) - 1)
+        return offset
 
-    def arc(self) -> Floats:
-        """Return the points of the arc, (n, 2); the corner itself where there is none."""
-        if self.radius == 0.0:
-            return self.point[None, :]
-        tangent = self.radius * math.tan(self.turn / 2)
-        begin = self.point - tangent * self.u
-        left = self.u[0] * self.v[1] - self.u[1] * self.v[0] > 0
-        normal = np.array([-self.u[1], self.u[0]]) * (1 if left else -1)
-        angles = np.linspace(0.0, self.turn, max(math.ceil(self.turn / _STEP), 1) + 1)[:, None]
-        arc: Floats = begin + self.radius * (np.sin(angles) * self.u + (1 - np.cos(angles)) * normal)
-        return arc
+    def arcs(self) -> Floats:
+        """Return the points of all arcs, (m, 2), one after the other; of those that are none the corners."""
+        arc = self.radius > 0.0
+        steps = np.where(arc, np.maximum(np.ceil(self.turn / _STEP), 1.0), 0.0).astype(np.int64)
+        at = np.repeat(np.arange(len(steps)), steps + 1)
+        step = ranges(np.zeros(len(steps), np.int64), steps + 1)
+        angle = (step * (self.turn / np.maximum(steps, 1))[at])[:, None]
+        tangent = np.zeros(len(steps))
+        tangent[arc] = self.radius[arc] * np.tan(self.turn[arc] / 2)
+        begin = self.point - tangent[:, None] * self.u
+        left = np.where(_cross(self.u, self.v) > 0, 1.0, -1.0)
+        normal = np.column_stack([-self.u[:, 1], self.u[:, 0]]) * left[:, None]
+        along, aside = np.sin(angle) * self.u[at], (1 - np.cos(angle)) * normal[at]
+        arcs: Floats = begin[at] + self.radius[at, None] * (along + aside)
+        return arcs
 
 
-def _filled(parts: list[Floats], spacing: float) -> Floats:
-    """Return the line through ``parts`` with points at most ``spacing`` metres apart; none repeats."""
-    line = np.concatenate(parts)
+def _corners(line: Floats, width: Floats, driving: Driving) -> _Corners:
+    """Return the corners of ``line``, (n, 2), on a road ``width``, (n - 1,), wide."""
+    legs = np.diff(line, axis=0)
+    metres = np.hypot(*legs.T)
+    unit = legs / metres[:, None]
+    u, v = unit[:-1], unit[1:]
+    turn = np.abs(np.arctan2(_cross(u, v), (u * v).sum(axis=1)))
+    bend = (turn > _STRAIGHT) & (turn <= math.pi - _STRAIGHT)
+    half = np.where(bend, turn, 1.0) / 2
+    room = np.maximum((np.minimum(width[:-1], width[1:]) - driving.robot_width) / 2, 0.0)
+    # Neighbouring corners share the stretch between them; the ends of the path share with nobody.
+    share = np.full(len(metres), 0.5)
+    share[[0, -1]] = 1.0
+    tangent = np.minimum((metres * share)[:-1], (metres * share)[1:])
+    by_length, by_width = tangent / np.tan(half), room / (1 / np.cos(half) - 1)
+    radius = np.minimum(np.minimum(by_length, by_width), driving.turning_radius)
+    radius[~bend | (radius < _LEAST_RADIUS)] = 0.0
+    return _Corners(line[1:-1], u, v, turn, radius)
+
+
+def _cross(u: Floats, v: Floats) -> Floats:
+    cross: Floats = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
+    return cross
+
+
+def _filled(line: Floats, spacing: float) -> Floats:
+    """Return ``line``, (n, 2), with points at most ``spacing`` metres apart; none repeats."""
     metres = np.hypot(*np.diff(line, axis=0).T)
     line = line[np.concatenate([[True], metres > 1e-6])]
     if len(line) < 2:
         return np.repeat(line, 2, axis=0)
-    pieces = []
-    for a, b in pairwise(line):
-        count = max(math.ceil(math.hypot(*(b - a)) / spacing - 1e-9), 1)
-        pieces.append(a + (b - a) * (np.arange(count) / count)[:, None])
-    return np.concatenate([*pieces, line[-1:]])
+    steps = np.diff(line, axis=0)
+    count = np.maximum(np.ceil(np.hypot(*steps.T) / spacing - 1e-9), 1.0).astype(np.int64)
+    leg = np.repeat(np.arange(len(steps)), count)
+    share = ranges(np.zeros(len(steps), np.int64), count) / count[leg]
+    return np.concatenate([line[leg] + steps[leg] * share[:, None], line[-1:]])
 
 
 def _without_wobble(points: Floats, widths: Floats, driving: Driving) -> tuple[Floats, Floats, float]:
-    """Return the line without points that are no bends (Douglas and Peucker, 1973), and its widths.
+    """Return the line without points that are no bends, and its widths.
 
     A piece is as wide as the narrowest of what it stands for. The third is by how much points were off.
     """
     room = float(max((widths.min() - driving.robot_width) / 2, 0.0)) if len(widths) else 0.0
-    slack = min(_WOBBLE, room / 2)
-    keep = np.zeros(len(points), bool)
-    keep[[0, -1]] = True
-    wobble = 0.0
-    open_pieces = [(0, len(points) - 1)]
-    while open_pieces:
-        begin, end = open_pieces.pop()
-        if end - begin < 2:
-            continue
-        away = _away(points[begin + 1 : end], points[begin], points[end])
-        k = int(np.argmax(away))
-        if away[k] > slack:
-            keep[begin + 1 + k] = True
-            open_pieces += [(begin, begin + 1 + k), (begin + 1 + k, end)]
-        else:
-            wobble = max(wobble, float(away[k]))
+    keep, wobble = _bends(points, min(_WOBBLE, room / 2))
     kept = np.flatnonzero(keep)
     moves = np.hypot(*np.diff(points[kept], axis=0).T) > 1e-9
     kept = kept[np.concatenate([[True], moves])]
-    narrow = [widths[a:b].min() for a, b in pairwise(kept)]
-    return points[kept], np.array(narrow), wobble
+    if len(kept) < 2:
+        return points[kept], np.empty(0), wobble
+    return points[kept], np.minimum.reduceat(widths[: kept[-1]], kept[:-1]), wobble
+
+
+def _bends(points: Floats, slack: float) -> tuple[NDArray[np.bool_], float]:
+    """Return which points are kept, (n,), by Douglas and Peucker (1973), and by how much others are off.
+
+    All pieces of one depth are looked at together.
+    """
+    keep = np.zeros(len(points), bool)
+    keep[[0, -1]] = True
+    wobble = 0.0
+    begin, end = np.array([0]), np.array([len(points) - 1])
+    while True:
+        some = end - begin >= 2
+        begin, end = begin[some], end[some]
+        if not len(begin):
+            return keep, wobble
+        count = end - begin - 1
+        piece, inner = np.repeat(np.arange(len(begin)), count), ranges(begin + 1, count)
+        away = _away(points[inner], points[begin][piece], points[end][piece])
+        most = np.maximum.reduceat(away, np.cumsum(count) - count)
+        farthest = np.flatnonzero(away == most[piece])
+        first = farthest[np.unique(piece[farthest], return_index=True)[1]]
+        bent = most > slack
+        wobble = max(wobble, float(most[~bent].max(initial=0.0)))
+        middle = inner[first][bent]
+        keep[middle] = True
+        begin, end = np.concatenate([begin[bent], middle]), np.concatenate([middle, end[bent]])
 
 
 def _away(points: Floats, a: Floats, b: Floats) -> Floats:
+    """Return how far ``points`` are from the segments ``a`` to ``b``, all (n, 2)."""
     step = b - a
-    square = max(float(step @ step), 1e-18)
-    share = np.clip((points - a) @ step / square, 0.0, 1.0)
+    square = np.maximum((step * step).sum(axis=1), 1e-18)
+    share = np.clip(((points - a) * step).sum(axis=1) / square, 0.0, 1.0)
     away: Floats = np.hypot(*(a + share[:, None] * step - points).T)
     return away

@@ -28,6 +28,7 @@ class NearestEdge:
     """Finds the nearest edge through a grid of their segments."""
 
     def __init__(self, network: Network) -> None:
+        self.network = network
         edges = network.edges
         at = ranges(edges.first[:-1], edges.counts() - 1)
         self._owner = np.repeat(np.arange(len(edges)), edges.counts() - 1)
@@ -60,6 +61,11 @@ class NearestEdge:
                 return found
             radius = min(radius * 4, reach)
 
+    def segments_in(self, low: Floats, high: Floats) -> tuple[Floats, Floats, Ints]:
+        """Return the segments near the box ``low`` to ``high``: both ends, (n, 2), and their edge, (n,)."""
+        found = np.unique(self._in_cells(low, high))
+        return self._a[found], self._b[found], self._owner[found]
+
     def _within(self, place: Floats, radius: float, allowed: NDArray[np.bool_] | None) -> Foothold | None:
         segments = self._near(place, radius)
         if allowed is not None:
@@ -77,8 +83,10 @@ class NearestEdge:
 
     def _near(self, place: Floats, radius: float) -> Ints:
         """Return the segments in the cells that a square around ``place`` touches; some more than once."""
-        low = np.maximum(place - radius, self._low)
-        high = np.minimum(place + radius, self._high)
+        return self._in_cells(place - radius, place + radius)
+
+    def _in_cells(self, low: Floats, high: Floats) -> Ints:
+        low, high = np.maximum(low, self._low), np.minimum(high, self._high)
         if (low > high).any():
             return np.empty(0, np.int64)
         columns, rows = (

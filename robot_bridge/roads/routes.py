@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 from collections import OrderedDict
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 import numpy as np
@@ -46,6 +47,13 @@ class Restrictions:
     surfaces: frozenset[str] | None = None
     least_width: float = 0.0
 
+    def fit(self, network: Network) -> NDArray[np.bool_]:
+        """Return which edges of ``network`` may be used as far as they are open, (n,)."""
+        fit: NDArray[np.bool_] = network.edges.width >= self.least_width
+        if self.surfaces is not None:
+            fit &= np.isin(network.edges.surface.astype(str), sorted(self.surfaces))
+        return fit
+
 
 class Router:
     """Finds routes on one network. Closed edges are closed for every query from then on.
@@ -66,6 +74,11 @@ class Router:
         self._ready: OrderedDict[Restrictions, tuple[Engine, NDArray[np.bool_]]] = OrderedDict()
 
     @property
+    def nearest(self) -> NearestEdge:
+        """What finds the edge nearest to a place, closed or not."""
+        return self._nearest
+
+    @property
     def engine_name(self) -> str:
         """What finds the ways, as people are told."""
         return self._engine(Restrictions())[0].name
@@ -79,9 +92,16 @@ class Router:
         self._set_closed(edges, False)
 
     def route(
-        self, start: Place, goal: Place, wanted: Restrictions | None = None, reach: float = REACH
+        self,
+        start: Place,
+        goal: Place,
+        wanted: Restrictions | None = None,
+        reach: float = REACH,
+        avoid: Collection[int] = (),
     ) -> Route:
         """Return the best route from the edge nearest to ``start`` to the edge nearest to ``goal``.
+
+        Edges of ``avoid`` are not used, but for the stretches from ``start`` and to ``goal`` on their own.
 
         :raises OffNetworkError: when no road that may be used is within ``reach`` metres of one of them;
             NoRouteError when no way leads from one to the other.
@@ -91,13 +111,32 @@ class Router:
         allowed = fit & ~self._closed
         begin = self._foothold("start", start, reach, allowed)
         end = self._foothold("goal", goal, reach, allowed)
-        stretches = self._stretches(begin, end, engine, wanted)
+        with self._without(avoid):
+            stretches = self._stretches(begin, end, engine, wanted)
         if stretches is None:
             raise NoRouteError(
                 f"No way leads from {_told(start)} to {_told(goal)} on the roads that may be used: "
                 "check closed roads, one-way roads, surfaces and widths, or repair the network."
             )
         return Route(self.network, *stretches, begin.away, end.away, engine.name)
+
+    @property
+    def closed(self) -> NDArray[np.bool_]:
+        """Which edges are closed now, (n,)."""
+        return self._closed.copy()
+
+    @contextmanager
+    def _without(self, edges: Collection[int]) -> Iterator[None]:
+        """Close ``edges`` for one route."""
+        shut = [edge for edge in edges if not self._closed[edge]]
+        if not shut:
+            yield
+            return
+        self.close(shut)
+        try:
+            yield
+        finally:
+            self.open(shut)
 
     def _foothold(self, what: str, place: Place, reach: float, allowed: NDArray[np.bool_]) -> Foothold:
         if not all(math.isfinite(value) for value in place):
@@ -118,9 +157,7 @@ class Router:
     def _engine(self, wanted: Restrictions) -> tuple[Engine, NDArray[np.bool_]]:
         """Return the engine for ``wanted`` and which edges it may use as far as they are open."""
         if wanted not in self._ready:
-            fit = self.network.edges.width >= wanted.least_width
-            if wanted.surfaces is not None:
-                fit &= np.isin(self.network.edges.surface.astype(str), sorted(wanted.surfaces))
+            fit = wanted.fit(self.network)
             costs = np.where(fit & ~self._closed, self._costs(wanted), np.inf)
             self._ready[wanted] = self._engines(costs[self._edge]), fit
             while len(self._ready) > _KEPT:

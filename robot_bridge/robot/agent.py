@@ -12,6 +12,7 @@ from ..messages import (
     Alive,
     Answer,
     GetPath,
+    GetSurface,
     OpAck,
     Ready,
     Request,
@@ -20,6 +21,7 @@ from ..messages import (
     SetPath,
     SetPosEnd,
     SetPosIni,
+    SetSurface,
     Start,
     Stopped,
 )
@@ -43,7 +45,8 @@ class AgentSettings:
     """``magic`` names this run of the robot, ``noise`` is metres on reported positions.
 
     ``things`` are seen on the way, with ``image`` as the picture of each; with ``asks_path`` the robot asks
-    for a path to every target.
+    for a path to every target; with ``asks_surface`` it asks what ground it is on and is to go to, and says
+    so as its status.
     """
 
     magic: int
@@ -55,6 +58,7 @@ class AgentSettings:
     things: tuple[Thing, ...] = ()
     image: bytes | None = None
     asks_path: bool = False
+    asks_surface: bool = False
 
 
 class Agent:
@@ -77,6 +81,7 @@ class Agent:
         self._greet_in = math.inf
         self._since_pose = math.inf
         self._moving = False
+        self._ground: str | None = None
         self.map: RobotMap | None = None
 
     @property
@@ -166,8 +171,13 @@ class Agent:
             self._driver = Driver([(answer.x, answer.y)], answer.theta, limits)
             if self._settings.asks_path:
                 self._say(GetPath())
+            self._ask_surface((answer.x, answer.y))
         elif isinstance(answer, SetPath):
             self._driver = Driver(answer.points, answer.theta, limits)
+            self._ask_surface(answer.points[-1])
+        elif isinstance(answer, SetSurface):
+            names = ["no road" if name is None else name or "an unknown surface" for name in answer.surfaces]
+            self._ground = " to ".join(names)
         elif isinstance(answer, SetPosIni):
             return self._take_place(answer)
         elif isinstance(answer, Abort):
@@ -175,6 +185,10 @@ class Agent:
             self._body.drive(0.0, 0.0)
         self._moving = self._moving or self._driver is not None
         return None
+
+    def _ask_surface(self, goal: tuple[float, float]) -> None:
+        if self._settings.asks_surface:
+            self._say(GetSurface([self._body.pose[:2], goal]))
 
     def _take_map(self, answer: SetMap) -> str | None:
         try:
@@ -198,6 +212,7 @@ class Agent:
             theta=round(theta, 4),
             v=round(self._body.v, 3),
             battery=round(max(0.0, 1 - self._body.driven / RANGE), 3),
+            status=self._ground,
         )
 
     def _notice_stop(self) -> None:

@@ -37,6 +37,7 @@ class RobotSettings:
     things: tuple[Thing, ...] = ()
     image: bytes | None = None
     asks_path: bool = False
+    asks_surface: bool = False
 
 
 class Link(Protocol):
@@ -63,6 +64,7 @@ async def run(settings: RobotSettings, stop: asyncio.Event) -> None:
             things=settings.things,
             image=settings.image,
             asks_path=settings.asks_path,
+            asks_surface=settings.asks_surface,
         ),
         link.say,
     )

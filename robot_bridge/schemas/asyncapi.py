@@ -7,7 +7,7 @@ from typing import Any
 
 from ..messages import ANSWERS, DESK_REQUESTS, PROTOCOL_VERSION, REQUESTS, OpAck
 from .definitions import Schema, definitions, plain_text
-from .tables import NOTIFICATIONS, RESULTS
+from .tables import HEADS, NOTIFICATIONS, RESULTS
 
 VERSION = "3.0.0"
 _REFERENCE = "#/components/schemas/{name}"
@@ -40,12 +40,13 @@ def _robot_channel(requests: Mapping[str, type], answers: Mapping[str, type]) ->
 
 def _desk_channel() -> Schema:
     results = {f"{request.method}Result": cls for request, cls in RESULTS.items()}
-    messages = {**_calls(DESK_REQUESTS), **_results(results), **_news(NOTIFICATIONS), "error": _error()}
+    messages = {**_calls(DESK_REQUESTS), **_results(results), **_news(NOTIFICATIONS), **_heads()}
+    messages["error"] = _error()
     return _channel("/desk", "An operator's connection.", messages, {})
 
 
 def _schemas() -> dict[str, Schema]:
-    tables = (REQUESTS, ANSWERS, DESK_REQUESTS, RESULTS, NOTIFICATIONS)
+    tables = (REQUESTS, ANSWERS, DESK_REQUESTS, RESULTS, NOTIFICATIONS, HEADS)
     # Some are in two tables, and each is to be described once.
     classes = {cls: None for table in tables for cls in table.values()}
     return {**definitions(list(classes), _REFERENCE), "Id": _ID, "Error": _ERROR}
@@ -97,6 +98,17 @@ def _calls(table: Mapping[str, type]) -> dict[str, Schema]:
 
 def _news(table: Mapping[str, type]) -> dict[str, Schema]:
     return {name: _message(name, cls, _frame(name, cls, with_id=False)) for name, cls in table.items()}
+
+
+def _heads() -> dict[str, Schema]:
+    """Return the binary frames, of which the JSON head is described: a table of numbers follows it."""
+    return {
+        f"{method}InColumns": {
+            **_message(f"{method}InColumns", cls, _frame(method, cls, with_id=False)),
+            "contentType": "application/octet-stream",
+        }
+        for method, cls in HEADS.items()
+    }
 
 
 def _results(table: Mapping[str, type]) -> dict[str, Schema]:
@@ -156,6 +168,9 @@ def _operations(requests: Iterable[str], answers: Iterable[str]) -> Schema:
         operations[f"desk.{request.method}"] = _operation("receive", "desk", request.method, answered)
     for name in NOTIFICATIONS:
         operations[f"news.{name}"] = _operation("send", "desk", name, [])
+    for name in HEADS:
+        frame = {"$ref": f"#/channels/desk/messages/{name}InColumns"}
+        operations[f"news.{name}"]["messages"].append(frame)
     return operations
 
 

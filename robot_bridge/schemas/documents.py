@@ -8,7 +8,7 @@ from functools import cache
 from ..messages import ANSWERS, DESK_REQUESTS, REQUESTS
 from .asyncapi import asyncapi
 from .definitions import schema_of
-from .tables import NOTIFICATIONS, RESULTS
+from .tables import HEADS, NOTIFICATIONS, RESULTS
 
 
 @cache
@@ -16,13 +16,15 @@ def documents() -> dict[str, str]:
     """Return the text of each JSON document by its path, such as ``robot/SendPos.json``.
 
     ``robot`` holds what robots say, ``gateway`` what they are told, ``desk`` what operators ask, ``result``
-    what they are answered with, and ``news`` what they are told unasked; ``index.json`` lists them all.
+    what they are answered with, ``news`` what they are told unasked, and ``head`` what stands in the heads of
+    binary frames; ``index.json`` lists them all.
     """
     files = {f"robot/{op}.json": schema_of(cls) for op, cls in REQUESTS.items()}
     files |= {f"gateway/{op}.json": schema_of(cls) for op, cls in ANSWERS.items()}
     files |= {f"desk/{method}.json": schema_of(cls) for method, cls in DESK_REQUESTS.items()}
     files |= {f"result/{request.method}.json": schema_of(cls) for request, cls in RESULTS.items()}
     files |= {f"news/{method}.json": schema_of(cls) for method, cls in NOTIFICATIONS.items()}
+    files |= {f"head/{method}.json": schema_of(cls) for method, cls in HEADS.items()}
     files["asyncapi.json"] = asyncapi()
     files["index.json"] = {"documents": sorted(files)}
     return {path: json.dumps(content, indent=2) + "\n" for path, content in files.items()}

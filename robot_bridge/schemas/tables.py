@@ -3,12 +3,19 @@
 from __future__ import annotations
 
 from ..messages import (
+    CollectingTasks,
     CommandReport,
     DeskRequest,
+    GetSurfaces,
     GetTrajectory,
     ObservationReport,
+    PlacementReport,
+    Placements,
+    PositionColumns,
+    QueueReport,
     SiteReport,
     Stopping,
+    Surfaces,
     Trajectory,
 )
 from ..messages.desk import (
@@ -17,11 +24,49 @@ from ..messages.desk import (
     GetPositions,
     Hello,
     Send,
+    SendMap,
     SetPositions,
     Subscribe,
 )
 from ..messages.observations import GetImage, GetObservations, ReviewObservation
-from ..messages.results import Audit, Commands, Done, HelloResult, Image, Observations, Positions, Sessions
+from ..messages.placements import CollectLayout, GetPlacements
+from ..messages.queues import (
+    AddTasks,
+    GetQueue,
+    MakeCurrent,
+    MoveTask,
+    PauseQueue,
+    RemoveTask,
+    ResumeQueue,
+    SetQueue,
+    TakeOver,
+)
+from ..messages.results import (
+    Audit,
+    Commands,
+    Done,
+    HelloResult,
+    Image,
+    Observations,
+    Positions,
+    Queues,
+    Sessions,
+)
+from ..messages.roads import (
+    CloseRoad,
+    ClosureReport,
+    Closures,
+    ConflictResolved,
+    Conflicts,
+    GetClosures,
+    GetConflicts,
+    GetRoute,
+    OpenRoad,
+    ReplannedRobot,
+    ResolveConflict,
+    RoadClosed,
+    RouteReport,
+)
 from ..messages.stopping import AbortTask, ClearEmergencyStop, EmergencyReport, EmergencyStop
 from ..messages.supervision import EndSession, GetAudit, GetSessions, SessionReport
 
@@ -31,6 +76,7 @@ RESULTS: dict[type[DeskRequest], type] = {
     GetPositions: Positions,
     SetPositions: Commands,
     Send: CommandReport,
+    SendMap: Done,
     AbortAll: Commands,
     AbortTask: CommandReport,
     EmergencyStop: EmergencyReport,
@@ -43,6 +89,24 @@ RESULTS: dict[type[DeskRequest], type] = {
     EndSession: SessionReport,
     GetAudit: Audit,
     GetTrajectory: Trajectory,
+    GetSurfaces: Surfaces,
+    SetQueue: QueueReport,
+    AddTasks: QueueReport,
+    MoveTask: QueueReport,
+    RemoveTask: QueueReport,
+    MakeCurrent: QueueReport,
+    PauseQueue: QueueReport,
+    ResumeQueue: QueueReport,
+    GetQueue: Queues,
+    TakeOver: Queues,
+    GetPlacements: Placements,
+    CollectLayout: CollectingTasks,
+    GetRoute: RouteReport,
+    CloseRoad: RoadClosed,
+    OpenRoad: ClosureReport,
+    GetClosures: Closures,
+    GetConflicts: Conflicts,
+    ResolveConflict: ConflictResolved,
 }
 """What each request of an operator is answered with."""
 
@@ -53,5 +117,13 @@ NOTIFICATIONS: dict[str, type] = {
     "emergency": EmergencyReport,
     "site": SiteReport,
     "stopping": Stopping,
+    "closures": Closures,
+    "replanned": ReplannedRobot,
+    "conflicts": Conflicts,
+    "queue": QueueReport,
+    "placement": PlacementReport,
 }
 """What operators are told without asking, by method."""
+
+HEADS: dict[str, type] = {"positions": PositionColumns}
+"""The params in the JSON heads of binary frames, by method (see :mod:`..messages.position_columns`)."""

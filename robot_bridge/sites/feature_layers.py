@@ -7,11 +7,12 @@ from typing import Any
 
 import numpy as np
 
+from ..roads.surfaces.surface import DRAWN, GENERATED, Surface
 from .errors import LayerError
 from .features import Area, Centreline
 from .frame import SiteFrame
 from .geopackage import Layer, layer_of
-from .layers import CENTRELINES, LayerSpec
+from .layers import CENTRELINES, SURFACES, LayerSpec
 
 
 def centreline_layer(centrelines: Sequence[Centreline], frame: SiteFrame) -> Layer:
@@ -71,13 +72,8 @@ def centrelines_of(layer: Layer, frame: SiteFrame, place: str) -> tuple[Centreli
 
 def area_layer(spec: LayerSpec, areas: Sequence[Area], frame: SiteFrame) -> Layer:
     """Return ``areas`` as polygons in the site CRS, each label in the one field of ``spec``."""
-    import shapely
-
     (label,) = spec.fields
-    polygons = []
-    for area in areas:
-        outer, *holes = [frame.to_crs(ring) for ring in area.rings]
-        polygons.append(shapely.Polygon(outer, holes))
+    polygons = [_polygon(area.rings, frame) for area in areas]
     return layer_of(spec, polygons, {label: [area.label for area in areas]})
 
 
@@ -92,6 +88,44 @@ def areas_of(layer: Layer, frame: SiteFrame, place: str) -> tuple[Area, ...]:
         Area(tuple(frame.to_site(ring) for ring in _rings(geometry)), text or "")
         for geometry, text in zip(layer.geometries, layer.values[label], strict=True)
     )
+
+
+def surface_layer(surfaces: Sequence[Surface], frame: SiteFrame) -> Layer:
+    """Return ``surfaces`` as polygons in the site CRS."""
+    return layer_of(
+        SURFACES,
+        [_polygon(one.rings, frame) for one in surfaces],
+        {
+            "surface": [one.label for one in surfaces],
+            "name": [one.name for one in surfaces],
+            "origin": [one.origin for one in surfaces],
+        },
+    )
+
+
+def surfaces_of(layer: Layer, frame: SiteFrame, place: str) -> tuple[Surface, ...]:
+    """Return the road surfaces in ``layer``; ``place`` is its file, for messages.
+
+    :raises LayerError: naming a feature that is not a polygon.
+    """
+    _require(layer, "Polygon", place)
+    columns = [layer.values[name] for name in layer.spec.fields]
+    return tuple(
+        Surface(
+            tuple(frame.to_site(ring) for ring in _rings(geometry)),
+            label or "",
+            name or "",
+            GENERATED if origin == GENERATED else DRAWN,
+        )
+        for geometry, label, name, origin in zip(layer.geometries, *columns, strict=True)
+    )
+
+
+def _polygon(rings: Sequence[Any], frame: SiteFrame) -> Any:
+    import shapely
+
+    outer, *holes = [frame.to_crs(ring) for ring in rings]
+    return shapely.Polygon(outer, holes)
 
 
 def _rings(polygon: Any) -> list[Any]:

@@ -27,7 +27,7 @@ class Centreline:
 
 @dataclass(frozen=True)
 class Area:
-    """One polygon: a road surface, whose label is its class, or a keepout, whose label is its name.
+    """One polygon, such as a keepout, whose label is its name.
 
     ``rings`` holds the outer ring and then its holes, each (n, 2), metres in the site frame, closed.
     """

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from ..roads.centrelines import DEFAULT_SPEED
+from ..roads.surfaces.surface import DRAWN
 
 
 @dataclass(frozen=True)
@@ -41,5 +42,10 @@ CENTRELINES = LayerSpec(
     {"width_m": float, "surface": str, "direction": int, "speed_ms": float, "closed": bool, "level": int},
     defaults={"direction": 0, "speed_ms": DEFAULT_SPEED, "closed": False, "level": 0},
 )
-SURFACES = LayerSpec("road_surfaces", "Polygon", {"surface": str})
+SURFACES = LayerSpec(
+    "road_surfaces",
+    "Polygon",
+    {"surface": str, "name": str, "origin": str},
+    defaults={"name": "", "origin": DRAWN},
+)
 KEEPOUTS = LayerSpec("keepouts", "Polygon", {"name": str})

@@ -7,9 +7,17 @@ import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
+from ..roads.surfaces.surface import Surface
 from ..robotmap.outlines import Outlines
 from .errors import SiteError
-from .feature_layers import area_layer, areas_of, centreline_layer, centrelines_of
+from .feature_layers import (
+    area_layer,
+    areas_of,
+    centreline_layer,
+    centrelines_of,
+    surface_layer,
+    surfaces_of,
+)
 from .features import Area, Centreline
 from .geopackage import GEOPACKAGE_FILE, Layer, check_features, read_layers, write_layers
 from .layers import CENTRELINES, KEEPOUTS, OBSTACLES, SURFACES
@@ -43,7 +51,7 @@ def read_site(folder: Path | str) -> Site:
         settings=settings,
         outlines=outlines_of(obstacles, settings.frame, str(file)),
         centrelines=centrelines_of(centrelines, settings.frame, str(file)),
-        surfaces=areas_of(surfaces, settings.frame, str(file)),
+        surfaces=surfaces_of(surfaces, settings.frame, str(file)),
         keepouts=areas_of(keepouts, settings.frame, str(file)),
     )
 
@@ -53,7 +61,7 @@ def write_site(
     settings: SiteSettings,
     obstacles: Outlines,
     centrelines: Sequence[Centreline] = (),
-    surfaces: Sequence[Area] = (),
+    surfaces: Sequence[Surface] = (),
     keepouts: Sequence[Area] = (),
 ) -> None:
     """Publish a site in ``folder``: all geometry in the site frame, in metres.
@@ -70,7 +78,7 @@ def write_site(
     layers = (
         obstacle_layer(obstacles, frame),
         centreline_layer(centrelines, frame),
-        area_layer(SURFACES, surfaces, frame),
+        surface_layer(surfaces, frame),
         area_layer(KEEPOUTS, keepouts, frame),
     )
     for layer in layers:

@@ -14,10 +14,14 @@ from .errors import CrsError, SettingsError
 from .frame import SiteFrame, check_site_crs
 from .limit_settings import LimitSettings
 from .settings_tables import (
+    AuditSettings,
     CommandSettings,
+    ConeSettings,
     GatewayOptions,
     LivenessLimits,
     ObservationSettings,
+    QueueSettings,
+    RouteSettings,
     TrajectorySettings,
     out_of_range,
 )
@@ -25,12 +29,16 @@ from .settings_toml import changed_text, value_text
 
 __all__ = [
     "SETTINGS_FILE",
+    "AuditSettings",
     "Bounds",
     "CommandSettings",
+    "ConeSettings",
     "GatewayOptions",
     "LimitSettings",
     "LivenessLimits",
     "ObservationSettings",
+    "QueueSettings",
+    "RouteSettings",
     "SiteSettings",
     "TrajectorySettings",
     "check_settings",
@@ -76,6 +84,10 @@ class SiteSettings:
     commands: CommandSettings = field(default_factory=CommandSettings)
     trajectories: TrajectorySettings = field(default_factory=TrajectorySettings)
     observations: ObservationSettings = field(default_factory=ObservationSettings)
+    audit: AuditSettings = field(default_factory=AuditSettings)
+    routes: RouteSettings = field(default_factory=RouteSettings)
+    queues: QueueSettings = field(default_factory=QueueSettings)
+    cones: ConeSettings = field(default_factory=ConeSettings)
     gateway: GatewayOptions = field(default_factory=GatewayOptions)
     limits: LimitSettings = field(default_factory=LimitSettings)
 
@@ -152,6 +164,10 @@ TABLES: dict[str, type[Any]] = {
     "commands": CommandSettings,
     "trajectories": TrajectorySettings,
     "observations": ObservationSettings,
+    "audit": AuditSettings,
+    "routes": RouteSettings,
+    "queues": QueueSettings,
+    "cones": ConeSettings,
     "gateway": GatewayOptions,
     "limits": LimitSettings,
 }

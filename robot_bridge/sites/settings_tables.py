@@ -5,7 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field, fields
-from typing import Any
+from typing import Any, Literal
+
+_LONGEST_DAYS = 36500.0
+_LARGEST_IMAGE = 8_000_000
+"""bytes; as text of a statement up to twice that, and a MariaDB as it is installed takes 16 MiB."""
 
 
 def _number(default: Any, *, least: float = 0.0, above: bool = False, most: float = math.inf) -> Any:
@@ -23,9 +27,15 @@ class LivenessLimits:
 
 @dataclass(frozen=True)
 class CommandSettings:
-    """``expire_after_s``: seconds after which a command that no robot fetched is given up."""
+    """``expire_after_s``: seconds after which a command that no robot fetched is given up.
+
+    Ended commands and tasks, collected cones and cleared emergency stops are deleted after ``keep_days``.
+    ``override_role``: the least role that may send a robot where the desk's checks say that it should not go.
+    """
 
     expire_after_s: float = _number(300.0, above=True)
+    keep_days: float = _number(365.0, above=True, most=_LONGEST_DAYS)
+    override_role: Literal["operator", "supervisor"] = "supervisor"
 
 
 @dataclass(frozen=True)
@@ -41,7 +51,7 @@ class TrajectorySettings:
     min_turn_deg: float = _number(5.0, most=360.0)
     min_interval_s: float = _number(0.2)
     max_interval_s: float = _number(10.0, above=True)
-    keep_days: float = _number(30.0, above=True, most=36500.0)
+    keep_days: float = _number(30.0, above=True, most=_LONGEST_DAYS)
     largest_backlog: int = _number(200_000, least=1000, most=100_000_000)
 
 
@@ -50,12 +60,66 @@ class ObservationSettings:
     """What robots may tell: the largest image, how much of one robot waits, and the size of an object.
 
     ``most_pending`` observations of one robot may wait for review; more are refused. ``object_radius_m`` is
-    that of an object whose size the robot did not say.
+    that of an object whose size the robot did not say. Rejected objects are deleted after ``keep_days``,
+    reviewed images after ``keep_images_days``; what waits for review, and what is on the map, stays.
     """
 
-    largest_image_bytes: int = _number(4_000_000, least=1024, most=64_000_000)
+    largest_image_bytes: int = _number(4_000_000, least=1024, most=_LARGEST_IMAGE)
     most_pending: int = _number(1000, least=1, most=1_000_000)
     object_radius_m: float = _number(0.25, above=True, most=100.0)
+    keep_days: float = _number(365.0, above=True, most=_LONGEST_DAYS)
+    keep_images_days: float = _number(90.0, above=True, most=_LONGEST_DAYS)
+
+
+@dataclass(frozen=True)
+class AuditSettings:
+    """``keep_days``: after how many days an entry of the audit log, and an ended session, is deleted."""
+
+    keep_days: float = _number(365.0, above=True, most=_LONGEST_DAYS)
+
+
+@dataclass(frozen=True)
+class RouteSettings:
+    """How robots drive along roads, and what is reckoned with where several do.
+
+    Paths have points ``spacing_m`` apart at most and arcs of ``turning_radius_m``. A robot is
+    ``robot_width_m`` wide and ``robot_length_m`` long, drives at ``speed_ms`` where it does not show another
+    speed, and is to be ``margin_m`` away from others. ``no_way`` says what becomes of a robot whose road was
+    closed and that has no other way: it is told to ``stop``, or operators are only told (``tell``).
+    """
+
+    spacing_m: float = _number(0.5, least=0.01, most=100.0)
+    turning_radius_m: float = _number(1.0, most=1000.0)
+    robot_width_m: float = _number(0.5, above=True, most=100.0)
+    robot_length_m: float = _number(0.8, above=True, most=100.0)
+    speed_ms: float = _number(1.0, above=True, most=100.0)
+    margin_m: float = _number(0.3, most=100.0)
+    no_way: Literal["stop", "tell"] = "stop"
+
+    @property
+    def radius_m(self) -> float:
+        """Metres: of the circle about a robot's middle that it is within however it stands."""
+        return math.hypot(self.robot_width_m, self.robot_length_m) / 2
+
+
+@dataclass(frozen=True)
+class QueueSettings:
+    """``on_failure``: whether a robot's queue pauses when it refuses a task or gives it up, or skips that."""
+
+    on_failure: Literal["pause", "skip"] = "pause"
+
+
+@dataclass(frozen=True)
+class ConeSettings:
+    """Where the cone that a robot puts down or picks up stands: metres ahead of the robot and to its left."""
+
+    offset_ahead_m: float = _number(0.0, least=-20.0, most=20.0)
+    offset_left_m: float = _number(0.0, least=-20.0, most=20.0)
+
+    @property
+    def offset(self) -> tuple[float, float]:
+        """Metres ahead and to the left."""
+        return self.offset_ahead_m, self.offset_left_m
 
 
 @dataclass(frozen=True)
@@ -83,8 +147,8 @@ def out_of_range(table: str, values: object) -> Iterator[str]:
         if not math.isfinite(value):
             yield f"{name}: nan and inf are no numbers for a site; write a finite one."
         elif above and value <= least:
-            yield f"{name} is not above {least:g}."
+            yield f"{name} is not above {least:.12g}."
         elif value < least:
-            yield f"{name} is below {least:g}."
+            yield f"{name} is below {least:.12g}."
         elif value > most:
-            yield f"{name} is above {most:g}."
+            yield f"{name} is above {most:.12g}."

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 
+from ..roads.surfaces.index import SurfaceIndex
+from ..roads.surfaces.surface import Surface
 from ..robotmap.builder import Window
 from ..robotmap.index import OutlineIndex
 from ..robotmap.model import RobotMap
@@ -21,7 +23,7 @@ class Site:
     settings: SiteSettings
     outlines: Outlines
     centrelines: tuple[Centreline, ...]
-    surfaces: tuple[Area, ...]
+    surfaces: tuple[Surface, ...]
     keepouts: tuple[Area, ...]
 
     @property
@@ -66,6 +68,11 @@ class Site:
 
     def _map(self, window: Window) -> RobotMap:
         return self._index.map_of(window, meta=self.map_meta())
+
+    @cached_property
+    def surface_index(self) -> SurfaceIndex:
+        """What tells the road surface at a place; made when it is asked for first."""
+        return SurfaceIndex(self.surfaces)
 
     @cached_property
     def _index(self) -> OutlineIndex:

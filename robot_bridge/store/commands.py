@@ -6,10 +6,11 @@ import json
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
-from sqlalchemy import Connection, Select, bindparam, insert, select, update
+from sqlalchemy import Connection, Select, bindparam, delete, insert, select, update
 
-from ..command_life import is_open
+from ..command_life.states import is_open
 from ..messages import CommandReport, CommandState, CommandStep
+from .ageing import delete_oldest
 from .schema import command_steps, commands
 
 
@@ -44,6 +45,9 @@ def save_all(connection: Connection, changed: Sequence[StoredCommand]) -> None:
         .values(
             state=bindparam("new_state"),
             deviation=bindparam("new_deviation"),
+            stood_x=bindparam("new_x"),
+            stood_y=bindparam("new_y"),
+            stood_theta=bindparam("new_theta"),
             driven=bindparam("new_driven"),
             sa_id=bindparam("new_sa_id"),
         )
@@ -53,6 +57,7 @@ def save_all(connection: Connection, changed: Sequence[StoredCommand]) -> None:
             "key": c.report.command,
             "new_state": c.report.state.value,
             "new_deviation": c.report.deviation,
+            **dict(zip(("new_x", "new_y", "new_theta"), c.report.stood or (None,) * 3, strict=True)),
             "new_driven": c.driven,
             "new_sa_id": c.sa_id,
         }
@@ -109,6 +114,17 @@ def of_kind_since(connection: Connection, op: str, since: float) -> list[Command
     return [command.report for command in _load(connection, query.order_by(commands.c.sa_id))]
 
 
+def forget(connection: Connection, before: float, limit: int) -> int:
+    """Delete at most ``limit`` ended commands from before a time, with their steps; return how many."""
+    ended = [state.value for state in CommandState if not is_open(state)]
+    gone = delete_oldest(
+        connection, commands.c.id, commands.c.created_at, before, limit, commands.c.state.in_(ended)
+    )
+    if gone:
+        connection.execute(delete(command_steps).where(command_steps.c.command.in_(gone)))
+    return len(gone)
+
+
 def _row(command: StoredCommand) -> dict[str, object]:
     report = command.report
     return {
@@ -144,6 +160,7 @@ def _load(connection: Connection, query: Select[tuple[object, ...]]) -> list[Sto
                 state=CommandState(row["state"]),
                 steps=steps[row["id"]],
                 deviation=row["deviation"],
+                stood=_stood(row["stood_x"], row["stood_y"], row["stood_theta"]),
             ),
             sa_id=row["sa_id"],
             driven=row["driven"],
@@ -151,6 +168,10 @@ def _load(connection: Connection, query: Select[tuple[object, ...]]) -> list[Sto
         )
         for row in rows
     ]
+
+
+def _stood(x: float | None, y: float | None, theta: float | None) -> tuple[float, float, float] | None:
+    return None if x is None or y is None or theta is None else (x, y, theta)
 
 
 def _add_steps(connection: Connection, steps: Sequence[tuple[str, CommandStep]]) -> None:

@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 from sqlalchemy import Connection, insert, select, update
 
+from .ageing import delete_oldest
 from .schema import emergency_stops
 
 
@@ -53,6 +54,11 @@ def clear(connection: Connection, at: float, by: str, reason: str | None) -> Non
     values = {"cleared_at": at, "cleared_by": by, "clear_reason": reason}
     in_force = emergency_stops.c.cleared_at.is_(None)
     connection.execute(update(emergency_stops).where(in_force).values(values))
+
+
+def forget(connection: Connection, before: float, limit: int) -> int:
+    """Delete at most ``limit`` stops that were cleared before a time; return how many."""
+    return len(delete_oldest(connection, emergency_stops.c.id, emergency_stops.c.cleared_at, before, limit))
 
 
 _COLUMNS: list[Any] = [emergency_stops.c[name] for name in StopRow._fields]

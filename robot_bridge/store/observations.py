@@ -6,10 +6,11 @@ import json
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
-from sqlalchemy import Connection, func, insert, select, update
+from sqlalchemy import ColumnElement, Connection, func, insert, select, update
 
 from ..errors import RefusedError
-from ..messages import GetObservations, ObservationReport, ObservationState, SetObject
+from ..messages import GetObservations, ObservationReport, ObservationState, SendImage, SetObject
+from .ageing import delete_oldest
 from .schema import observations as table
 
 _REPORTED = [
@@ -103,6 +104,28 @@ def review(
     }
     connection.execute(update(table).where(table.c.id == id).values(values))
     return _one(connection, id)
+
+
+def forget_rejected(connection: Connection, before: float, limit: int) -> int:
+    """Delete at most ``limit`` objects that were told and rejected before a time; return how many."""
+    rejected = _state.in_([ObservationState.REJECTED.value])
+    return _forget(connection, before, limit, table.c.kind == SetObject.__name__, rejected)
+
+
+def forget_images(connection: Connection, before: float, limit: int) -> int:
+    """Delete at most ``limit`` images that were told and reviewed before a time; return how many."""
+    reviewed = _state.in_([ObservationState.ACCEPTED.value, ObservationState.REJECTED.value])
+    return _forget(connection, before, limit, table.c.kind == SendImage.__name__, reviewed)
+
+
+# Joined to nothing, so that SQLite goes by the index of received_at: by that of the state it would have to
+# read every image to see how old it is.
+_state = table.c.state.concat("")
+
+
+def _forget(connection: Connection, before: float, limit: int, *only: ColumnElement[bool]) -> int:
+    reviewed_too = table.c.reviewed_at < before
+    return len(delete_oldest(connection, table.c.id, table.c.received_at, before, limit, *only, reviewed_too))
 
 
 def _check_room(connection: Connection, robot: str, most_pending: int) -> None:

@@ -5,19 +5,29 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 
-from sqlalchemy import Connection, delete, insert, select
+import msgspec
+from sqlalchemy import Connection, select
 
-from ..messages import SendPos, to_json
+from ..messages import SendPos
 from ..robots import Robot
+from .rows import Row, put_rows
 from .schema import robots
 
+_ENCODER = msgspec.json.Encoder()
 
-def save(connection: Connection, known: Sequence[Robot]) -> None:
+NAMES = ("name", "magic", "link", "received_at", "ended_in_order", "pose", "pose_at")
+
+
+def row(robot: Robot) -> Row:
+    """Return what is stored of a robot as it is now."""
+    pose = None if robot.pose is None else _ENCODER.encode(robot.pose).decode()
+    ended = int(robot.ended_in_order)
+    return robot.name, robot.magic, robot.link, robot.received_at, ended, pose, robot.pose_at
+
+
+def save(connection: Connection, rows: Sequence[Row]) -> None:
     """Write what is known of robots, in place of what was."""
-    if not known:
-        return
-    connection.execute(delete(robots).where(robots.c.name.in_([robot.name for robot in known])))
-    connection.execute(insert(robots), [_row(robot) for robot in known])
+    put_rows(connection, robots, NAMES, rows)
 
 
 def load(connection: Connection) -> list[Robot]:
@@ -34,15 +44,3 @@ def load(connection: Connection) -> list[Robot]:
         )
         for row in connection.execute(select(robots)).mappings()
     ]
-
-
-def _row(robot: Robot) -> dict[str, object]:
-    return {
-        "name": robot.name,
-        "magic": robot.magic,
-        "link": robot.link,
-        "received_at": robot.received_at,
-        "ended_in_order": int(robot.ended_in_order),
-        "pose": None if robot.pose is None else json.dumps(to_json(robot.pose)),
-        "pose_at": robot.pose_at,
-    }

@@ -94,6 +94,9 @@ commands = Table(
     Column("operator", String(128), nullable=False),
     Column("state", String(16), nullable=False, index=True),
     Column("deviation", Double, nullable=True),
+    Column("stood_x", Double, nullable=True),
+    Column("stood_y", Double, nullable=True),
+    Column("stood_theta", Double, nullable=True),
     Column("driven", Double, nullable=True),
     Column("sa_id", BigInteger, nullable=False),
     Column("created_at", Double, nullable=False, index=True),
@@ -122,6 +125,88 @@ emergency_stops = Table(
     Column("cleared_at", Double, nullable=True),
     Column("cleared_by", String(128), nullable=True),
     Column("clear_reason", Text, nullable=True),
+)
+
+# ``line`` is the stretch of road, JSON; in force as long as ``opened_at`` is null.
+closures = Table(
+    "closures",
+    metadata,
+    Column("id", String(64), primary_key=True),
+    Column("line", _LongText, nullable=False),
+    Column("level", Integer, nullable=False),
+    Column("closed_at", Double, nullable=False),
+    Column("closed_by", String(128), nullable=False),
+    Column("reason", Text, nullable=True),
+    Column("until", Double, nullable=True),
+    Column("opened_at", Double, nullable=True, index=True),
+    Column("opened_by", String(128), nullable=True),
+)
+
+# A robot that waits at the end of ``command`` for another to pass; ``rest`` is the SetPath it is sent then.
+holds = Table(
+    "holds",
+    metadata,
+    Column("robot", String(63), primary_key=True),
+    Column("other", String(63), nullable=False),
+    Column("command", String(64), nullable=False),
+    Column("rest", _LongText, nullable=False),
+    Column("until", Double, nullable=False),
+    Column("by", String(128), nullable=False),
+)
+
+queues = Table(
+    "queues",
+    metadata,
+    Column("robot", String(63), primary_key=True),
+    Column("revision", BigInteger, nullable=False),
+    Column("state", String(16), nullable=False),
+    Column("reason", Text, nullable=True),
+    Column("by", String(128), nullable=True),
+    Column("at", Double, nullable=True),
+)
+
+# ``content`` is what the operator gave, JSON; ``place`` orders the open tasks of a robot.
+queue_tasks = Table(
+    "queue_tasks",
+    metadata,
+    Column("id", String(64), primary_key=True),
+    _robot(),
+    Column("place", Integer, nullable=False),
+    Column("state", String(16), nullable=False, index=True),
+    Column("content", _LongText, nullable=False),
+    Column("leg", Integer, nullable=False),
+    Column("attempts", Integer, nullable=False),
+    Column("command", String(64), nullable=True),
+    Column("added_by", String(128), nullable=False),
+    Column("added_at", Double, nullable=False),
+    Column("began_at", Double, nullable=True),
+    Column("ended_at", Double, nullable=True, index=True),
+    Column("reason", Text, nullable=True),
+    Column("deviation", Double, nullable=True),
+)
+
+# Cones that robots put down; ``task`` is unique, so that none is written twice.
+placements = Table(
+    "placements",
+    metadata,
+    _id(),
+    Column("task", String(64), nullable=False, unique=True),
+    _robot(),
+    Column("command", String(64), nullable=False),
+    Column("cone", String(128), nullable=True),
+    Column("label", String(128), nullable=True),
+    Column("layout", String(128), nullable=True, index=True),
+    Column("plan", String(128), nullable=True),
+    Column("planned_x", Double, nullable=False),
+    Column("planned_y", Double, nullable=False),
+    Column("x", Double, nullable=False),
+    Column("y", Double, nullable=False),
+    Column("theta", Double, nullable=False),
+    Column("deviation", Double, nullable=False),
+    Column("placed_at", Double, nullable=False, index=True),
+    Column("collected_at", Double, nullable=True),
+    Column("collected_by", String(63), nullable=True),
+    sqlite_autoincrement=True,
 )
 
 trajectories = Table(

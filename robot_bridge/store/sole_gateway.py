@@ -15,14 +15,16 @@ import os
 import socket
 import time
 import uuid
+from collections.abc import AsyncIterator
 from pathlib import Path
 from typing import Any, Protocol
 
-from sqlalchemy import URL, Connection, Engine, insert, select, text, update
+from sqlalchemy import URL, Connection, Engine, insert, inspect, select, text, update
 from sqlalchemy.exc import DBAPIError, SQLAlchemyError
 
 from ..errors import BridgeError, HopelessError, StoreError
 from .address import open_engine, shown
+from .engines.sqlite import file_of
 from .schema import bridge
 
 log = logging.getLogger(__name__)
@@ -32,6 +34,8 @@ GHOST_S = 15
 """seconds after which a server takes the lock from a gateway that it does not hear of any more."""
 PATIENCE_AT_START = 2.0
 """seconds for a server to notice that the gateway before was killed."""
+GATEWAY = "gateway"
+"""What a gateway says that it does."""
 RUN, ROW = "gateway", "gateway_lock"
 """The rows of ``bridge`` that say which gateway runs, and that is locked."""
 
@@ -59,13 +63,18 @@ class Lock(Protocol):
 
 
 class SoleGateway:
-    """Sees to it that this is the only gateway on its database."""
+    """Sees to it that this is the only gateway on its database.
 
-    def __init__(self, url: URL) -> None:
+    ``does`` says what else holds it: work under which no gateway may run.
+    """
+
+    def __init__(self, url: URL, does: str = GATEWAY) -> None:
         self._where = shown(url)
         self._lock: Lock = FileLock(url) if url.get_backend_name() == "sqlite" else ServerLock(url)
+        self._does = does
         self._run = {
             "run": uuid.uuid4().hex,
+            "does": does,
             "host": socket.gethostname(),
             "process": os.getpid(),
             "since": round(time.time()),
@@ -77,11 +86,7 @@ class SoleGateway:
         while not await asyncio.to_thread(self._lock.take):
             if time.monotonic() > until:
                 other = await asyncio.to_thread(self._lock.read)
-                raise BridgeError(
-                    f"database {self._where}: another gateway runs on it{_named(other)}; end that one first, "
-                    "or give this one a database of its own (where that one's computer was cut off, wait "
-                    f"{GHOST_S} s)"
-                )
+                raise BridgeError(f"database {self._where}: {_taken(self._does, other)}")
             await asyncio.sleep(0.1)
         await asyncio.to_thread(self._lock.write, self._run)
 
@@ -119,6 +124,25 @@ class SoleGateway:
                 return
             # The server has not noticed yet that the connection before is gone.
             await asyncio.sleep(PING_INTERVAL)
+
+
+@contextlib.asynccontextmanager
+async def no_gateway(url: URL, does: str) -> AsyncIterator[None]:
+    """Keep gateways off a database as long as a command ``does`` its work there.
+
+    What it does must leave table ``bridge`` itself alone, which is locked.
+
+    :raises BridgeError: when a gateway runs on it; StoreError when the database cannot be used.
+    """
+    if not await asyncio.to_thread(_has_lock, url):
+        yield
+        return
+    sole = SoleGateway(url, does)
+    await sole.take()
+    try:
+        yield
+    finally:
+        await sole.release()
 
 
 class FileLock:
@@ -172,12 +196,9 @@ class FileLock:
             self._file = None
 
     def _path(self) -> Path | None:
-        engine, _ = open_engine(self._url)
-        with _explained(), engine.connect() as connection:
-            found = connection.connection.driver_connection.execute("PRAGMA database_list").fetchall()  # type: ignore[union-attr]
-        engine.dispose()
-        file = next((row[2] for row in found if row[1] == "main"), "")
-        return Path(f"{Path(file).resolve()}.gateway") if file else None
+        with _explained():
+            file = file_of(self._url)
+        return None if file is None else Path(f"{file}.gateway")
 
 
 class ServerLock:
@@ -242,6 +263,15 @@ _LOCKING = {
 }
 
 
+def _has_lock(url: URL) -> bool:
+    """Tell whether gateways lock this database; those of version 0.1.0 did not."""
+    if url.get_backend_name() == "sqlite":
+        return True
+    engine, _ = open_engine(url)
+    with _explained(), engine.connect() as connection:
+        return inspect(connection).has_table(bridge.name)
+
+
 def _make_row(engine: Engine) -> None:
     with engine.begin() as connection:
         known = set(connection.scalars(select(bridge.c.name)))
@@ -268,6 +298,23 @@ def _run_in(text: str | None) -> dict[str, Any]:
     except ValueError:
         return {}
     return run if isinstance(run, dict) else {}
+
+
+def _taken(does: str, other: dict[str, Any]) -> str:
+    """Return in words who has the database, and what is to be done by whoever ``does`` something there."""
+    found = other.get("does", GATEWAY)
+    if found != GATEWAY:
+        return f"'{found}' is under way on it{_named(other)}; wait for its end, then try again"
+    cut_off = f"(where that one's computer was cut off, wait {GHOST_S} s)"
+    if does == GATEWAY:
+        return (
+            f"another gateway runs on it{_named(other)}; end that one first, or give this one a database of "
+            f"its own {cut_off}"
+        )
+    return (
+        f"a gateway runs on it{_named(other)}; end it there, as a service with 'systemctl stop "
+        f"robot-bridge', then run '{does}' again {cut_off}"
+    )
 
 
 def _named(run: dict[str, Any]) -> str:

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-from sqlalchemy import ColumnElement, Connection, and_, delete, insert, or_, select
+from sqlalchemy import ColumnElement, Connection, and_, or_, select
 
 from ..messages import SendPos
+from .ageing import delete_oldest
+from .rows import add_rows
 from .schema import trajectories
 
 
@@ -56,15 +58,9 @@ class Wanted:
 
 def add(connection: Connection, fixes: Sequence[Fix]) -> None:
     """Store positions."""
-    if not fixes:
-        return
-    # Thousands a second: the driver takes the rows as they are, and nothing is looked up for each.
-    statement = insert(trajectories).inline().values(dict.fromkeys(_row(fixes[0])))
-    compiled = statement.compile(dialect=connection.dialect)
-    rows: list[Any] = [_row(fix) for fix in fixes]
-    if compiled.positional:
-        rows = [tuple(row.values()) for row in rows]
-    connection.exec_driver_sql(str(compiled), rows)
+    names = ("robot", "received_at", "x", "y", "theta", "v", "device_time", "fix_time")
+    rows = [(robot, at, p.x, p.y, p.theta, p.v, p.t, p.fix_t) for robot, at, p in fixes]
+    add_rows(connection, trajectories, names, rows)
 
 
 def read(connection: Connection, wanted: Wanted, limit: int, after: Mark | None = None) -> list[Place]:
@@ -80,15 +76,9 @@ def read(connection: Connection, wanted: Wanted, limit: int, after: Mark | None 
     return [Place(*row) for row in connection.execute(query.order_by(at, id).limit(limit))]
 
 
-def older_than(connection: Connection, time: float, limit: int) -> list[int]:
-    """Return the ids of at most ``limit`` positions stored before ``time``."""
-    at = trajectories.c.received_at
-    return list(connection.scalars(select(trajectories.c.id).where(at < time).order_by(at).limit(limit)))
-
-
-def remove(connection: Connection, ids: Sequence[int]) -> None:
-    """Delete positions."""
-    connection.execute(delete(trajectories).where(trajectories.c.id.in_(ids)))
+def forget(connection: Connection, before: float, limit: int) -> int:
+    """Delete at most ``limit`` positions from before a time; return how many."""
+    return len(delete_oldest(connection, trajectories.c.id, trajectories.c.received_at, before, limit))
 
 
 def _conditions(wanted: Wanted) -> Iterator[ColumnElement[bool]]:
@@ -103,17 +93,3 @@ def _conditions(wanted: Wanted) -> Iterator[ColumnElement[bool]]:
         x_min, y_min, x_max, y_max = wanted.bounds
         yield columns.x.between(x_min, x_max)
         yield columns.y.between(y_min, y_max)
-
-
-def _row(fix: Fix) -> dict[str, Any]:
-    pose = fix.pose
-    return {
-        "robot": fix.robot,
-        "received_at": fix.received_at,
-        "x": pose.x,
-        "y": pose.y,
-        "theta": pose.theta,
-        "v": pose.v,
-        "device_time": pose.t,
-        "fix_time": pose.fix_t,
-    }

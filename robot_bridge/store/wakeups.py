@@ -18,7 +18,7 @@ log = logging.getLogger(__name__)
 GATEWAY_CHANNEL = "rr"
 """Robots inserted requests, or deleted answers."""
 
-SHORTEST_S = 0.001
+SHORTEST_S = 0.0003
 LONGEST_S = 0.02
 FALLBACK_S = 1.0
 """How long a reader that is told of new rows trusts that it would have been."""

@@ -1,15 +1,12 @@
-"""Positions on their way into the database: thinned, kept while it is away, deleted in time."""
+"""Positions on their way into the database: thinned, kept while it is away."""
 
 from __future__ import annotations
 
-import asyncio
 import logging
 from collections import deque
 from collections.abc import Callable, Sequence
 
 from ..sites.settings import TrajectorySettings
-from ..store import trajectories
-from ..store.database import Database
 from ..store.trajectories import Fix
 from .thinning import Thinning
 
@@ -19,10 +16,6 @@ BATCH = 5000
 """positions in one transaction: a few hundredths of a second of the database's thread."""
 LOOK_INTERVAL = 1.0
 """seconds between two looks for robots that have fallen silent."""
-PRUNED_AT_ONCE = 1000
-PAUSE = 0.05
-"""seconds between two deletions, in which robots and operators have the database."""
-DAY = 86400.0
 
 
 class Recorder:
@@ -75,12 +68,3 @@ class Recorder:
             )
         self._told = True
         self.given_up += too_many
-
-    async def prune(self, database: Database, now: float) -> int:
-        """Delete the positions that are older than ``keep_days``; return how many there were."""
-        end, removed = now - self._settings().keep_days * DAY, 0
-        while ids := await database.run(trajectories.older_than, end, PRUNED_AT_ONCE):
-            await database.run(trajectories.remove, ids)
-            removed += len(ids)
-            await asyncio.sleep(PAUSE)
-        return removed

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from ..arrival import standing
+from ..command_life.arrival import standing
 from ..messages import SendPos
 from ..sites.settings import TrajectorySettings
 from ..store.trajectories import Fix

@@ -43,8 +43,9 @@ next command that was reached; median and longest.
 {kept}
 
 Accepted: the robot was told so; each is stored once, as it was told. Lost young: positions that a robot told
-within two seconds before the gateway was killed; none that was older is lost. Stored twice: positions of
-which the gateway did not know that they were stored, when it or its database died.
+within two seconds before the gateway was killed; none that was older is lost. Lost with the robot: positions
+that it told within half a second before it was itself killed, and that went down with its connection.
+Stored twice: positions of which the gateway did not know that they were stored, when it or its database died.
 
 Wrong in all of this: {wrong}.
 """
@@ -143,9 +144,11 @@ def _kept(runs: list[Run]) -> str:
         "positions told",
         "... stored",
         "... lost, told at most 2 s before a gateway was killed",
+        "... lost, told at most 0.5 s before the robot itself was killed",
         "... stored twice",
     ]
-    return table([*head, "lost young", "stored twice"], [_row(run, counted) for run in runs])
+    head += ["lost young", "lost with the robot", "stored twice"]
+    return table(head, [_row(run, counted) for run in runs])
 
 
 def _row(run: Run, counted: list[str]) -> list[str]:

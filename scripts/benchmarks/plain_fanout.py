@@ -1,21 +1,31 @@
 """The peers of the load, on the same library: messages decoded and dropped, or forwarded to every operator.
 
-``python plain_fanout.py [--drop]`` prints ``listening on ws://127.0.0.1:PORT``.
+``python plain_fanout.py [--drop]`` prints ``listening on ws://127.0.0.1:PORT``. ``/metrics`` tells, as the
+gateway does, how many messages were read.
 """
 
 from __future__ import annotations
 
 import asyncio
+import http
 import json
 import sys
 
 from websockets.asyncio.server import ServerConnection, broadcast, serve
+from websockets.http11 import Request, Response
 
 
 async def main() -> None:
     """Serve until the process is ended."""
     operators: set[ServerConnection] = set()
     drop = "--drop" in sys.argv
+    read = 0
+
+    def page(connection: ServerConnection, request: Request) -> Response | None:
+        if request.path != "/metrics":
+            return None
+        text = f'robot_bridge_requests_total{{link="websocket",op="SendPos"}} {read}\n'
+        return connection.respond(http.HTTPStatus.OK, text)
 
     async def connected(connection: ServerConnection) -> None:
         assert connection.request is not None
@@ -24,13 +34,16 @@ async def main() -> None:
             await connection.wait_closed()
             operators.discard(connection)
             return
+        nonlocal read
         async for frame in connection:
+            read += 1
             if drop:
                 json.loads(frame)
             else:
                 broadcast(operators, frame)
 
-    async with serve(connected, "127.0.0.1", 0, compression=None, ping_interval=None) as server:
+    options = {"compression": None, "ping_interval": None, "process_request": page}
+    async with serve(connected, "127.0.0.1", 0, **options) as server:
         print(f"listening on ws://127.0.0.1:{server.sockets[0].getsockname()[1]}", flush=True)
         await asyncio.get_running_loop().create_future()
 

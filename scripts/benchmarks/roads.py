@@ -25,6 +25,7 @@ from robot_bridge.roads.routes import Router
 from .page import Part
 from .road_data import four_islands, grid, malta, track, track_surface
 from .road_rivals import by_graph_analyzer, by_native, by_networkx, directed, start_qgis
+from .road_traffic import traffic
 
 TOLERANCE = 0.5
 PAIRS, STARTS = 1000, 50
@@ -65,6 +66,10 @@ Malta: of {pairs} pairs with a way the greatest difference to networkx is {worst
 have a way by one and none by the other.
 
 {track}
+
+### Closed roads and robots in each other's way
+
+{traffic}
 """
 
 
@@ -75,6 +80,7 @@ def measure(data: Path) -> Part:
     four = build_network(four_islands(malta(data)))
     speeds, ready, closing = _speeds({"Malta": island, "Malta four times": four, "the grid": town})
     worst, disagreed, pairs = _held_against_networkx(island)
+    told, late = traffic(data)
     text = TEXT.format(
         load=f"{os.getloadavg()[0]:.1f}",
         built="\n".join(built),
@@ -92,8 +98,9 @@ def measure(data: Path) -> Part:
         worst=worst,
         disagreed=disagreed,
         track=_on_the_track(networks["ZalaZONE, repaired"], data),
+        traffic=told,
     )
-    return Part("Roads", text, failed=worst > 1e-6 or disagreed > 0)
+    return Part("Roads", text, failed=late or worst > 1e-6 or disagreed > 0)
 
 
 def _networks(data: Path) -> tuple[list[str], dict[str, Network], list[str]]:

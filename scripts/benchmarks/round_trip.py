@@ -6,7 +6,6 @@ import contextlib
 import itertools
 import json
 import os
-import statistics
 import subprocess
 import sys
 import tempfile
@@ -39,76 +38,121 @@ Databases = Iterator[tuple[str, str]]
 NUMBERS = itertools.count(1)
 SITE = ROOT / "resources" / "sample_site"
 COUNTS = (1, 20, 100)
-SECONDS = 8.0
+SECONDS = 3.0
+ONCE_A_SECOND, ON_AND_ON = 1.0, 0.0
 PASSWORD = "robot-of-the-benchmark"
 POLL_S = {"sqlite": 0.002, "postgresql": 0.0, "mariadb": 0.004}
-NAMES = {"sqlite": "SQLite", "postgresql": "PostgreSQL", "mariadb": "MariaDB"}
 
 TEXT = """\
-A request (`Stopped`) and its OpAck, from before the robot's insert until the robot has read and deleted the
-answer. A real gateway with everything running on the sample site, with one operator who watches; its robots,
-a thread and a connection each with the rights of a robot's account, run in one other process on the same
-machine, as does the database server, which waits for the disk at every commit. PostgreSQL tells both sides
-that there is something new (NOTIFY). On SQLite the robots look after {sqlite:g} ms, on MariaDB after
-{mariadb:g} ms, then less and less often, and the gateway every 1 ms to 20 ms. Load of the machine when it
-began, by what else ran: {load:.1f}.
+A request (`Stopped`) and its OpAck. A real gateway with everything running on the sample site, with one
+operator who watches; its robots, a thread and a connection each with the rights of a robot's account, run in
+one other process on the same machine, as does the database server, which waits for the disk at every commit
+that is asked of it durably. PostgreSQL tells both sides that there is something new (NOTIFY). On SQLite the
+robots look after {sqlite:g} ms, on MariaDB after {mariadb:g} ms, then less and less often, and the gateway
+every 0.3 ms to 20 ms. Each figure is of {seconds:g} s.
+
+*Robots not waiting for the disk* begin their sessions on PostgreSQL with `set synchronous_commit = off`, as
+the reference robot does; on SQLite all do the like (`synchronous = normal`); MariaDB leaves robots no choice.
+What a power cut takes of a robot's requests had no answer.
+
+The bare loop is the least that can answer them (`scripts/benchmarks/bare_sql.py`): one connection with the
+same driver and commits that wait for the disk as the gateway's do, no checks and nothing else to do. In
+brackets, the gateway's answers of its.
+
+Load of the machine when it began and when it ended: {load:.1f} and {after:.1f}.
 
 ### Once a second
+
+From before the robot's insert until it has read and deleted the answer.
 
 {paced}
 
 ### As fast as it goes
 
-Each robot asks again as soon as it has its answer.
+Each robot asks again as soon as it has its answer, and deletes that in the same transaction.
 
 {closed}
 """
 
 
 @dataclass(frozen=True)
-class Run:
-    """What was measured with some robots on a kind of database; ``cpu`` is the gateway's, in cores."""
+class Case:
+    """A kind of database, and whether the robots on it wait for its disk where they have a choice."""
 
+    name: str
     kind: str
+    durable: bool = True
+
+
+CASES = (
+    Case("SQLite", "sqlite"),
+    Case("PostgreSQL", "postgresql"),
+    Case("PostgreSQL, robots not waiting for the disk", "postgresql", durable=False),
+    Case("MariaDB", "mariadb"),
+)
+
+
+@dataclass(frozen=True)
+class Run:
+    """What was measured with some robots; ``cpu`` is what answered them took, in cores."""
+
+    case: Case
     robots: int
+    rate: float
+    bare: bool
     seen: Seen
     cpu: float
+
+    @property
+    def answers(self) -> float:
+        """Answers a second."""
+        return len(self.seen.times) / max(self.seen.seconds, 1e-9)
+
+    def percentile(self, share: float) -> float:
+        """Return the milliseconds within which this share of the answers came."""
+        times = sorted(self.seen.times) or [0.0]
+        return times[min(len(times) - 1, int(len(times) * share))] * 1e3
 
 
 def measure(_data: Path) -> Part:
     """Measure each kind of database with few and many robots."""
-    paced, closed, load = [], [], os.getloadavg()[0]
-    for kind in NAMES:
-        with _databases(kind) as databases:
+    runs, load = [], os.getloadavg()[0]
+    for case in CASES:
+        with _databases(case.kind) as databases:
             for robots in COUNTS:
-                paced.append(measured(databases, kind, robots, rate=1.0))
-                closed.append(measured(databases, kind, robots, rate=0.0))
+                runs += [
+                    measured(databases, case, robots, rate, bare=bare)
+                    for rate in (ONCE_A_SECOND, ON_AND_ON)
+                    for bare in (False, True)
+                ]
     text = TEXT.format(
+        seconds=SECONDS,
         sqlite=POLL_S["sqlite"] * 1e3,
         mariadb=POLL_S["mariadb"] * 1e3,
         load=load,
-        paced=_table(paced),
-        closed=_table(closed),
+        after=os.getloadavg()[0],
+        paced=_table([run for run in runs if run.rate == ONCE_A_SECOND]),
+        closed=_table([run for run in runs if run.rate == ON_AND_ON]),
     )
-    for run in [*paced, *closed]:
+    for run in runs:
         for failure in run.seen.failed:
-            print(f"{run.kind}, {run.robots} robots: {failure}", file=sys.stderr)
-    failed = any(run.seen.failed for run in [*paced, *closed])
-    return Part("Round trips over SQL", text, failed)
+            print(f"{run.case.name}, {run.robots} robots: {failure}", file=sys.stderr)
+    return Part("Round trips over SQL", text, any(run.seen.failed for run in runs))
 
 
-def measured(databases: Databases, kind: str, robots: int, rate: float) -> Run:
-    """Measure one case on a new database."""
+def measured(databases: Databases, case: Case, robots: int, rate: float, *, bare: bool) -> Run:
+    """Measure robots on a new database with the gateway, or with the least that can answer."""
     url, admin_url = next(databases)
     run_once(url, revisions.create)
-    # Accounts belong to the server: each case has names of its own.
+    # Accounts belong to the server: each run has names of its own.
     names = {f"robot{next(NUMBERS)}": url for _ in range(robots)}
-    if kind != "sqlite":
+    if case.kind != "sqlite":
         names = run_once(admin_url, _accounts, list(names), make_url(url))
-    plan = Plan(names, SECONDS, rate, POLL_S[kind])
+    plan = Plan(names, SECONDS, rate, POLL_S[case.kind], case.durable)
     with tempfile.TemporaryDirectory() as folder, Processes(Path(folder)) as processes:
-        seen, cpu = _with_gateway(processes, url, plan)
-    return Run(kind, robots, seen, cpu)
+        answered = _with_bare_loop if bare else _with_gateway
+        seen, cpu = answered(processes, url, plan)
+    return Run(case, robots, rate, bare, seen, cpu)
 
 
 @contextmanager
@@ -138,16 +182,29 @@ def _with_gateway(processes: Processes, url: str, plan: Plan) -> tuple[Seen, flo
     address = processes.wait_for_line("gateway", r"listening on (ws://[\w.]+:\d+)", 30).group(1)
     with connect(f"{address}/desk") as desk:
         threading.Thread(target=_watch, args=(desk,), daemon=True).start()
-        began, used = time.perf_counter(), _cpu(gateway.pid)
-        done = subprocess.run(
-            [sys.executable, "-m", "benchmarks.sql_robots"],
-            cwd=ROOT / "scripts",
-            input=json.dumps(asdict(plan)),
-            stdout=subprocess.PIPE,
-            text=True,
-            check=True,
-        )
-        cpu = (_cpu(gateway.pid) - used) / (time.perf_counter() - began)
+        return _ask(plan, gateway.pid)
+
+
+def _with_bare_loop(processes: Processes, url: str, plan: Plan) -> tuple[Seen, float]:
+    path = os.pathsep.join([str(ROOT), str(ROOT / "scripts")])
+    command = [sys.executable, "-m", "benchmarks.bare_sql", url]
+    loop = processes.start("loop", command, env={"PYTHONPATH": path})
+    processes.wait_for_line("loop", "answering", 30)
+    return _ask(plan, loop.pid)
+
+
+def _ask(plan: Plan, pid: int) -> tuple[Seen, float]:
+    """Let the robots ask; return what they saw, and the cores that process ``pid`` took meanwhile."""
+    began, used = time.perf_counter(), _cpu(pid)
+    done = subprocess.run(
+        [sys.executable, "-m", "benchmarks.sql_robots"],
+        cwd=ROOT / "scripts",
+        input=json.dumps(asdict(plan)),
+        stdout=subprocess.PIPE,
+        text=True,
+        check=True,
+    )
+    cpu = (_cpu(pid) - used) / (time.perf_counter() - began)
     return Seen(**json.loads(done.stdout)), cpu
 
 
@@ -167,18 +224,20 @@ def _cpu(pid: int) -> float:
 
 
 def _table(runs: list[Run]) -> str:
-    head = ["database", "robots", "p50, ms", "p99, ms", "answers/s", "gateway, cores"]
-    return table(head, [_row(run) for run in runs])
+    head = ["database", "robots", "p50, ms", "p99, ms", "answers/s", "cores"]
+    head += ["bare loop: p50, ms", "answers/s"]
+    peers = {(run.case, run.robots): run for run in runs if run.bare}
+    return table(head, [_row(run, peers[run.case, run.robots]) for run in runs if not run.bare])
 
 
-def _row(run: Run) -> list[str]:
-    times = sorted(run.seen.times) or [0.0]
-    worst = times[min(len(times) - 1, int(len(times) * 0.99))]
+def _row(run: Run, peer: Run) -> list[str]:
     return [
-        NAMES[run.kind],
+        run.case.name,
         str(run.robots),
-        f"{statistics.median(times) * 1e3:.1f}",
-        f"{worst * 1e3:.1f}",
-        f"{len(run.seen.times) / max(run.seen.seconds, 1e-9):.0f}",
+        f"{run.percentile(0.5):.1f}",
+        f"{run.percentile(0.99):.1f}",
+        f"{run.answers:.0f}",
         f"{run.cpu:.2f}",
+        f"{peer.percentile(0.5):.1f}",
+        f"{peer.answers:.0f} ({run.answers / max(peer.answers, 1e-9):.2f})",
     ]

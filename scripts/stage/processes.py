@@ -8,7 +8,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from types import FrameType
 
@@ -80,10 +80,10 @@ class Processes:
             text = self.log(name).read_text(encoding="utf-8", errors="replace")
             raise StageError(f"{name} was still running after {seconds:.0f} s{_said(text)}") from None
 
-    def require_running(self, *, but: str | None = None) -> None:
-        """Raise StageError when a process other than ``but`` has ended."""
+    def require_running(self, *, but: Collection[str] = ()) -> None:
+        """Raise StageError when a process has ended that is none of ``but``."""
         for name, process in self._running.items():
-            if name != but and process.poll() is not None:
+            if name not in but and process.poll() is not None:
                 text = self.log(name).read_text(encoding="utf-8", errors="replace")
                 raise StageError(f"{name} ended with status {process.returncode}{_said(text)}")
 

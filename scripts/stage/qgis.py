@@ -26,6 +26,9 @@ checkVersion=false
 askToSaveProjectChanges=false
 networkAndProxy\\networkTimeout=1000
 
+[fleet_supervisor]
+tour_offered=true
+
 [UI]
 Customization\\enabled=false
 """

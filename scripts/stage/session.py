@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import subprocess
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -37,12 +37,16 @@ def start_qgis(
 
 
 def follow(
-    processes: Processes, qgis: subprocess.Popen[bytes], journal: Path, seconds: float
+    processes: Processes,
+    qgis: subprocess.Popen[bytes],
+    journal: Path,
+    seconds: float,
+    killed: Collection[str] = (),
 ) -> Iterator[dict[str, Any]]:
     """Yield each entry of ``journal`` as it comes, until QGIS ends.
 
     :raises StageError: when the session failed, QGIS ended in another way than by itself, or ``seconds``
-        passed, or a process that it needs has ended.
+        passed, or a process that it needs has ended; those in ``killed`` may.
     """
     until = time.monotonic() + seconds
     read = 0
@@ -59,7 +63,7 @@ def follow(
             break
         if time.monotonic() > until:
             raise StageError(f"QGIS was not done after {seconds:.0f} s; its output: {processes.log('qgis')}")
-        processes.require_running(but="qgis")
+        processes.require_running(but=("qgis", *killed))
         time.sleep(0.1)
     if ended != 0:
         raise StageError(f"QGIS ended with status {ended}; its output: {processes.log('qgis')}")

@@ -53,7 +53,5 @@ def test_any_bytes_are_an_image_or_refused(content):
 
 def test_the_largest_size_belongs_to_what_is_taken():
     check_size(100, 100)
-    with pytest.raises(
-        RefusedError, match=r"has 101 bytes, and this site takes up to 100 "
-    ):
+    with pytest.raises(RefusedError, match=r"has 101 bytes, and this site takes up to 100 "):
         check_size(101, 100)

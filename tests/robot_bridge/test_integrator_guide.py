@@ -238,12 +238,59 @@ def test_the_desks_story_goes_as_it_is_told(bridge):
         answered = answer_frame(desk, frame["id"])
         if frame["method"] == "subscribe":
             desk.until(lambda: heard)
+        if frame["method"] == "set_queue":
+            put_a_cone_down(bridge, robot, desk, heard)
+        if frame["method"] == "get_conflicts":
+            desk.until(lambda: any(h["method"] == "conflicts" for h in heard))
+        if frame["method"] == "make_current":
+            wait_for_target(robot, x=30.0, y=20.0, theta=0.0, cone=False)
         if "error" in wanted or frame["method"] == "hello":
             assert answered == {k: wanted[k] for k in answered}
         assert shape(answered) == shape({k: wanted[k] for k in answered})
     for method in sorted(set(NOTIFICATIONS) - OF_THE_GATEWAY):
         (wanted,) = [t for t in told if t.get("method") == method]
         assert shape(next(h for h in heard if h["method"] == method)) == shape(wanted)
+
+
+def test_positions_in_columns_are_read_as_it_is_told(bridge):
+    robot = bridge.robot("r1")
+    robot.plug_in(1)
+    robot.ask("SendPos", {"x": 20.0, "y": 8.0, "theta": 0.0, "v": 0.0})
+    desk = bridge.desk()
+    ((_, asked),), ((_, wanted),) = blocks("desk-asks-columns"), blocks("head-of-columns")
+    assert accepts("desk/subscribe.json", asked["params"])
+    assert accepts("head/positions.json", wanted["params"])
+    desk.connection.send(json.dumps({**asked, "id": "columns"}))
+    frame = ""
+    while not isinstance(frame, bytes):
+        frame = desk.connection.recv(10.0)
+    head = json.loads(frame[4 : 4 + int.from_bytes(frame[:4], "little")])
+    assert shape(head) == shape(wanted)
+    assert [head["params"][name] for name in ("robots", "columns", "words")] == [
+        wanted["params"][name] for name in ("robots", "columns", "words")
+    ]
+    ((code,),) = [[text] for language, info, text in BLOCKS if (language, info) == ("python", "read-columns")]
+    program = {}
+    exec(code, program)
+    assert program["state_of"]("r1", frame)[:3] == (20.0, 8.0, "fresh")
+
+
+def put_a_cone_down(bridge, robot, desk, heard):
+    """Do the first task of the queue's example, bring a second robot; the next task is then on its way."""
+    robot.say(wait_for_target(robot, x=45.0, y=20.0, cone=True)["id"])
+    robot.tell("SendPos", {"x": 45.03, "y": 20.04, "theta": 0.0, "v": 0.0})
+    other = bridge.robot("r2")
+    other.plug_in(2)
+    other.ask("SendPos", {"x": 20.0, "y": 12.0, "theta": 0.0, "v": 0.0})
+    desk.until(lambda: any(h["method"] == "placement" for h in heard))
+    robot.wait_for("SetPath")
+
+
+def wait_for_target(robot, **target):
+    """Return the call that sends the robot to this target; what came before it is passed over."""
+    while (call := robot.wait_for("SetPosEnd"))["params"] != target:
+        pass
+    return call
 
 
 def tell_what_is_seen(robot):
@@ -268,7 +315,7 @@ def test_the_schemas_are_served_as_they_are_written(bridge, tmp_path):
 
 
 def test_the_reference_robots_command_lines_have_options_that_exist():
-    from robot_bridge.__main__ import robot
+    from robot_bridge.commands.robot import robot
 
     for line in re.findall(r"^    robot-bridge robot (.*)$", GUIDE, re.MULTILINE):
         for option in re.findall(r"--([\w-]+)", line):

@@ -26,9 +26,7 @@ def only(robots: Robots, now: float):
 
 
 def test_a_robot_that_never_said_ready_is_not_known(robots):
-    with pytest.raises(
-        NotReadyError, match="robot 'r2' has not said Ready"
-    ):
+    with pytest.raises(NotReadyError, match="robot 'r2' has not said Ready"):
         robots.heard("r2", "sql", 100.0)
     with pytest.raises(NotReadyError):
         robots.observe("r2", pose(1.0), "sql", 100.0)

@@ -16,7 +16,7 @@ from .. import facts, revisions
 from ..address import shown
 from ..database import run_once
 from ..schema import bridge, metadata, rr
-from ..sole_gateway import SoleGateway
+from ..sole_gateway import no_gateway
 from .server_dump import MariaDbBackups, PostgreSqlBackups
 from .sqlite_file import SqliteBackups
 
@@ -77,12 +77,8 @@ async def restore(url: URL, file: Path, *, replace: bool = False) -> None:
     StoreError.
     """
     _check_kind(url, file)
-    gateway = SoleGateway(url)
-    await gateway.take()
-    try:
+    async with no_gateway(url, "robot-bridge database restore"):
         await asyncio.to_thread(_restore, url, file, replace)
-    finally:
-        await gateway.release()
 
 
 def _restore(url: URL, file: Path, replace: bool) -> None:
@@ -112,9 +108,9 @@ def _revision(connection: Connection, where: str) -> str:
 
 
 def _held(connection: Connection) -> str | None:
-    """Return how much of what the database holds, None for nothing."""
+    """Return how much of what the database holds, None for nothing; that it was made is in its audit log."""
     present = set(inspect(connection).get_table_names())
-    for name in ("commands", "trajectories", "robots", "operators", "observations", "audit"):
+    for name in ("commands", "trajectories", "robots", "operators", "observations"):
         if name not in present:
             continue
         table = metadata.tables[name]

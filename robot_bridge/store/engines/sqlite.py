@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from pathlib import Path
 from typing import Any
 
 import sqlalchemy
@@ -89,3 +90,15 @@ def _prepare(connection: Any, _record: Any) -> None:
 
 def _decode_leniently(text: bytes) -> str:
     return text.decode(errors="replace")
+
+
+def file_of(url: URL) -> Path | None:
+    """Return the file of a SQLite database, None for one in memory; raises SQLAlchemyError."""
+    engine = SQLite().engine(url, None)
+    with engine.connect() as connection:
+        driver = connection.connection.driver_connection
+        assert driver is not None
+        found = driver.execute("PRAGMA database_list").fetchall()
+    engine.dispose()
+    file = next((row[2] for row in found if row[1] == "main"), "")
+    return Path(file).resolve() if file else None

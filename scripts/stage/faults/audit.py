@@ -21,6 +21,8 @@ YOUNG_S = 2.0
 """seconds before a gateway's death in which positions may be lost."""
 NOTICED_WITHIN = 0.5
 """seconds after it in which a robot may still have written into a dead connection."""
+LAST_WORDS_S = 0.5
+"""seconds before the death of a robot in which what it said may go down with its connection, unread."""
 CLOCK_S = 0.1
 """seconds by which two processes of this machine may disagree on what came first."""
 ORDER = ("queued", "delivered", "acknowledged", "reached")
@@ -62,14 +64,18 @@ class Findings:
 def audit(yard: Yard) -> Findings:
     """Judge what happened in a yard that has finished."""
     stored = run_once(yard.place.url, _load)
-    findings = judged(yard.ledger, yard.faults, stored, list(yard.journals()))
+    findings = judged(yard.ledger, yard.faults, stored, list(yard.journals()), yard.robot_ends())
     findings.wrong += yard.said("Traceback")[:3]
     findings.back_after = list(_recoveries(yard, stored))
     return findings
 
 
 def judged(
-    ledger: Ledger, faults: Sequence[Fault], stored: Stored, lines: Sequence[dict[str, Any]]
+    ledger: Ledger,
+    faults: Sequence[Fault],
+    stored: Stored,
+    lines: Sequence[dict[str, Any]],
+    ends: Mapping[str, Sequence[float]],
 ) -> Findings:
     """Judge what is stored by what desks were told, what was done, and what robots wrote down."""
     findings = Findings(wrong=list(ledger.wrong))
@@ -79,7 +85,7 @@ def judged(
     findings.counts.update(Counter(fault.what for fault in faults))
     _judge_commands(ledger, stored, _acts(lines), findings)
     _judge_observations(faults, stored, lines, findings)
-    _judge_positions(faults, stored, lines, findings)
+    _judge_positions(faults, stored, lines, ends, findings)
     return findings
 
 
@@ -199,7 +205,11 @@ def _beside(faults: Iterable[Fault], at: float) -> str:
 
 
 def _judge_positions(
-    faults: Iterable[Fault], stored: Stored, lines: Iterable[dict[str, Any]], findings: Findings
+    faults: Iterable[Fault],
+    stored: Stored,
+    lines: Iterable[dict[str, Any]],
+    ends: Mapping[str, Sequence[float]],
+    findings: Findings,
 ) -> None:
     deaths = [fault.at for fault in faults if fault.what == GATEWAY_KILLED]
     counts = findings.counts
@@ -211,6 +221,8 @@ def _judge_positions(
             counts["... stored"] += 1
         elif any(death - YOUNG_S <= line["t"] <= death + NOTICED_WITHIN for death in deaths):
             counts["... lost, told at most 2 s before a gateway was killed"] += 1
+        elif any(death - LAST_WORDS_S <= line["t"] <= death for death in ends.get(line["robot"], ())):
+            counts["... lost, told at most 0.5 s before the robot itself was killed"] += 1
         else:
             findings.wrong.append(f"position of {line['robot']} told {_beside(faults, line['t'])} is lost")
     counts["... stored twice"] = sum(count - 1 for count in stored.positions.values())

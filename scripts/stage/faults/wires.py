@@ -35,7 +35,7 @@ class WebSocketRobot:
         while not self._ended.is_set():
             try:
                 with connect(
-                    self._url, max_size=None, compression=None, open_timeout=10, close_timeout=0.2
+                    self._url, max_size=None, compression=None, open_timeout=10, close_timeout=5
                 ) as wire:
                     self._live(wire)
             except (OSError, TimeoutError, WebSocketException):

@@ -74,6 +74,8 @@ class Crew:
     journal: Path
     life: int = 0
     process: subprocess.Popen[bytes] | None = None
+    ends: list[float] = field(default_factory=list)
+    """when its robots were killed."""
 
 
 @dataclass
@@ -144,6 +146,7 @@ class Yard:
     def kill_crew(self, crew: Crew) -> None:
         """End its robots the way a power cut does."""
         assert crew.process is not None
+        crew.ends.append(time.time())
         crew.process.kill()
         crew.process.wait()
 
@@ -157,6 +160,10 @@ class Yard:
             json.dumps(asdict(Plan(crew.robots, str(crew.journal), crew.life, remembers))), encoding="utf-8"
         )
         crew.process = self._run(name, "stage.faults.crew", plan)
+
+    def robot_ends(self) -> dict[str, list[float]]:
+        """Return for each robot when it was killed."""
+        return {robot: crew.ends for crew in self.crews for robot in crew.robots}
 
     def journals(self) -> Iterator[dict[str, Any]]:
         """Yield what all robots wrote down."""

@@ -252,5 +252,5 @@ async def test_what_an_earlier_gateway_left_open_is_ended_and_old_ones_are_forgo
     await database.run(session_rows.end_all, 5.0, "the gateway ended")
     (session,) = await database.run(lambda c: session_rows.listed(c, everything=True, limit=9))
     assert (session.ended_at, session.reason) == (5.0, "the gateway ended")
-    await database.run(session_rows.forget_ended, 6.0)
+    await database.run(session_rows.forget_ended, 6.0, 9)
     assert await database.run(lambda c: session_rows.listed(c, everything=True, limit=9)) == []

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import socket
 import time
@@ -68,6 +69,26 @@ def test_too_many_messages_are_refused_and_then_the_connection_is_closed(bridge,
         assert caught.value.rcvd.code == 1008
         assert "too many messages" in caught.value.rcvd.reason
     assert "robots" in bridge.desk().ask("get_positions")
+
+
+@pytest.mark.parametrize("size", [100, 100_000])
+def test_too_many_positions_are_refused_and_then_the_connection_is_closed(bridge, size):
+    position = {"jsonrpc": "2.0", "method": "SendPos", "params": {"x": 1, "y": 2, "theta": 0, "v": 0}}
+    ready = frame(json.dumps({"jsonrpc": "2.0", "id": 1, "method": "Ready", "params": {"magic": 1}}))
+    with plain_socket(bridge, "/robot?robot=talkative") as raw:
+        raw.settimeout(5)
+        raw.sendall(ready)
+        told = b""
+        while b'"ok":true' not in told:
+            told += raw.recv(4096)
+        stream = frame(json.dumps(position)) * 100
+        with contextlib.suppress(OSError):
+            for begin in range(0, len(stream), size):
+                raw.sendall(stream[begin : begin + size])
+        with contextlib.suppress(OSError):
+            while more := raw.recv(1 << 16):
+                told += more
+    assert b"too many messages a second" in told
 
 
 def test_whoever_waits_as_told_is_answered_again(bridge):

@@ -10,7 +10,6 @@ import time
 
 import pytest
 from bridge_wires import Desk
-from websockets.sync.client import connect
 
 from robot_bridge.access import certificates
 
@@ -47,8 +46,9 @@ def test_a_desk_and_a_robot_speak_over_tls(bridge, files):
 @pytest.mark.parametrize("version", [ssl.TLSVersion.TLSv1_2, ssl.TLSVersion.TLSv1_3])
 def test_new_versions_are_spoken_with_forward_secrecy(bridge, files, version):
     context = trusting(files, minimum_version=version, maximum_version=version)
-    with connect(f"{bridge.address}/desk", ssl=context) as wire:
-        name, spoken, bits = wire.socket.cipher()
+    raw = socket.create_connection(("127.0.0.1", bridge.port))
+    with context.wrap_socket(raw, server_hostname="localhost") as secure:
+        name, spoken, bits = secure.cipher()
     assert name.startswith(("TLS_", "ECDHE-"))
     assert "GCM" in name or "CHACHA20" in name
     assert bits >= 128
@@ -87,7 +87,7 @@ def test_a_client_that_does_not_know_the_authority_does_not_connect(bridge, file
     other = certificates.create(tmp_path / "other", ["localhost"], ["127.0.0.1"])
     for context in (ssl.create_default_context(), trusting(other)):
         with pytest.raises(ssl.SSLCertVerificationError, match=r"certificate verify failed"):
-            connect(f"{bridge.address}/desk", ssl=context)
+            bridge.desk(ssl=context)
 
 
 def test_a_name_that_the_certificate_is_not_for_is_refused(bridge, files):

@@ -70,7 +70,7 @@ def test_tables_of_others_in_the_same_database_are_no_difference(url, kind):
 
 
 def test_tables_are_not_made_twice(url):
-    with pytest.raises(StoreError, match=r"the tables are there already, at revision 0002"):
+    with pytest.raises(StoreError, match=f"the tables are there already, at revision {revisions.NEEDED}"):
         run_once(url, revisions.create)
 
 
@@ -85,7 +85,8 @@ def test_a_gateway_makes_only_a_missing_sqlite_database(empty_url, kind):
 
 
 def test_a_database_of_version_0_1_0_is_refused_with_the_command_that_upgrades_it(old_url):
-    with pytest.raises(StoreError, match=r"revision 0001, .* needs 0002; back it up, then run: robot-bridge"):
+    advice = f"revision 0001, .* needs {revisions.NEEDED}; back it up, then run: robot-bridge"
+    with pytest.raises(StoreError, match=advice):
         opened(old_url)
     assert run_once(old_url, revisions.current) == "0001"
 
@@ -136,7 +137,7 @@ def test_a_database_of_a_newer_version_is_refused_and_left_alone(url):
                 work(url)
         assert run_once(url, revisions.current) == "9999"
     finally:
-        client.sql("update alembic_version set version_num = '0002'")
+        client.sql(f"update alembic_version set version_num = '{revisions.NEEDED}'")
 
 
 def test_an_empty_database_has_nothing_to_upgrade(empty_url):

@@ -50,15 +50,16 @@ def story():
             line("pose", 10.0, t=10.0),
             line("pose", 19.0, t=19.0),
         ],
+        ends={"sq01": [40.0]},
     )
 
 
 def wrong(story):
-    return judged(story.ledger, story.faults, story.stored, story.lines).wrong
+    return judged(story.ledger, story.faults, story.stored, story.lines, story.ends).wrong
 
 
 def test_a_right_story_is_right_and_is_counted(story):
-    findings = judged(story.ledger, story.faults, story.stored, story.lines)
+    findings = judged(story.ledger, story.faults, story.stored, story.lines, story.ends)
     assert findings.wrong == []
     assert findings.counts["commands told queued"] == findings.counts["acted on"] == 2
     assert findings.counts["... lost, told at most 2 s before a gateway was killed"] == 1
@@ -132,6 +133,17 @@ def lose_position_older_than_two_seconds(story):
     story.lines.append(line("pose", 17.9, t=17.9))
 
 
+def test_what_a_robot_said_last_may_go_down_with_it(story):
+    story.lines.append(line("pose", 30.0, t=30.0))
+    story.ends["sq01"] = [30.02]
+    assert wrong(story) == []
+
+
+def lose_position_of_a_robot_that_lived_on(story):
+    story.lines.append(line("pose", 30.0, t=30.0))
+    story.ends["sq01"] = [30.6, 29.8]
+
+
 def leave_message(story):
     story.stored.waiting.append(("sq01", "SetPosEnd"))
 
@@ -158,6 +170,7 @@ def be_refused_for_no_reason(story):
         (spoil_image, "not stored as it was told"),
         (lose_position, "position of sq01"),
         (lose_position_older_than_two_seconds, "position of sq01"),
+        (lose_position_of_a_robot_that_lived_on, "position of sq01"),
         (leave_message, "SetPosEnd of or for robot sq01 still waits"),
         (be_refused_for_no_reason, "no such robot"),
     ],

@@ -9,7 +9,9 @@ from database_client import DatabaseClient
 
 from robot_bridge.fleet import Fleet
 from robot_bridge.links.sql import SqlLink
-from robot_bridge.messages import OpAck, Ready, Send, SendPos, to_json
+from robot_bridge.messages import CloseRoad, GetRoute, OpAck, OpenRoad, Ready, Send, SendPos, to_json
+from robot_bridge.road_traffic.road_planning import RoadPlanner
+from robot_bridge.road_traffic.road_requests import route
 from robot_bridge.site_maps import SiteMaps
 from robot_bridge.sites.publication import read_site
 from robot_bridge.store.database import Database
@@ -114,6 +116,79 @@ def database_url(request, new_database) -> str:
 @pytest.fixture
 async def yard(site_maps, database_url):
     yard = Yard(site_maps, database_url)
+    await yard.start()
+    yield yard
+    await yard.database.close()
+    yard.client.close()
+
+
+class RoadYard(Yard):
+    """A yard whose paths follow the roads; it keeps the newest news of each kind."""
+
+    async def start(self):
+        self.news = {}
+        self.database = Database(self.url)
+        await self.database.open()
+        planner = RoadPlanner(lambda: self.site.site)
+        self.fleet = Fleet(self.site, self.database, clock=lambda: self.now, planner=planner)
+        self.fleet.listen(self)
+        await self.fleet.start()
+        self.link = SqlLink(self.fleet, self.database)
+
+    def notify(self, method, key, params):
+        super().notify(method, key, params)
+        self.news[method] = params
+
+    async def close_road(self, x, y, id="closure-1", **how):
+        return await self.fleet.closures.close(CloseRoad(id, x, y, **how), "Ada")
+
+    async def open_road(self, id="closure-1"):
+        return await self.fleet.closures.open(OpenRoad(id), "Bob")
+
+    async def way(self, start, goal, **how):
+        return await self.route(GetRoute(*goal, start=start, **how))
+
+    async def route(self, request):
+        return await route(self.fleet.roads, self.fleet.robots, self.fleet.ways, request)
+
+    async def drive(self, id, points, robot="r1"):
+        """Send a robot, which has plugged in at the first point, along ``points``; it takes that on."""
+        if robot not in self.fleet.robots:
+            await self.ready(robot)
+        await self.at(*points[0], v=1.0, robot=robot)
+        await self.send(id, "SetPath", robot, points=points)
+        await self.take(robot)
+
+    async def new_path(self, robot="r1"):
+        """Return the newest path that waits for the robot."""
+        rows = [row for row in await self.deliver(robot) if row.op == "SetPath"]
+        return json.loads(rows[-1].params)["points"]
+
+
+@pytest.fixture
+def own_site(site_maps):
+    return SiteMaps(site_maps.site)
+
+
+@pytest.fixture
+def sqlite_url(new_database) -> str:
+    """An empty SQLite database with the tables."""
+    return new_database("sqlite")
+
+
+@pytest.fixture
+async def roads(own_site, sqlite_url):
+    yard = RoadYard(own_site, sqlite_url)
+    await yard.start()
+    yield yard
+    await yard.database.close()
+    yard.client.close()
+
+
+@pytest.fixture
+async def each(own_site, database_url):
+    """A yard with roads, on each kind of database."""
+    yard = RoadYard(own_site, database_url)
     await yard.start()
     yield yard
     await yard.database.close()

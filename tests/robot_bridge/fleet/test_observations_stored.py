@@ -18,6 +18,7 @@ from robot_bridge.messages import (
     SetObject,
 )
 from robot_bridge.robotmap.binary import decode
+from robot_bridge.sites.settings import ObservationSettings
 
 PNG = b"\x89PNG\r\n\x1a\n"
 CONE = SetObject(100.0, 80.0, "Kegel ä 7 🚧", label="cone", height=0.75)
@@ -131,6 +132,20 @@ async def test_what_is_refused_leaves_nothing_behind(ready):
         with pytest.raises((RefusedError, MessageError), match=reason):
             await tell(ready, wrong, 1)
     assert ready.sql("select count(*) from observations") == [(0,)]
+
+
+async def test_the_largest_image_that_a_site_may_allow_is_stored_whatever_is_in_it(ready, monkeypatch):
+    largest = next(f for f in dataclasses.fields(ObservationSettings) if f.name == "largest_image_bytes")
+    size = largest.metadata["most"]
+    settings = dataclasses.replace(
+        ready.site.settings, observations=ObservationSettings(largest_image_bytes=size)
+    )
+    monkeypatch.setattr(type(ready.site), "settings", settings)
+    # Each of these bytes takes two in a statement of MariaDB.
+    image = PNG + bytes(size - len(PNG))
+    await tell(ready, SendImage(image, 1.0, 1.0, "a"), 1)
+    (found,) = await told(ready)
+    assert await ready.fleet.observations.image(found.observation) == (image, "image/png")
 
 
 async def test_an_accepted_object_is_on_the_map_before_and_after_a_restart(ready):

@@ -137,10 +137,15 @@ def test_a_request_without_a_name_gets_the_robots_own(yard):
     assert yard.sql("select robot from rr where params = 'nameless'") == [(MINE,)]
 
 
+NO_SUCH_COLUMN = 1054
+"""what MariaDB says of a column that a view does not have, where it does not look at the rights first."""
+
+
 @pytest.mark.parametrize("column", ["id", "created_at"])
 def test_a_robot_gives_a_request_neither_number_nor_time(yard, column):
     value = {"id": "1", "created_at": "'2001-01-01 00:00:00'"}[column]
-    assert refused(yard, MINE, f"insert into rr (op, {column}) values ('Alive', {value})") in DENIED
+    error = refused(yard, MINE, f"insert into rr (op, {column}) values ('Alive', {value})")
+    assert error in DENIED | {NO_SUCH_COLUMN}
 
 
 def test_a_robot_cannot_delete_or_read_anothers_answer_by_its_number(yard):

@@ -171,8 +171,8 @@ def test_the_reference_robot_tells_what_it_sees_and_asks_for_its_path(bridge, tm
     )
     desk = bridge.desk()
     desk.ask("subscribe", {"rate": 20})
-    desk.until(lambda: name in desk.robots)
-    desk.wait_for_robots(name)
+    # A process of its own, which has to import all it needs on a computer that may be busy.
+    desk.wait_for_robots(name, seconds=60)
     desk.send(f"begin-{name}", name, "SetPosIni", x=22.0, y=8.0)
     desk.wait_for_step(f"begin-{name}", "reached")
     desk.send(f"drive-{name}", name, "SetPosEnd", x=45.0, y=8.0)

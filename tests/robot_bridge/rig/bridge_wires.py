@@ -8,7 +8,9 @@ import json
 import time
 from collections.abc import Callable
 from typing import Any
+from urllib.parse import urlsplit
 
+from tls_wire import plain_end
 from websockets.sync.client import connect
 
 
@@ -18,12 +20,17 @@ class RefusedError(Exception):
     def __init__(self, error: dict[str, Any]):
         super().__init__(error["message"])
         self.code = error["code"]
+        self.data = error.get("data")
 
 
 class Wire:
     """One connection. What comes in between is handed to ``_hear``."""
 
     def __init__(self, url: str, **options: Any):
+        if (context := options.pop("ssl", None)) is not None:
+            address = urlsplit(url)
+            options |= {"unix": True, "sock": plain_end(address.hostname, address.port, context)}
+            url = url.replace("wss://", "ws://", 1)
         self.connection = connect(url, max_size=None, compression=None, close_timeout=1, **options)
         self._ids = itertools.count(1)
 

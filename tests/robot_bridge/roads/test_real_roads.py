@@ -62,7 +62,7 @@ def test_routes_on_the_track_stay_on_its_digitised_surface(data):
     router = Router(network)
     random = np.random.default_rng(6)
     driven = 0
-    while driven < 50:
+    while driven < 1000:
         pair = random.uniform(surface.bounds[:2], surface.bounds[2:], (2, 2))
         if not shapely.contains_xy(surface, pair).all():
             continue

@@ -11,6 +11,7 @@ from robot_bridge.messages import (
     Abort,
     Alive,
     GetPath,
+    GetSurface,
     OpAck,
     Ready,
     SendImage,
@@ -20,6 +21,7 @@ from robot_bridge.messages import (
     SetPath,
     SetPosEnd,
     SetPosIni,
+    SetSurface,
     Start,
     Stopped,
 )
@@ -227,6 +229,17 @@ def test_it_asks_for_a_path_and_drives_what_it_is_answered():
         passed.append(math.hypot(robot.agent.pose[0] - 3, robot.agent.pose[1]))
     assert min(passed) < 0.8, "it did not come by the corner"
     assert robot.agent.pose == pytest.approx((3.0, 3.0, 0.0), abs=0.06)
+
+
+def test_it_asks_what_ground_it_is_on_and_is_to_go_to_and_says_so():
+    robot = Robot(asks_surface=True)
+    robot.agent.receive(SetPosEnd(3.0, 3.0), 1)
+    robot.agent.receive(SetPath([(0.0, 0.0), (5.0, 0.0)]), 2)
+    asked = [GetSurface([(0.0, 0.0), (3.0, 3.0)]), GetSurface([(0.0, 0.0), (5.0, 0.0)])]
+    assert robot.heard(GetSurface) == asked
+    assert robot.agent.receive(SetSurface(["asphalt", None]), 3) == OpAck(id=3)
+    robot.live(0.5)
+    assert robot.heard(SendPos)[-1].status == "asphalt to no road"
 
 
 def test_it_tells_of_a_thing_once_when_it_comes_near():

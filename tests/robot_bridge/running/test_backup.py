@@ -150,7 +150,7 @@ def test_nothing_is_restored_under_a_running_gateway(address, tmp_path):
     gateway = SoleGateway(address)
     asyncio.run(gateway.take())
     try:
-        with pytest.raises(BridgeError, match="another gateway runs on it: process"):
+        with pytest.raises(BridgeError, match="a gateway runs on it: process"):
             put_back(address, file, replace=True)
         back_up(address, tmp_path / "another")
     finally:

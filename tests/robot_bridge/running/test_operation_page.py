@@ -28,7 +28,7 @@ def test_the_commands_for_sqlite_do_what_they_say(page, root, sample_site, tmp_p
     program.write_text(f'#!/bin/sh\nexec {sys.executable} -m robot_bridge "$@"\n')
     program.chmod(0o755)
     blocks = re.findall(r"^```sh sqlite\n(.*?)^```$", page, re.DOTALL | re.MULTILINE)
-    assert len(blocks) == 3
+    assert len(blocks) == 4
     script = "robot-bridge database create\n" + "".join(blocks)
     done = subprocess.run(
         SHELL,
@@ -42,7 +42,7 @@ def test_the_commands_for_sqlite_do_what_they_say(page, root, sample_site, tmp_p
     )
     assert done.returncode == 0, done.stderr
     assert "the tables are those that this version works with" in done.stdout
-    for name in ("fleet-backup.db", "drives.gpkg", "r1.gpkg"):
+    for name in ("fleet-backup.db", "drives.gpkg", "r1.gpkg", "cones.csv", "slalom.gpkg"):
         assert (tmp_path / name).is_file()
 
 

@@ -1,21 +1,15 @@
-"""Stored trajectories on each kind of database: read in pages by robot, time and area, deleted in time."""
-
-import asyncio
+"""Stored trajectories on each kind of database: read in pages by robot, time and area."""
 
 import pytest
 
 from robot_bridge.messages import GetTrajectory, MessageError, SendPos
-from robot_bridge.sites.settings import TrajectorySettings
 from robot_bridge.store import trajectories
 from robot_bridge.store.address import read_address
 from robot_bridge.store.database import Database
-from robot_bridge.store.trajectories import Fix, Wanted
-from robot_bridge.trajectories import recorder as recording
+from robot_bridge.store.trajectories import Fix
 from robot_bridge.trajectories.reading import get_trajectory
-from robot_bridge.trajectories.recorder import Recorder
 
 NOW = 1_790_000_000.25
-DAY = 86400.0
 
 
 @pytest.fixture
@@ -80,20 +74,3 @@ async def test_they_are_read_by_robot_time_and_area(database):
 def test_what_cannot_be_asked_is_refused(wanted, says):
     with pytest.raises(MessageError, match=says):
         GetTrajectory(**wanted)
-
-
-async def test_what_is_too_old_is_deleted_in_pieces_between_which_others_have_the_database(
-    database, monkeypatch
-):
-    monkeypatch.setattr(recording, "PRUNED_AT_ONCE", 100)
-    recorder = Recorder(lambda: TrajectorySettings(keep_days=7.0))
-    await store(database, [("r1", NOW - 8 * DAY + n, 1.0, 1.0) for n in range(550)])
-    await store(database, [("r1", NOW - 6 * DAY, 2.0, 2.0), ("r1", NOW, 3.0, 3.0)])
-    pruning = asyncio.create_task(recorder.prune(database, NOW))
-    await asyncio.sleep(0.12)
-    seen = len(await database.run(trajectories.read, Wanted(), 5000, None))
-    assert 2 < seen < 552
-    assert await pruning == 550
-    left = await database.run(trajectories.read, Wanted(), 5000, None)
-    assert [place.x for place in left] == [2.0, 3.0]
-    assert await recorder.prune(database, NOW) == 0

@@ -12,6 +12,7 @@ import pyogrio.raw
 import pytest
 import shapely
 
+from robot_bridge.roads.surfaces.surface import GENERATED, Surface
 from robot_bridge.robotmap.model import ShapeType
 from robot_bridge.robotmap.outlines import OutlineRow, Outlines
 from robot_bridge.robotmap.text import write_text
@@ -58,7 +59,7 @@ ROWS = [
 ]
 OBSTACLES = Outlines.from_rows(ROWS)
 ROADS = [Centreline(np.array([[0.0, 15.0], [50.0, 15.0], [55.0, 18.0]]), 3.5, "asphalt")]
-SURFACES = [Area((ring(0, 13, 50, 17), ring(20, 14, 22, 15)), "asphalt")]
+SURFACES = [Surface((ring(0, 13, 50, 17), ring(20, 14, 22, 15)), "asphalt", "Mall", GENERATED)]
 KEEPOUTS = [Area((ring(45, 30, 55, 38),), "Pond")]
 
 
@@ -128,6 +129,17 @@ def test_roads_and_areas_come_back_as_they_were(folder):
         assert [area.label for area in found] == [area.label for area in wanted]
         for ours, theirs in zip(found[0].rings, wanted[0].rings, strict=True):
             assert np.allclose(ours, theirs, atol=1e-6)
+
+
+def test_surfaces_keep_their_names_and_where_they_come_from(folder):
+    (surface,) = read_site(folder).surfaces
+    assert (surface.name, surface.origin) == ("Mall", "generated")
+
+
+def test_surfaces_of_a_site_of_an_older_version_were_drawn(folder):
+    edit(folder, "alter table road_surfaces drop column name", "alter table road_surfaces drop column origin")
+    (surface,) = read_site(folder).surfaces
+    assert (surface.label, surface.name, surface.origin) == ("asphalt", "", "drawn")
 
 
 def test_the_geopackage_holds_crs_coordinates(folder):

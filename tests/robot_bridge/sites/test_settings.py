@@ -87,7 +87,7 @@ def replaced(key, value):
             "site.orgin is not a setting: did you mean origin? Known are bounds",
         ),
         (TEXT + "colour = 1\n", "liveness.colour is not a setting"),
-        (TEXT + "[map]\n", "map is not a setting: known are commands, gateway"),
+        (TEXT + "[map]\n", "map is not a setting: known are audit, commands"),
         (TEXT + "[trajectorys]\n", "trajectorys is not a setting: did you mean trajectories?"),
         (
             TEXT + "[trajectories]\nkeep_day = 3\n",
@@ -106,6 +106,10 @@ def replaced(key, value):
         (
             TEXT + "[observations]\nlargest_image_bytes = 3\n",
             "observations.largest_image_bytes = 3 is below 1024.",
+        ),
+        (
+            TEXT + "[observations]\nlargest_image_bytes = 15728640\n",
+            "observations.largest_image_bytes = 15728640 is above 8000000.",
         ),
         (TEXT + "[gateway]\nport = 70000\n", "gateway.port = 70000 is above 65535."),
         (TEXT + "[gateway]\nport = true\n", "gateway.port = True: Expected `int | null`, got `bool`"),

@@ -1,0 +1,5589 @@
+<?xml version="1.0" encoding="utf-8"?>
+<!DOCTYPE TS>
+<TS version="2.1" language="ca" sourcelanguage="en">
+    <context>
+        <name>FleetSupervisor</name>
+        <message>
+            <location filename="../../plugin/connection.py" />
+            <source>The connection stopped on an internal fault ({name}: {error}). Press Connect to try again and report this text.</source>
+            <translation>La connexió s'ha aturat per un error intern ({name}: {error}). Premeu Connecta per tornar-ho a provar i comuniqueu aquest text.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/connection.py" />
+            <source>The desk is not connected to a gateway. Press Connect first.</source>
+            <translation>La consola no està connectada a cap passarel·la. Premeu abans Connecta.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/access_fields.py" />
+            <source>&amp;Keep in QGIS</source>
+            <translation>&amp;Desa a QGIS</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/access_fields.py" />
+            <source>CA &amp;file</source>
+            <translation>&amp;Fitxer de CA</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/access_fields.py" />
+            <source>Certificates (*.pem *.crt *.cer);;All files (*)</source>
+            <translation>Certificats (*.pem *.crt *.cer);;Tots els fitxers (*)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/access_fields.py" />
+            <source>Encrypted, under the master password of the QGIS authentication manager</source>
+            <translation>Xifrat, amb la contrasenya mestra del gestor d'autenticació de QGIS</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/access_fields.py" />
+            <source>The site's ca.pem</source>
+            <translation>El ca.pem del recinte</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/access_fields.py" />
+            <source>fleet_op_…, as it was printed when the account was made</source>
+            <translation>fleet_op_…, tal com es va escriure en crear el compte</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/access_fields.py" />
+            <source>kept by QGIS; enter another one to replace it</source>
+            <translation>el guarda QGIS; introduïu-ne un altre per canviar-lo</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/access_fields.py" />
+            <source>of the connection's authentication; enter another one for this time</source>
+            <translation>de l'autenticació de la connexió; introduïu-ne un altre per aquesta vegada</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/access_fields.py" />
+            <source>the site's ca.pem; empty for public authorities</source>
+            <translation>el ca.pem del recinte; buit per a autoritats públiques</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>ABORT ALL</source>
+            <translation>AVORTA-HO TOT</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Abort robot</source>
+            <translation>Avorta robot</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Add to queue</source>
+            <translation>Afegeix a la cua</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Cancel</source>
+            <translation>Cancel·la</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Clear emergency stop …</source>
+            <translation>Aixeca la parada d'emergència …</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Close a road for every robot by a click on it, or open a closed one again</source>
+            <translation>Tanca una via a tots els robots amb un clic, o torna a obrir-ne una de tancada</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Close road</source>
+            <translation>Tanca via</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Cone target</source>
+            <translation>Objectiu de con</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Connect</source>
+            <translation>Connecta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Connect to the gateway, or disconnect</source>
+            <translation>Connecta a la passarel·la, o desconnecta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Coordinates …</source>
+            <translation>Coordenades …</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Draw a route for the selected robot: click its points, drag points or lines to change it, Backspace takes the last one back, Enter or Send sends, Esc cancels</source>
+            <translation>Dibuixa una ruta per al robot seleccionat: feu clic als punts, arrossegueu punts o línies per canviar-la, Retrocés treu l'últim, Retorn o Envia l'envia, Esc cancel·la</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Draw route</source>
+            <translation>Dibuixa ruta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>EMERGENCY STOP</source>
+            <translation>PARADA D'EMERGÈNCIA</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Every robot gives up its task, at once and without a question</source>
+            <translation>Tots els robots abandonen la tasca, de seguida i sense preguntar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Every robot stops now, and none can be sent anywhere until a supervisor clears it ({emergency_keys})</source>
+            <translation>Tots els robots s'aturen ara, i cap no es pot enviar enlloc fins que un supervisor ho aixequi ({emergency_keys})</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Every selected robot gives up its task at once</source>
+            <translation>Cada robot seleccionat abandona la tasca de seguida</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Fleet panel</source>
+            <translation>Tauler de la flota</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Follow</source>
+            <translation>Segueix</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Keep all in view</source>
+            <translation>Tots a la vista</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Keep every robot in view</source>
+            <translation>Mantén a la vista tots els robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Keep the selected robots in view</source>
+            <translation>Mantén a la vista els robots seleccionats</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Let a draft be sent in spite of what the checks found; asks why</source>
+            <translation>Permet enviar un esborrany malgrat el que han trobat les comprovacions; demana per què</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Let robots be sent again; takes a supervisor, and asks first</source>
+            <translation>Permet tornar a enviar robots; cal un supervisor, i abans pregunta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Let the route begin at its end (R over the map)</source>
+            <translation>Fes que la ruta comenci pel final (R sobre el mapa)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Make the change again that was taken back (Ctrl+Shift+Z over the map)</source>
+            <translation>Torna a fer el canvi desfet (Ctrl+Maj+Z sobre el mapa)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Make the draft of what is selected in the active layer: a point, a line, or many points</source>
+            <translation>Fes l'esborrany amb el que hi ha seleccionat a la capa activa: un punt, una línia o molts punts</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Override …</source>
+            <translation>Imposa …</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Put what is drawn at the end of its robot's queue, instead of sending it</source>
+            <translation>Posa el dibuixat al final de la cua del seu robot, en lloc d'enviar-ho</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Redo</source>
+            <translation>Refés</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Route along the roads for the selected robot: the way to the mouse is shown, a click takes it; Backspace takes the last leg back, Enter or Send sends, Esc cancels</source>
+            <translation>Ruta per vies per al robot seleccionat: es mostra el recorregut fins al ratolí, un clic l'agafa; Retrocés treu l'últim tram, Retorn o Envia l'envia, Esc cancel·la</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Route on roads</source>
+            <translation>Ruta per vies</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Select robot</source>
+            <translation>Selecciona robot</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Select robots on the map: click one or drag a rectangle, with Shift to add, with Ctrl to take away; double click goes there</source>
+            <translation>Selecciona robots al mapa: feu clic en un o arrossegueu un rectangle, amb Maj per afegir, amb Ctrl per treure; el doble clic hi va</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Send</source>
+            <translation>Envia</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Send map</source>
+            <translation>Envia mapa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Send the selected robots the map of the whole site now</source>
+            <translation>Envia ara als robots seleccionats el mapa de tot el recinte</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Send what is drawn on the map to its robot</source>
+            <translation>Envia al seu robot el que hi ha dibuixat al mapa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Set a cone target for the selected robot: click, then Enter or Send; Esc cancels</source>
+            <translation>Posa un objectiu de con per al robot seleccionat: clic, i després Retorn o Envia; Esc cancel·la</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Show or hide the fleet panel</source>
+            <translation>Mostra o amaga el tauler de la flota</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Start position</source>
+            <translation>Posició inicial</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Take from layer</source>
+            <translation>De la capa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Take the last change of the draft back (Ctrl+Z over the map)</source>
+            <translation>Desfés l'últim canvi de l'esborrany (Ctrl+Z sobre el mapa)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Take what is drawn off the map; nothing is sent</source>
+            <translation>Treu del mapa el dibuixat; no s'envia res</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Tell the selected robot where it stands: click, or drag to where it points; then Enter or Send</source>
+            <translation>Digueu al robot seleccionat on és: clic, o arrossegueu cap on mira; després Retorn o Envia</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Turn route round</source>
+            <translation>Gira la ruta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Type or paste coordinates in any CRS in place of a click</source>
+            <translation>Escriviu o enganxeu coordenades en qualsevol SRC en lloc d'un clic</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Undo</source>
+            <translation>Desfés</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/desk/alarms/alarm_bar.py" />
+            <source>%n alarms</source>
+            <translation>
+                <numerusform>%n alarma</numerusform>
+                <numerusform>%n alarmes</numerusform>
+            </translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_bar.py" />
+            <source>; and {number} more</source>
+            <translation>; i {number} més</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_bar.py" />
+            <source>Acknowledge all</source>
+            <translation>Reconeix-les totes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_bar.py" />
+            <source>Show</source>
+            <translation>Mostra</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_model.py" />
+            <source>Alarm</source>
+            <translation>Alarma</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_model.py" />
+            <source>Since</source>
+            <translation>Des de</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_model.py" />
+            <source>State</source>
+            <translation>Estat</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_model.py" />
+            <source>acknowledged {time} by {operator}</source>
+            <translation>reconeguda a les {time} per {operator}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_model.py" />
+            <source>it began {times} times</source>
+            <translation>ha començat {times} vegades</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_model.py" />
+            <source>over since {time}, not acknowledged yet</source>
+            <translation>acabada des de les {time}, encara sense reconèixer</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_model.py" />
+            <source>since {time}</source>
+            <translation>des de les {time}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_panel.py" />
+            <source>&amp;Acknowledge</source>
+            <translation>&amp;Reconeix</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_panel.py" />
+            <source>&amp;Log…</source>
+            <translation>Re&amp;gistre…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_panel.py" />
+            <source>&amp;Settings…</source>
+            <translation>&amp;Configuració…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_panel.py" />
+            <source>Acknowledge a&amp;ll</source>
+            <translation>Reconeix-les &amp;totes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_panel.py" />
+            <source>Every alarm of this session, and who acknowledged it when</source>
+            <translation>Totes les alarmes de la sessió, i qui les va reconèixer i quan</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_panel.py" />
+            <source>Say that you have seen every alarm</source>
+            <translation>Digueu que heu vist totes les alarmes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_panel.py" />
+            <source>Say that you have seen the chosen alarms</source>
+            <translation>Digueu que heu vist les alarmes triades</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_panel.py" />
+            <source>What is an alarm, and from where on</source>
+            <translation>Què és una alarma, i a partir d'on</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_panel.py" />
+            <source>over</source>
+            <translation>acabada</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/log_dialog.py" />
+            <source>By</source>
+            <translation>Qui</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/log_dialog.py" />
+            <source>CSV (*.csv)</source>
+            <translation>CSV (*.csv)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/log_dialog.py" />
+            <source>Export CSV…</source>
+            <translation>Exporta CSV…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/log_dialog.py" />
+            <source>Export the log of alarms</source>
+            <translation>Exporta el registre d'alarmes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/log_dialog.py" />
+            <source>Kind</source>
+            <translation>Tipus</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/log_dialog.py" />
+            <source>Log of alarms</source>
+            <translation>Registre d'alarmes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/log_dialog.py" />
+            <source>Robot</source>
+            <translation>Robot</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/log_dialog.py" />
+            <source>Time</source>
+            <translation>Hora</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/log_dialog.py" />
+            <source>What</source>
+            <translation>Què</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/log_dialog.py" />
+            <source>{count} lines written to {path}</source>
+            <translation>{count} línies escrites a {path}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/road_ground.py" />
+            <source>layers of road surfaces cannot be read: {why}</source>
+            <translation>les capes de superfícies de via no es poden llegir: {why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/road_ground.py" />
+            <source>layers of road surfaces hold no areas ({names})</source>
+            <translation>les capes de superfícies de via no tenen àrees ({names})</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/road_ground.py" />
+            <source>no layer of the project has the role road surface</source>
+            <translation>cap capa del projecte té el paper superfície de via</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/road_ground.py" />
+            <source>reading was cancelled</source>
+            <translation>s'ha cancel·lat la lectura</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/road_ground.py" />
+            <source>the road surfaces are being read</source>
+            <translation>s'estan llegint les superfícies de via</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/thresholds_dialog.py" />
+            <source>Alarm settings</source>
+            <translation>Configuració de les alarmes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/thresholds_form.py" />
+            <source>begins after standing with a task for</source>
+            <translation>comença després d'estar aturat amb una tasca durant</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/thresholds_form.py" />
+            <source>begins below</source>
+            <translation>comença per sota de</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/thresholds_form.py" />
+            <source>begins so far beside the road</source>
+            <translation>comença tant al costat de la via</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/thresholds_form.py" />
+            <source>begins so far outside</source>
+            <translation>comença tant fora</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/thresholds_form.py" />
+            <source>begins when two are nearer than</source>
+            <translation>comença quan dos són més a prop de</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/thresholds_form.py" />
+            <source>ends so much above that</source>
+            <translation>acaba tant per sobre</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/thresholds_form.py" />
+            <source>ends so much further apart</source>
+            <translation>acaba tant més lluny</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/thresholds_form.py" />
+            <source>the site's settings say after how long (see the robots' state)</source>
+            <translation>la configuració del recinte diu al cap de quant (vegeu l'estat dels robots)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/watch.py" />
+            <source>Nothing is watched: the desk is not connected.</source>
+            <translation>No es vigila res: la consola no està connectada.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/watch.py" />
+            <source>Off the road is not watched: {why}.</source>
+            <translation>No es vigila si surten de la via: {why}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/watch.py" />
+            <source>Switched off: {kinds}.</source>
+            <translation>Desactivades: {kinds}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/watch.py" />
+            <source>and {number} more alarms: see the log of alarms in the Fleet panel</source>
+            <translation>i {number} alarmes més: vegeu el registre d'alarmes al tauler de la flota</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/watch.py" />
+            <source>this desk</source>
+            <translation>aquesta consola</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source> at {x:.1f}, {y:.1f} m</source>
+            <translation> a {x:.1f}, {y:.1f} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>; last{where}</source>
+            <translation>; l'últim cop{where}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>acknowledged</source>
+            <translation>reconeguda</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>began</source>
+            <translation>començada</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>ended</source>
+            <translation>acabada</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>lost</source>
+            <translation>perdut</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>low battery</source>
+            <translation>bateria baixa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>new</source>
+            <translation>nova</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>off the road</source>
+            <translation>fora de la via</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>outside the site</source>
+            <translation>fora del recinte</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>seen</source>
+            <translation>vista</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>stopped unasked</source>
+            <translation>aturat sense demanar-ho</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>too close</source>
+            <translation>massa a prop</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>{robot} and {other}</source>
+            <translation>{robot} i {other}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>{robot} and {other} are {apart:.1f} m apart{where}</source>
+            <translation>{robot} i {other} són a {apart:.1f} m l'un de l'altre{where}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>{robot} has a task and stands{where}</source>
+            <translation>{robot} té una tasca i està aturat{where}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>{robot} has {part:.0%} of its battery left</source>
+            <translation>a {robot} li queda el {part:.0%} de la bateria</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>{robot} is lost: nothing is heard of it{last}</source>
+            <translation>{robot} és perdut: no se'n sap res{last}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>{robot} is off the road{where}</source>
+            <translation>{robot} és fora de la via{where}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>{robot} is outside the site{where}</source>
+            <translation>{robot} és fora del recinte{where}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/checks.py" />
+            <source>({points:.2f}, {points2:.2f}) m</source>
+            <translation>({points:.2f}, {points2:.2f}) m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/checks.py" />
+            <source>({x:.2f}, {y:.2f}) m is</source>
+            <translation>({x:.2f}, {y:.2f}) m és</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/checks.py" />
+            <source>The route</source>
+            <translation>La ruta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/checks.py" />
+            <source>{layer} (feature {id})</source>
+            <translation>{layer} (entitat {id})</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/checks.py" />
+            <source>{off} of {points} points are</source>
+            <translation>{off} de {points} punts són</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/checks.py" />
+            <source>{spot} enters the keepout {name}. Choose a place or way outside it.</source>
+            <translation>{spot} entra a la zona prohibida {name}. Trieu un lloc o recorregut fora.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/checks.py" />
+            <source>{where} m is outside the site {name}, which reaches from ({x_min:g}, {y_min:g}) to ({x_max:g}, {y_max:g}) m. Click inside it.</source>
+            <translation>{where} m és fora del recinte {name}, que va de ({x_min:g}, {y_min:g}) a ({x_max:g}, {y_max:g}) m. Feu clic a dins.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/checks.py" />
+            <source>{where} not on a road surface.</source>
+            <translation>{where} fora de les superfícies de via.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/clear_dialog.py" />
+            <source>Clear emergency stop</source>
+            <translation>Aixeca la parada d'emergència</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/clear_dialog.py" />
+            <source>Clear the emergency stop?</source>
+            <translation>Voleu aixecar la parada d'emergència?</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/clear_dialog.py" />
+            <source>Cleared, robots can be sent again. None sets off by itself: what they were doing was aborted.</source>
+            <translation>Aixecada, es poden tornar a enviar robots. Cap arrenca sol: el que feien s'ha avortat.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/clear_dialog.py" />
+            <source>Keep it in force</source>
+            <translation>Mantén-la en vigor</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/clear_dialog.py" />
+            <source>Why robots may drive again, for the log</source>
+            <translation>Per què els robots poden tornar a circular, per al registre</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/closure_dialog.py" />
+            <source>Closed</source>
+            <translation>Tancada</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/closure_dialog.py" />
+            <source>Reason</source>
+            <translation>Motiu</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/closure_dialog.py" />
+            <source>The road is closed for every robot from this junction to the next. Robots whose way leads along it get another way; one that has no other way is stopped, unless the site's settings say otherwise.</source>
+            <translation>La via es tanca a tots els robots des d'aquesta cruïlla fins a la següent. Els que hi havien de passar reben un altre recorregut; el que no en té cap altre s'atura, si la configuració del recinte no diu una altra cosa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/closure_dialog.py" />
+            <source>for 1 day</source>
+            <translation>durant 1 dia</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/closure_dialog.py" />
+            <source>for 1 hour</source>
+            <translation>durant 1 hora</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/closure_dialog.py" />
+            <source>for 15 minutes</source>
+            <translation>durant 15 minuts</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/closure_dialog.py" />
+            <source>for 4 hours</source>
+            <translation>durant 4 hores</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/closure_dialog.py" />
+            <source>such as: tree on the road</source>
+            <translation>com ara: arbre a la via</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/closure_dialog.py" />
+            <source>until it is opened</source>
+            <translation>fins que s'obri</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/closure_tool.py" />
+            <source>Open it again for every robot?</source>
+            <translation>Voleu tornar a obrir-la a tots els robots?</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/closure_tool.py" />
+            <source>Open road</source>
+            <translation>Obre la via</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/closure_tool.py" />
+            <source>{by} closed this road at {time}{because}</source>
+            <translation>{by} va tancar aquesta via a les {time}{because}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_book.py" />
+            <source>abort</source>
+            <translation>avortament</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_book.py" />
+            <source>cone at {x}, {y}</source>
+            <translation>con a {x}, {y}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_book.py" />
+            <source>route of {number} points</source>
+            <translation>ruta de {number} punts</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_book.py" />
+            <source>target at {x}, {y}</source>
+            <translation>objectiu a {x}, {y}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/entries.py" />
+            <source>None open</source>
+            <translation>Cap d'oberta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/entries.py" />
+            <source>by {by}</source>
+            <translation>per {by}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/entries.py" />
+            <source>{metres:.2f} m off</source>
+            <translation>{metres:.2f} m de desviació</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/entries.py" />
+            <source>{number} open: {counts}</source>
+            <translation>{number} obertes: {counts}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/log_model.py" />
+            <source>Command</source>
+            <translation>Ordre</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/log_model.py" />
+            <source>Details</source>
+            <translation>Detalls</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/log_panel.py" />
+            <source>All commands</source>
+            <translation>Totes les ordres</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/log_panel.py" />
+            <source>All robots</source>
+            <translation>Tots els robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/log_panel.py" />
+            <source>Ask the gateway for older commands</source>
+            <translation>Demana a la passarel·la ordres més antigues</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/log_panel.py" />
+            <source>Export commands</source>
+            <translation>Exporta les ordres</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/log_panel.py" />
+            <source>Export…</source>
+            <translation>Exporta…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/log_panel.py" />
+            <source>Failed, aborted, expired</source>
+            <translation>Fallides, avortades, caducades</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/log_panel.py" />
+            <source>Go there</source>
+            <translation>Vés-hi</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/log_panel.py" />
+            <source>Older</source>
+            <translation>Més antigues</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/log_panel.py" />
+            <source>Older commands: {why}</source>
+            <translation>Ordres més antigues: {why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/log_panel.py" />
+            <source>Open</source>
+            <translation>Obertes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/log_panel.py" />
+            <source>Selected robots</source>
+            <translation>Robots seleccionats</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/log_panel.py" />
+            <source>Show where the chosen command leads to (double click)</source>
+            <translation>Mostra on porta l'ordre triada (doble clic)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/log_panel.py" />
+            <source>Which commands are listed</source>
+            <translation>Quines ordres es llisten</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/log_panel.py" />
+            <source>Whose commands are listed</source>
+            <translation>De qui són les ordres llistades</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/log_panel.py" />
+            <source>Write what is listed, every step of it, as CSV</source>
+            <translation>Escriu el que es llista, amb tots els passos, com a CSV</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/log_panel.py" />
+            <source>{commands} commands with {steps} steps written to {path}</source>
+            <translation>{commands} ordres amb {steps} passos escrites a {path}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/log_panel.py" />
+            <source>{what} of {robot} leads to no place.</source>
+            <translation>{what} de {robot} no porta a cap lloc.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/coordinates_dialog.py" />
+            <source>C&amp;RS</source>
+            <translation>S&amp;RC</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/coordinates_dialog.py" />
+            <source>Coordinates</source>
+            <translation>Coordenades</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/coordinates_dialog.py" />
+            <source>Set on the map</source>
+            <translation>Posa al mapa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/coordinates_dialog.py" />
+            <source>Write {order} in {authid}.
+{path}</source>
+            <translation>Escriviu {order} en {authid}.
+{path}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/coordinates_dialog.py" />
+            <source>latitude, longitude</source>
+            <translation>latitud, longitud</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/coordinates_dialog.py" />
+            <source>x, y</source>
+            <translation>x, y</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/coordinates_dialog.py" />
+            <source>{place:.2f}, {place2:.2f} m on the site</source>
+            <translation>{place:.2f}, {place2:.2f} m al recinte</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/coordinates_dialog.py" />
+            <source>{site}; {east:.2f}, {north:.2f} in {authid}.
+{path}</source>
+            <translation>{site}; {east:.2f}, {north:.2f} en {authid}.
+{path}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/draft_commands.py" />
+            <source>Map for {robot}</source>
+            <translation>Mapa per a {robot}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/draft_commands.py" />
+            <source>No robot is selected, so none was sent the map. Select it first.</source>
+            <translation>No hi ha cap robot seleccionat, així que no s'ha enviat el mapa a cap. Seleccioneu-lo abans.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/draft_commands.py" />
+            <source>The draft has changed since it was looked at, so nothing was overridden. Press Override again.</source>
+            <translation>L'esborrany ha canviat des que es va mirar, així que no s'ha imposat res. Torneu a prémer Imposa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/draft_commands.py" />
+            <source>The gateway has not answered yet what was asked of the queue of {robot} before. Try again in a moment.</source>
+            <translation>La passarel·la encara no ha respost el que es va demanar abans de la cua de {robot}. Torneu-ho a provar d'aquí un moment.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/draft_commands.py" />
+            <source>There is no draft on the map. Select a robot, then set a cone target or draw a route.</source>
+            <translation>No hi ha cap esborrany al mapa. Seleccioneu un robot, i poseu un objectiu de con o dibuixeu una ruta.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/draft_commands.py" />
+            <source>{in_words} is still on the map. Send it (Enter) or cancel it (Esc) first.</source>
+            <translation>{in_words} encara és al mapa. Envieu-ho (Retorn) o cancel·leu-ho (Esc) abans.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/draft_commands.py" />
+            <source>{in_words} was not put into the queue: {fault}</source>
+            <translation>{in_words} no s'ha posat a la cua: {fault}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/draft_commands.py" />
+            <source>{in_words}, into the queue</source>
+            <translation>{in_words}, a la cua</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/draft_commands.py" />
+            <source>{in_words}: there is nothing here that an override would help.</source>
+            <translation>{in_words}: aquí no hi ha res en què ajudi imposar-se.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/layer_drafts.py" />
+            <source>A coordinate of what is selected is no number. Correct it, or leave it out.</source>
+            <translation>Una coordenada del seleccionat no és un nombre. Corregiu-la o ometeu-la.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/layer_drafts.py" />
+            <source>A route is one line, and {features} of the layer {layer} are meant: select one.</source>
+            <translation>Una ruta és una línia, i n'hi ha {features} de la capa {layer}: seleccioneu-ne una.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/layer_drafts.py" />
+            <source>Feature {id} of {layer} has no place in the site's CRS ({error}). Leave it out, or correct the layer's CRS.</source>
+            <translation>L'entitat {id} de {layer} no té lloc al SRC del recinte ({error}). Ometeu-la, o corregiu el SRC de la capa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/layer_drafts.py" />
+            <source>No layer of points or lines is active. Click one in the Layers panel, then try again.</source>
+            <translation>No hi ha cap capa de punts o línies activa. Feu clic en una al tauler Capes i torneu-ho a provar.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/layer_drafts.py" />
+            <source>No robot is selected. Select the one that the draft is for, then try again.</source>
+            <translation>No hi ha cap robot seleccionat. Seleccioneu aquell per a qui és l'esborrany i torneu-ho a provar.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/layer_drafts.py" />
+            <source>The layer {layer} has no CRS, so nobody knows where its points are. Set it in the layer's properties.</source>
+            <translation>La capa {layer} no té SRC, així que ningú sap on són els seus punts. Definiu-lo a les propietats de la capa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/layer_drafts.py" />
+            <source>The layer {layer} has no feature with a place to go to.</source>
+            <translation>La capa {layer} no té cap entitat amb un lloc on anar.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/layer_drafts.py" />
+            <source>The layer {layer} has {featurecount} features and a queue takes {longest_queue}: select those that are meant.</source>
+            <translation>La capa {layer} té {featurecount} entitats i una cua n'admet {longest_queue}: seleccioneu les que voleu.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/layer_drafts.py" />
+            <source>The layer {layer} has {places} points selected and a queue takes {longest_queue}: select fewer.</source>
+            <translation>La capa {layer} té {places} punts seleccionats i una cua n'admet {longest_queue}: seleccioneu-ne menys.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/layer_drafts.py" />
+            <source>The layer {layer} holds polygons: take a layer of points (targets) or lines (a route).</source>
+            <translation>La capa {layer} conté polígons: agafeu una capa de punts (objectius) o línies (una ruta).</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/layer_drafts.py" />
+            <source>The line has {places} vertices; a route takes 2 to {longest_path}: simplify it first.</source>
+            <translation>La línia té {places} vèrtexs; una ruta n'admet de 2 a {longest_path}: simplifiqueu-la abans.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/layer_drafts.py" />
+            <source>The line that is selected in {layer} has {partcount} parts, and a robot cannot leap from one to the next: make it one line.</source>
+            <translation>La línia seleccionada a {layer} té {partcount} parts, i un robot no pot saltar d'una a l'altra: feu-ne una sola línia.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/override_dialog.py" />
+            <source>Override</source>
+            <translation>Imposa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/override_dialog.py" />
+            <source>Override the checks</source>
+            <translation>Imposa's a les comprovacions</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/override_dialog.py" />
+            <source>Why it is right all the same</source>
+            <translation>Per què és correcte tanmateix</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/override_dialog.py" />
+            <source>Your name, what was found and why go into the gateway's log. Nothing is sent yet.</source>
+            <translation>El vostre nom, el que s'ha trobat i el perquè van al registre de la passarel·la. Encara no s'envia res.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/override_dialog.py" />
+            <source>because: {strip}</source>
+            <translation>perquè: {strip}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/cone_store.py" />
+            <source>Cones</source>
+            <translation>Cons</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/cone_store.py" />
+            <source>The layer {layer} takes no cones: make it writable, or remove it.</source>
+            <translation>La capa {layer} no admet cons: feu-la editable, o traieu-la.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/cone_store.py" />
+            <source>The project has no CRS: choose one in metres, at the bottom right in QGIS.</source>
+            <translation>El projecte no té SRC: trieu-ne un en metres, a baix a la dreta de QGIS.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/conflict_panel.py" />
+            <source>and {more} more: see the layer Conflicts</source>
+            <translation>i {more} més: vegeu la capa Conflictes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/conflict_panel.py" />
+            <source>at {x:.0f}, {y:.0f} m</source>
+            <translation>a {x:.0f}, {y:.0f} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/conflict_panel.py" />
+            <source>{robot} gives way</source>
+            <translation>{robot} cedeix el pas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/conflict_panel.py" />
+            <source>{robot} waits for {other} or takes another way, whichever gets it there sooner</source>
+            <translation>{robot} espera {other} o agafa un altre recorregut, el que hi arribi abans</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/conflict_panel.py" />
+            <source>{robot} waits for {other}, until {time_of_day} at the earliest</source>
+            <translation>{robot} espera {other}, com a mínim fins a les {time_of_day}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/connection_menu.py" />
+            <source>&amp;Keep under a name…</source>
+            <translation>&amp;Desa amb un nom…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/connection_menu.py" />
+            <source>&amp;Manage connections…</source>
+            <translation>&amp;Gestiona les connexions…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/connection_menu.py" />
+            <source>Connection: {name}</source>
+            <translation>Connexió: {name}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/connection_menu.py" />
+            <source>Connections that are kept under a name</source>
+            <translation>Connexions que es guarden amb un nom</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/connection_panel.py" />
+            <source>Connected</source>
+            <translation>Connectat</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/connection_panel.py" />
+            <source>Connecting</source>
+            <translation>Connectant</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/connection_panel.py" />
+            <source>Failed</source>
+            <translation>Fallit</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/connection_panel.py" />
+            <source>Not connected</source>
+            <translation>No connectat</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/connection_panel.py" />
+            <source>Retrying</source>
+            <translation>Tornant-ho a provar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/connection_panel.py" />
+            <source>Retrying in {wait:.0f} s</source>
+            <translation>Es torna a provar d'aquí {wait:.0f} s</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/connection_panel.py" />
+            <source>Token and CA file, for a gateway with accounts and TLS</source>
+            <translation>Testimoni i fitxer de CA, per a una passarel·la amb comptes i TLS</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/connection_panel.py" />
+            <source>Who you are: it stands beside every command in every log</source>
+            <translation>Qui sou: és al costat de cada ordre a tots els registres</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/csv_files.py" />
+            <source>{file} was not written ({why}). Choose another folder, or close the file where it is open.</source>
+            <translation>{file} no s'ha escrit ({why}). Trieu una altra carpeta, o tanqueu el fitxer on sigui obert.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/desk.py" />
+            <source>EMERGENCY STOP is NOT sent yet: the link is down. It is sent as soon as that is back; use the robots' own emergency stops now.</source>
+            <translation>La PARADA D'EMERGÈNCIA encara NO s'ha enviat: l'enllaç està tallat. S'envia quan torni; feu servir ara les parades d'emergència dels mateixos robots.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/desk.py" />
+            <source>No robot is selected, so none was aborted. Select it in the table or on the map.</source>
+            <translation>No hi ha cap robot seleccionat, així que no se n'ha avortat cap. Seleccioneu-lo a la taula o al mapa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/desk.py" />
+            <source>The operator's name is empty. Write who you are: it stands in every log.</source>
+            <translation>El nom de l'operador és buit. Escriviu qui sou: és a tots els registres.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/desk.py" />
+            <source>The site is not known yet. Connect to a gateway first.</source>
+            <translation>El recinte encara no es coneix. Connecteu abans a una passarel·la.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/desk.py" />
+            <source>There is nothing to send. Select a robot, then set a cone target or draw a route on the map.</source>
+            <translation>No hi ha res a enviar. Seleccioneu un robot, i poseu un objectiu de con o dibuixeu una ruta al mapa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/desk.py" />
+            <source>the desk is not connected to a gateway. Connect first; to stop a robot now use the robot's own emergency stop.</source>
+            <translation>la consola no està connectada a cap passarel·la. Connecteu abans; per aturar ara un robot feu servir la seva parada d'emergència.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/desk.py" />
+            <source>{in_words} was not sent: {error}</source>
+            <translation>{in_words} no s'ha enviat: {error}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/dock.py" />
+            <source>Commands</source>
+            <translation>Ordres</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/dock.py" />
+            <source>Queue</source>
+            <translation>Cua</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/draft_panel.py" />
+            <source> Override… sends it all the same, where your role may.</source>
+            <translation> Imposa… ho envia igualment, on el vostre paper ho permeti.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/draft_panel.py" />
+            <source>Select a robot, choose Cone target or Draw route, and click on the map.</source>
+            <translation>Seleccioneu un robot, trieu Objectiu de con o Dibuixa ruta, i feu clic al mapa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/draft_panel.py" />
+            <source>{in_words}. Not to be sent: {found}{hint}</source>
+            <translation>{in_words}. No es pot enviar: {found}{hint}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/draft_panel.py" />
+            <source>{in_words}. OVERRIDDEN: {override}. Enter or Send sends it.</source>
+            <translation>{in_words}. IMPOSAT: {override}. Retorn o Envia ho envia.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/draft_panel.py" />
+            <source>{in_words}.{warnings} Add to queue lets them be placed one after the other.</source>
+            <translation>{in_words}.{warnings} Afegeix a la cua fa que es col·loquin un rere l'altre.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/draft_panel.py" />
+            <source>{in_words}.{warnings} Enter or Send sends it.</source>
+            <translation>{in_words}.{warnings} Retorn o Envia ho envia.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/draft_tool.py" />
+            <source>No robot is selected, so there is nobody to send there. Select one in the table or on the map.</source>
+            <translation>No hi ha cap robot seleccionat, així que no hi ha qui enviar-hi. Seleccioneu-ne un a la taula o al mapa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/draft_tool.py" />
+            <source>Select a robot first, in the table or on the map.</source>
+            <translation>Seleccioneu abans un robot, a la taula o al mapa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/draft_tool.py" />
+            <source>There is nothing to do again.</source>
+            <translation>No hi ha res a refer.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/draft_tool.py" />
+            <source>There is nothing to take back.</source>
+            <translation>No hi ha res a desfer.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/datum_path.py" />
+            <source>A way accurate to {accuracy:g} m needs the grid {grids}, which is not installed.</source>
+            <translation>Una via amb exactitud de {accuracy:g} m necessita la malla {grids}, que no està instal·lada.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/datum_path.py" />
+            <source>By {name} ({exact}).{value}</source>
+            <translation>Per {name} ({exact}).{value}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/datum_path.py" />
+            <source>PROJ knows no exact way between these two: the place may be off by metres.</source>
+            <translation>PROJ no coneix cap via exacta entre aquests dos: el lloc pot fallar per metres.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/datum_path.py" />
+            <source>accuracy not known</source>
+            <translation>exactitud desconeguda</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/datum_path.py" />
+            <source>accurate to {accuracy:g} m</source>
+            <translation>exactitud de {accuracy:g} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/datum_path.py" />
+            <source>no change: it is the site's CRS</source>
+            <translation>cap canvi: és el SRC del recinte</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/datum_path.py" />
+            <source>the default operation of PROJ</source>
+            <translation>l'operació per defecte de PROJ</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/obstacle_check.py" />
+            <source>({point:.2f}, {point2:.2f}) m</source>
+            <translation>({point:.2f}, {point2:.2f}) m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/obstacle_check.py" />
+            <source>The layer {layer} cannot be placed on the site ({error}), so obstacles in it are not seen. Correct its CRS, or take its role away.</source>
+            <translation>La capa {layer} no es pot situar al recinte ({error}), així que els seus obstacles no es veuen. Corregiu-ne el SRC, o traieu-li el paper.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/obstacle_check.py" />
+            <source>The way to {to}</source>
+            <translation>El camí fins a {to}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/obstacle_check.py" />
+            <source>is on</source>
+            <translation>és sobre</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/obstacle_check.py" />
+            <source>is {away:.2f} m from</source>
+            <translation>és a {away:.2f} m de</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/obstacle_check.py" />
+            <source>{spot} {where} {name}. Choose a place or way beside it.</source>
+            <translation>{spot} {where} {name}. Trieu un lloc o recorregut al costat.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/place_text.py" />
+            <source>latitude, longitude, as in 48.2083, 16.3725</source>
+            <translation>latitud, longitud, com ara 48.2083, 16.3725</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/place_text.py" />
+            <source>x, y, as in 488070.50, 5190055.20</source>
+            <translation>x, y, com ara 488070.50, 5190055.20</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/place_text.py" />
+            <source>{shown!r} is no place: write {right}.</source>
+            <translation>{shown!r} no és cap lloc: escriviu {right}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/place_text.py" />
+            <source>{strip!r}: latitude {lat:g} and longitude {lon:g} are not on the earth; write latitude first, or choose the CRS that the numbers are in.</source>
+            <translation>{strip!r}: la latitud {lat:g} i la longitud {lon:g} no són a la Terra; escriviu abans la latitud, o trieu el SRC en què són els nombres.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/route_editing.py" />
+            <source>A part of this route follows the roads, and the way back may be another: it is not turned round. Draw it from the other end with Route on roads.</source>
+            <translation>Una part d'aquesta ruta segueix les vies, i la tornada pot ser una altra: no es gira. Dibuixeu-la des de l'altre extrem amb Ruta per vies.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/route_editing.py" />
+            <source>This part of the route follows the roads and is not changed by hand. Take it back with Backspace, or draw this part with Draw route.</source>
+            <translation>Aquesta part de la ruta segueix les vies i no es canvia a mà. Traieu-la amb Retrocés, o dibuixeu aquesta part amb Dibuixa ruta.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/target_check.py" />
+            <source>({x:.2f}, {y:.2f}) m is {away:.2f} m from {what} of {robot} at {other_x:.2f}, {other_y:.2f}: keep {clear_m:g} m between targets.</source>
+            <translation>({x:.2f}, {y:.2f}) m és a {away:.2f} m de {what} de {robot} a {other_x:.2f}, {other_y:.2f}: deixeu {clear_m:g} m entre objectius.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/target_check.py" />
+            <source>a task</source>
+            <translation>una tasca</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/target_check.py" />
+            <source>the end of the route</source>
+            <translation>el final de la ruta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/target_check.py" />
+            <source>the target</source>
+            <translation>l'objectiu</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/tasks.py" />
+            <source>A start position is no task: Send tells the robot at once.</source>
+            <translation>Una posició inicial no és cap tasca: Envia ho diu al robot de seguida.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafts.py" />
+            <source>, theta {degrees:.0f}°</source>
+            <translation>, theta {degrees:.0f}°</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafts.py" />
+            <source>; along the roads {note}</source>
+            <translation>; per les vies {note}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafts.py" />
+            <source>And {more} more.</source>
+            <translation>I {more} més.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafts.py" />
+            <source>Cone for {robot} at {place}</source>
+            <translation>Con per a {robot} a {place}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafts.py" />
+            <source>Route for {robot}: {points} points, {length:.1f} m{told}</source>
+            <translation>Ruta per a {robot}: {points} punts, {length:.1f} m{told}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafts.py" />
+            <source>Start position of {robot} at {place}{turned}</source>
+            <translation>Posició inicial de {robot} a {place}{turned}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafts.py" />
+            <source>a route needs at least two points: click the next one</source>
+            <translation>una ruta necessita almenys dos punts: feu clic al següent</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafts.py" />
+            <source>{point:.2f}, {point2:.2f} m</source>
+            <translation>{point:.2f}, {point2:.2f} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafts.py" />
+            <source>{points} cones for {robot}</source>
+            <translation>{points} cons per a {robot}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/emergency_banner.py" />
+            <source> and {more} more</source>
+            <translation> i {more} més</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/emergency_banner.py" />
+            <source> since {time}</source>
+            <translation> des de les {time}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/emergency_banner.py" />
+            <source>EMERGENCY STOP asked for. The gateway has not confirmed it yet: watch the robots, and use their own emergency stops.</source>
+            <translation>PARADA D'EMERGÈNCIA demanada. La passarel·la encara no l'ha confirmada: vigileu els robots i feu servir les seves parades d'emergència.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/emergency_banner.py" />
+            <source>EMERGENCY STOP in force{since}, by {by}{reason}</source>
+            <translation>PARADA D'EMERGÈNCIA en vigor{since}, per {by}{reason}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/emergency_banner.py" />
+            <source>No answer from {names}</source>
+            <translation>Sense resposta de {names}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/emergency_banner.py" />
+            <source>Not stored yet: the gateway cannot write its database, so robots on SQL are not told.</source>
+            <translation>Encara no s'ha desat: la passarel·la no pot escriure la base de dades, així que els robots per SQL no se n'assabenten.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/emergency_banner.py" />
+            <source>REFUSED by {names}</source>
+            <translation>REBUTJADA per {names}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/emergency_banner.py" />
+            <source>The link to the gateway is down: this is what it said last.</source>
+            <translation>L'enllaç amb la passarel·la està tallat: això és l'últim que va dir.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/emergency_banner.py" />
+            <source>{acknowledged} of {robots} robots acknowledged, {standing} seen to stand</source>
+            <translation>{acknowledged} de {robots} robots ho han confirmat, {standing} es veuen aturats</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/layout_action.py" />
+            <source>Cone layout</source>
+            <translation>Disposició de cons</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/layout_action.py" />
+            <source>Place a cone layout: it is shown under the cursor, the wheel turns it (Shift: finely), a click places it, Esc ends; nothing is sent to robots</source>
+            <translation>Col·loca una disposició de cons: es mostra sota el cursor, la roda la gira (Maj: fi), un clic la col·loca, Esc acaba; no s'envia res als robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/layout_action.py" />
+            <source>Place cone layout</source>
+            <translation>Col·loca una disposició de cons</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/layout_tool.py" />
+            <source>{cones} cones are in the layer {layer}.</source>
+            <translation>{cones} cons són a la capa {layer}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/layout_tool.py" />
+            <source>{wrong} of {cones} cones should not stand there: {text} All are in the layer {layer}.</source>
+            <translation>{wrong} de {cones} cons no haurien de ser allà: {text} Tots són a la capa {layer}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/hover_card.py" />
+            <source>, {remaining:.1f} m to go</source>
+            <translation>, falten {remaining:.1f} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/hover_card.py" />
+            <source>it says</source>
+            <translation>diu</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/hover_card.py" />
+            <source>last message</source>
+            <translation>últim missatge</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/hover_card.py" />
+            <source>{age_in_words} ago, {escape}</source>
+            <translation>fa {age_in_words}, {escape}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/hover_card.py" />
+            <source>{v:.2f} m/s</source>
+            <translation>{v:.2f} m/s</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/hover_card.py" />
+            <source>{x:.2f}, {y:.2f} m in the site</source>
+            <translation>{x:.2f}, {y:.2f} m al recinte</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/hover_card.py" />
+            <source>± {accuracy:.2f} m</source>
+            <translation>± {accuracy:.2f} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/labels.py" />
+            <source>{days:.0f} d</source>
+            <translation>{days:.0f} d</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/labels.py" />
+            <source>{hours:.0f} h</source>
+            <translation>{hours:.0f} h</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/labels.py" />
+            <source>{minutes:.0f} min</source>
+            <translation>{minutes:.0f} min</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/labels.py" />
+            <source>{seconds:.0f} s</source>
+            <translation>{seconds:.0f} s</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/names_painting.py" />
+            <source>· offline</source>
+            <translation>· fora de línia</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/plans_painting.py" />
+            <source>{km:.0f} km</source>
+            <translation>{km:.0f} km</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/plans_painting.py" />
+            <source>{metres:.0f} m</source>
+            <translation>{metres:.0f} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/robot_features.py" />
+            <source>Robots (live)</source>
+            <translation>Robots (en directe)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/placement.py" />
+            <source>A position in {crs} has no place in {target} ({error}). Choose the site's CRS as the project's CRS (bottom right in the QGIS window).</source>
+            <translation>Una posició en {crs} no té lloc a {target} ({error}). Trieu el SRC del recinte com a SRC del projecte (a baix a la dreta de la finestra de QGIS).</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/placement.py" />
+            <source>The site {name} is in the CRS {crs}, which this QGIS does not know: its robots cannot be placed on the map. Correct crs in the site's site.toml, or update QGIS.</source>
+            <translation>El recinte {name} és en el SRC {crs}, que aquest QGIS no coneix: els seus robots no es poden situar al mapa. Corregiu crs al site.toml del recinte, o actualitzeu QGIS.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/placement.py" />
+            <source>not a finite place</source>
+            <translation>no és un lloc finit</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed.py" />
+            <source> of {expected}</source>
+            <translation> de {expected}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed.py" />
+            <source>, {collected} collected again</source>
+            <translation>, {collected} recollits de nou</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed.py" />
+            <source>No cone was put down yet.</source>
+            <translation>Encara no s'ha deixat cap con.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed.py" />
+            <source>off by {mean:.3f} m on average, at most {largest:.3f} m</source>
+            <translation>desviació mitjana de {mean:.3f} m, com a màxim {largest:.3f} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed.py" />
+            <source>{cones}{of} cones placed{gone}; {off}</source>
+            <translation>{cones}{of} cons col·locats{gone}; {off}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed_page.py" />
+            <source>As-placed report</source>
+            <translation>Informe de col·locació</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed_page.py" />
+            <source>Collected</source>
+            <translation>Recollit</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed_page.py" />
+            <source>Cone</source>
+            <translation>Con</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed_page.py" />
+            <source>Off [m]</source>
+            <translation>Desviació [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed_page.py" />
+            <source>Placed</source>
+            <translation>Col·locat</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed_page.py" />
+            <source>Plan collecting</source>
+            <translation>Planifica la recollida</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed_page.py" />
+            <source>Planned x, y</source>
+            <translation>x, y previstes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed_page.py" />
+            <source>Refresh</source>
+            <translation>Actualitza</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed_page.py" />
+            <source>Save as CSV…</source>
+            <translation>Desa com a CSV…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed_page.py" />
+            <source>Stands at x, y</source>
+            <translation>És a x, y</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed_page.py" />
+            <source>The report could not be written as {path}: {error}. Choose another place.</source>
+            <translation>L'informe no s'ha pogut escriure a {path}: {error}. Trieu un altre lloc.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed_page.py" />
+            <source>layout {name}</source>
+            <translation>disposició {name}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed_page.py" />
+            <source>the plan that is driven</source>
+            <translation>el pla que s'executa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/collecting.py" />
+            <source>; {queued} are in queues already</source>
+            <translation>; {queued} ja són en cues</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/collecting.py" />
+            <source>Collecting cannot be planned: {error}</source>
+            <translation>No es pot planificar la recollida: {error}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/collecting.py" />
+            <source>No cone stands {what} that could be collected{also}.</source>
+            <translation>No hi ha cap con {what} que es pugui recollir{also}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/collecting.py" />
+            <source>What is to be collected</source>
+            <translation>Què cal recollir</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/collecting.py" />
+            <source>of layout {layout}</source>
+            <translation>de la disposició {layout}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/cone_source.py" />
+            <source>Choose another, or none.</source>
+            <translation>Trieu-ne una altra, o cap.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/cone_source.py" />
+            <source>Choose one, or place a cone layout first.</source>
+            <translation>Trieu-ne una, o col·loqueu abans una disposició de cons.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/cone_source.py" />
+            <source>No layer of {what} is chosen. {help_text}</source>
+            <translation>No s'ha triat cap capa de {what}. {help_text}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/cone_source.py" />
+            <source>The layer {layer} has {which}: there is nothing to be placed.</source>
+            <translation>La capa {layer} té {which}: no hi ha res a col·locar.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/cone_source.py" />
+            <source>no features</source>
+            <translation>cap entitat</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/cone_source.py" />
+            <source>no selected features</source>
+            <translation>cap entitat seleccionada</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/cone_source.py" />
+            <source>{layer}, feature {id}</source>
+            <translation>{layer}, entitat {id}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/cone_source.py" />
+            <source>{where} is not one point with a place on the site: correct or delete it.</source>
+            <translation>{where} no és un sol punt amb lloc al recinte: corregiu-lo o esborreu-lo.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/cone_source.py" />
+            <source>{where}: {field} is {value!r}, which is no number; correct it.</source>
+            <translation>{where}: {field} és {value!r}, que no és un nombre; corregiu-lo.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/draft_plan.py" />
+            <source>A plan is being made. Wait for it, or press Cancel.</source>
+            <translation>S'està fent un pla. Espereu-lo, o premeu Cancel·la.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/draft_plan.py" />
+            <source>Change of the cone plan</source>
+            <translation>Canvi del pla de cons</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/draft_plan.py" />
+            <source>Cone plan</source>
+            <translation>Pla de cons</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/draft_plan.py" />
+            <source>No robot that is there is chosen: tick robots in the table, or connect some.</source>
+            <translation>No s'ha triat cap robot present: marqueu robots a la taula, o connecteu-ne.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/draft_plan.py" />
+            <source>Preview of the cone plan</source>
+            <translation>Vista prèvia del pla de cons</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driven_plan.py" />
+            <source>A new plan is sent by itself, as you switched on: {why}</source>
+            <translation>S'envia sol un pla nou, com vau activar: {why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driven_plan.py" />
+            <source>An emergency stop is in force. It has to be cleared first.</source>
+            <translation>Hi ha una parada d'emergència en vigor. Abans s'ha d'aixecar.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driven_plan.py" />
+            <source>Cone {cones} was given up since this plan was made: plan what is left again.</source>
+            <translation>S'ha renunciat al con {cones} des que es va fer aquest pla: torneu a planificar el que queda.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driven_plan.py" />
+            <source>No plan is being driven, or something is still being sent.</source>
+            <translation>No s'executa cap pla, o encara s'està enviant alguna cosa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driven_plan.py" />
+            <source>No robot is left to take over: connect one, and plan anew.</source>
+            <translation>No queda cap robot que se'n faci càrrec: connecteu-ne un i torneu a planificar.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driven_plan.py" />
+            <source>Placed cones of the plan</source>
+            <translation>Cons col·locats del pla</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driven_plan.py" />
+            <source>Plan of what is left</source>
+            <translation>Pla del que queda</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driven_plan.py" />
+            <source>The cone plan cannot go on as it is: {why}. Plan what is left.</source>
+            <translation>El pla de cons no pot seguir com és: {why}. Planifiqueu el que queda.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driven_plan.py" />
+            <source>The cone plan is in the robots' queues.</source>
+            <translation>El pla de cons és a les cues dels robots.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driven_plan.py" />
+            <source>The cone plan was not sent as a whole. {why}</source>
+            <translation>El pla de cons no s'ha enviat sencer. {why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driven_plan.py" />
+            <source>The plan cannot be sent: {error}</source>
+            <translation>El pla no es pot enviar: {error}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driven_plan.py" />
+            <source>There is no new plan to confirm.</source>
+            <translation>No hi ha cap pla nou a confirmar.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driven_plan.py" />
+            <source>There is no plan to send. Make one with Preview or Solve first.</source>
+            <translation>No hi ha cap pla a enviar. Feu-ne un abans amb Vista prèvia o Resol.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driven_plan.py" />
+            <source>its robot is lost</source>
+            <translation>el seu robot s'ha perdut</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driven_plan.py" />
+            <source>plan of what is left</source>
+            <translation>pla del que queda</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driven_plan.py" />
+            <source>plan of what is left: {in_words}</source>
+            <translation>pla del que queda: {in_words}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>Being sent …</source>
+            <translation>S'està enviant …</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>Clear</source>
+            <translation>Neteja</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>Confirm new plan</source>
+            <translation>Confirma el pla nou</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>Done: {done} of {all_of_them} cones</source>
+            <translation>Fet: {done} de {all_of_them} cons</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>Go on as before</source>
+            <translation>Segueix com abans</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>Hold the robots once they have finished what they are doing, and plan what is left; nothing else is sent before you confirm</source>
+            <translation>Reté els robots quan acaben el que fan, i planifica el que queda; no s'envia res més fins que ho confirmeu</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>New plan, not sent yet: {summary}</source>
+            <translation>Pla nou, encara no enviat: {summary}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>No plan. Choose cones and robots, then Preview or Solve.</source>
+            <translation>Cap pla. Trieu cons i robots, i després Vista prèvia o Resol.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>Not sent yet: {summary}</source>
+            <translation>Encara no enviat: {summary}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>Plan what is left</source>
+            <translation>Planifica el que queda</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>Send new plans without asking</source>
+            <translation>Envia plans nous sense preguntar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>Send…</source>
+            <translation>Envia…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>Under way: {done} of {all_of_them} cones</source>
+            <translation>En curs: {done} de {all_of_them} cons</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>When a robot is lost or a cone fails, plan what is left and send it by itself</source>
+            <translation>Quan es perd un robot o falla un con, planifica el que queda i ho envia sol</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>and {more} more</source>
+            <translation>i {more} més</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>try failed cones again</source>
+            <translation>torna a provar els cons fallits</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/near_meetings.py" />
+            <source>{robot} and {other} come within {metres:.1f} m at {x:.0f}, {y:.0f} m after {minutes}:{seconds:02d}</source>
+            <translation>{robot} i {other} s'acosten a {metres:.1f} m a {x:.0f}, {y:.0f} m al cap de {minutes}:{seconds:02d}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_dock.py" />
+            <source>A good plan, within the time that is given</source>
+            <translation>Un bon pla, dins del temps donat</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_dock.py" />
+            <source>A plan is being driven. Plan what is left, or press Clear to watch it no more; robots go on with their queues then.</source>
+            <translation>S'està executant un pla. Planifiqueu el que queda, o premeu Neteja per no seguir-lo més; els robots continuen llavors les seves cues.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_dock.py" />
+            <source>A quick plan, to look at</source>
+            <translation>Un pla ràpid, per mirar-lo</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_dock.py" />
+            <source>As placed</source>
+            <translation>Com s'ha col·locat</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_dock.py" />
+            <source>Do not send</source>
+            <translation>No l'enviïs</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_dock.py" />
+            <source>Give up what is being planned</source>
+            <translation>Abandona el que s'està planificant</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_dock.py" />
+            <source>Placed cones</source>
+            <translation>Cons col·locats</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_dock.py" />
+            <source>Plan</source>
+            <translation>Pla</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_dock.py" />
+            <source>Preview</source>
+            <translation>Vista prèvia</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_dock.py" />
+            <source>Send the cone plan</source>
+            <translation>Envia el pla de cons</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_dock.py" />
+            <source>Solve</source>
+            <translation>Resol</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_layers.py" />
+            <source>Cone plan, stops</source>
+            <translation>Pla de cons, parades</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_layers.py" />
+            <source>Cone plan, ways</source>
+            <translation>Pla de cons, recorreguts</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_layers.py" />
+            <source>Cones as placed</source>
+            <translation>Cons tal com s'han col·locat</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_rows.py" />
+            <source>in the queue</source>
+            <translation>a la cua</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_rows.py" />
+            <source>taken out</source>
+            <translation>tret</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_rows.py" />
+            <source>under way</source>
+            <translation>en curs</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_rows.py" />
+            <source>{cones} cones, {robots} robots, {metres:.0f} m, done after {span} ({method}, along {travel})</source>
+            <translation>{cones} cons, {robots} robots, {metres:.0f} m, fet en {span} ({method}, per {travel})</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_rows.py" />
+            <source>{text}. Left out: {names}</source>
+            <translation>{text}. Fora: {names}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_task.py" />
+            <source>The plan could not be made. Please report this:
+{format_exc}</source>
+            <translation>El pla no s'ha pogut fer. Comuniqueu això:
+{format_exc}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_tree.py" />
+            <source>Arrives</source>
+            <translation>Arriba</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_tree.py" />
+            <source>Drag a cone to another place or robot; Alt+Up and Alt+Down move it, Del takes it out</source>
+            <translation>Arrossegueu un con a un altre lloc o robot; Alt+Amunt i Alt+Avall el mouen, Supr el treu</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_tree.py" />
+            <source>Give to {name}</source>
+            <translation>Dona a {name}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_tree.py" />
+            <source>LOST, {text}</source>
+            <translation>PERDUT, {text}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_tree.py" />
+            <source>Robot, stop</source>
+            <translation>Robot, parada</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_tree.py" />
+            <source>Take out</source>
+            <translation>Treu</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_tree.py" />
+            <source>end at </source>
+            <translation>final a </translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_tree.py" />
+            <source>{cones} cones</source>
+            <translation>{cones} cons</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_tree.py" />
+            <source>{done} of {cones} cones</source>
+            <translation>{done} de {cones} cons</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_ways.py" />
+            <source>{name}, straight within {nearby:g} m</source>
+            <translation>{name}, recte dins de {nearby:g} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plans_action.py" />
+            <source>Plan which robot places or collects which cone, send it, watch it; the as-placed report</source>
+            <translation>Planifica quin robot col·loca o recull quin con, ho envia i ho segueix; l'informe de col·locació</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/progress.py" />
+            <source>cone {cone} failed{why}</source>
+            <translation>el con {cone} ha fallat{why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/progress.py" />
+            <source>{robot} is lost or offline</source>
+            <translation>{robot} és perdut o fora de línia</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/robots_form.py" />
+            <source>Aboard</source>
+            <translation>A bord</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/robots_form.py" />
+            <source>Aboard: cones on the robot now. Range: metres of battery, 0 if it does not matter</source>
+            <translation>A bord: cons al robot ara. Abast: metres de bateria, 0 si no importa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/robots_form.py" />
+            <source>Carries</source>
+            <translation>Porta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/robots_form.py" />
+            <source>Range</source>
+            <translation>Abast</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/robots_form.py" />
+            <source>m/s</source>
+            <translation>m/s</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/robots_form.py" />
+            <source>{heads} of {rows} is {text!r}: give {least:g} or more.</source>
+            <translation>{heads} de {rows} és {text!r}: doneu {least:g} o més.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/robots_form.py" />
+            <source>{name} is away: it takes no part</source>
+            <translation>{name} no hi és: no hi participa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/sending.py" />
+            <source>holding {robot}</source>
+            <translation>retenir {robot}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/sending.py" />
+            <source>letting {robot} go on</source>
+            <translation>deixar continuar {robot}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/sending.py" />
+            <source>taking over from {lost}</source>
+            <translation>rellevar {lost}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/sending.py" />
+            <source>the queue of {robot}</source>
+            <translation>la cua de {robot}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/sending.py" />
+            <source>{why} Done before: {done}.</source>
+            <translation>{why} Fet abans: {done}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/sending.py" />
+            <source>{why} Not done therefore: {left}.</source>
+            <translation>{why} Per això no s'ha fet: {left}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/sending_check.py" />
+            <source>Mind:</source>
+            <translation>Atenció:</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/sending_check.py" />
+            <source>The queue of {robot} stays paused ({reason}): its cones wait until it is resumed.</source>
+            <translation>La cua de {robot} segueix en pausa ({reason}): els seus cons esperen que es reprengui.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/sending_check.py" />
+            <source>The robots set off at once.</source>
+            <translation>Els robots arrenquen de seguida.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/sending_check.py" />
+            <source>it is not known where {id} is</source>
+            <translation>no se sap on és {id}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/sending_check.py" />
+            <source>no reason</source>
+            <translation>cap motiu</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/sending_check.py" />
+            <source>the queue of {id} is paused ({reason}): it is resumed</source>
+            <translation>la cua de {id} és en pausa ({reason}): es reprèn</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/sending_check.py" />
+            <source>{id} finishes first what it is doing</source>
+            <translation>{id} acaba abans el que fa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/sending_check.py" />
+            <source>{id} is {away:.1f} m from where the plan begins: better plan anew</source>
+            <translation>{id} és a {away:.1f} m d'on comença el pla: millor tornar a planificar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/sending_check.py" />
+            <source>{id} is {state}: it gets its queue when it is heard of again</source>
+            <translation>{id} és {state}: rep la cua quan se'n torni a saber</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/sending_check.py" />
+            <source>{id}: {sum} cones</source>
+            <translation>{id}: {sum} cons</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/sending_check.py" />
+            <source>{waiting} tasks that wait in the queue of {id} are replaced</source>
+            <translation>se substitueixen {waiting} tasques que esperen a la cua de {id}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>A cone takes</source>
+            <translation>Un con triga</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>At the end</source>
+            <translation>Al final</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>How it is planned</source>
+            <translation>Com es planifica</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>Least</source>
+            <translation>Mínim</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>Off cones by</source>
+            <translation>Lluny de cons</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>Off robots by</source>
+            <translation>Lluny de robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>Only the features of the layer that are selected</source>
+            <translation>Només les entitats seleccionades de la capa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>Robots that come nearer to one another by the plan are named</source>
+            <translation>S'anomenen els robots que segons el pla s'acosten més</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>Solve for at most</source>
+            <translation>Resol com a màxim en</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>Stores</source>
+            <translation>Magatzems</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>Straight within</source>
+            <translation>Recte dins de</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>The layers of the project with the role road centreline</source>
+            <translation>Les capes del projecte amb el paper eix de via</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>Ways are led round cones by so much</source>
+            <translation>Els recorreguts volten els cons a aquesta distància</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>along the roads of the project</source>
+            <translation>per les vies del projecte</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>choose a layer of points</source>
+            <translation>trieu una capa de punts</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>done as early as possible</source>
+            <translation>acabar al més aviat possible</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>drive back</source>
+            <translation>tornen</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>drive to a store</source>
+            <translation>van a un magatzem</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>fewest metres</source>
+            <translation>menys metres</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>selected</source>
+            <translation>seleccionats</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>stay where they are</source>
+            <translation>queden on són</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/queue_panel.py" />
+            <source>Do now</source>
+            <translation>Fes ara</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/queue_panel.py" />
+            <source>Let the robot do the selected task at once; what it is doing comes next (Ctrl+Enter)</source>
+            <translation>Que el robot faci la tasca seleccionada de seguida; el que fa ve després (Ctrl+Retorn)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/queue_panel.py" />
+            <source>Let the robot go on with the task at the head of its queue</source>
+            <translation>Deixa que el robot segueixi amb la primera tasca de la cua</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/queue_panel.py" />
+            <source>Move the selected task one down (Alt+Down)</source>
+            <translation>Mou la tasca seleccionada un lloc avall (Alt+Avall)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/queue_panel.py" />
+            <source>Move the selected task one up (Alt+Up)</source>
+            <translation>Mou la tasca seleccionada un lloc amunt (Alt+Amunt)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/queue_panel.py" />
+            <source>Pause</source>
+            <translation>Pausa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/queue_panel.py" />
+            <source>Remove</source>
+            <translation>Treu</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/queue_panel.py" />
+            <source>Resume</source>
+            <translation>Reprèn</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/queue_panel.py" />
+            <source>Select a robot to see its queue. None has one yet.</source>
+            <translation>Seleccioneu un robot per veure la seva cua. Encara no en té cap.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/queue_panel.py" />
+            <source>Select a robot to see its queue. {queues} have one, {paused} of them paused.</source>
+            <translation>Seleccioneu un robot per veure la seva cua. {queues} en tenen, {paused} en pausa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/queue_panel.py" />
+            <source>Send the robot no further task; what it is doing it finishes (abort stops it)</source>
+            <translation>No enviïs més tasques al robot; el que fa ho acaba (avortar l'atura)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/queue_panel.py" />
+            <source>Take the selected task out (Delete)</source>
+            <translation>Treu la tasca seleccionada (Supr)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/queue_panel.py" />
+            <source>{selected} has no queue. Add a target or a route with Add to queue.</source>
+            <translation>{selected} no té cua. Afegiu un objectiu o una ruta amb Afegeix a la cua.</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/desk/queues/task_words.py" />
+            <source>%n tasks</source>
+            <translation>
+                <numerusform>%n tasca</numerusform>
+                <numerusform>%n tasques</numerusform>
+            </translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/task_words.py" />
+            <source>, a path of {path_points} points</source>
+            <translation>, un camí de {path_points} punts</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/task_words.py" />
+            <source>, {deviation:.2f} m off</source>
+            <translation>, {deviation:.2f} m de desviació</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/task_words.py" />
+            <source>. The robot is {state}: it is sent nothing until it is heard again</source>
+            <translation>. El robot és {state}: no se li envia res fins que se'n torni a saber</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/task_words.py" />
+            <source>Last: {task} {state} {time}{off}{why}</source>
+            <translation>Última: {task} {state} {time}{off}{why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/task_words.py" />
+            <source>collect cone</source>
+            <translation>recull con</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/task_words.py" />
+            <source>drive</source>
+            <translation>circula</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/task_words.py" />
+            <source>nothing to do</source>
+            <translation>res a fer</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/task_words.py" />
+            <source>now</source>
+            <translation>ara</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/task_words.py" />
+            <source>place cone</source>
+            <translation>col·loca con</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/task_words.py" />
+            <source>running</source>
+            <translation>en marxa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/task_words.py" />
+            <source>{kind}{name} at {x:.2f}, {y:.2f}{way}</source>
+            <translation>{kind}{name} a {x:.2f}, {y:.2f}{way}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/task_words.py" />
+            <source>{robot}: {count}, PAUSED{when}{why}</source>
+            <translation>{robot}: {count}, EN PAUSA{when}{why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/road_board.py" />
+            <source>Closing the road at {x:.1f}, {y:.1f} m</source>
+            <translation>Tancament de la via a {x:.1f}, {y:.1f} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/road_board.py" />
+            <source>Opening the road</source>
+            <translation>Obertura de la via</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/road_board.py" />
+            <source>{robot} gives way to {other}</source>
+            <translation>{robot} cedeix el pas a {other}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/road_layers.py" />
+            <source>Closed roads</source>
+            <translation>Vies tancades</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/road_layers.py" />
+            <source>Conflicts</source>
+            <translation>Conflictes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/road_layers.py" />
+            <source>closed</source>
+            <translation>tancada</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/road_layers.py" />
+            <source>until</source>
+            <translation>fins a</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>Age</source>
+            <translation>Edat</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>Batt.</source>
+            <translation>Bat.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>How far it is beside its path, or from the target that it reached last</source>
+            <translation>A quina distància és del seu camí, o de l'últim objectiu assolit</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>How far what is known of it can be trusted</source>
+            <translation>Fins a quin punt es pot confiar en el que se'n sap</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>How full its battery is</source>
+            <translation>Com de plena té la bateria</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>How it is connected</source>
+            <translation>Com està connectat</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>How long ago anything was heard of it</source>
+            <translation>Quant fa que se'n va saber alguna cosa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>How long its link takes there and back</source>
+            <translation>Quant triga el seu enllaç anar i tornar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>Its speed, as it says</source>
+            <translation>La seva velocitat, tal com diu</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>Link</source>
+            <translation>Enllaç</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>Off</source>
+            <translation>Desv.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>Ping</source>
+            <translation>Ping</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>Position</source>
+            <translation>Posició</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>Speed</source>
+            <translation>Velocitat</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>Task</source>
+            <translation>Tasca</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>The robot's name</source>
+            <translation>El nom del robot</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>What it is doing, or what it says</source>
+            <translation>Què fa, o què diu</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>Where it is, in the CRS chosen under Columns</source>
+            <translation>On és, en el SRC triat a Columnes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>cone</source>
+            <translation>con</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>on its route</source>
+            <translation>a la seva ruta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>route</source>
+            <translation>ruta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>stopped</source>
+            <translation>aturat</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>target</source>
+            <translation>objectiu</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>to its cone</source>
+            <translation>cap al con</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>to its target</source>
+            <translation>cap a l'objectiu</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/detail_rows.py" />
+            <source>, {metres:.2f} m off</source>
+            <translation>, {metres:.2f} m de desviació</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/detail_rows.py" />
+            <source>It says</source>
+            <translation>Diu</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/detail_rows.py" />
+            <source>Off path or target</source>
+            <translation>Desviació del camí o l'objectiu</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/detail_rows.py" />
+            <source>Position, {crs}</source>
+            <translation>Posició, {crs}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/detail_rows.py" />
+            <source>and {number} more</source>
+            <translation>i {number} més</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/detail_rows.py" />
+            <source>none</source>
+            <translation>cap</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/detail_rows.py" />
+            <source>{state}, last heard {age:.1f} s ago over {link}</source>
+            <translation>{state}, últim missatge fa {age:.1f} s per {link}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/detail_rows.py" />
+            <source>{told}, by {operator}</source>
+            <translation>{told}, per {operator}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/last_image.py" />
+            <source>No image: {why}</source>
+            <translation>Cap imatge: {why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/last_image.py" />
+            <source>Reading a robot's image</source>
+            <translation>S'està llegint la imatge d'un robot</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/last_image.py" />
+            <source>The image that came cannot be read: it is none of a kind that QGIS knows.</source>
+            <translation>La imatge que ha arribat no es pot llegir: no és de cap tipus que QGIS conegui.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/last_image.py" />
+            <source>looking for an image …</source>
+            <translation>s'està buscant una imatge …</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/last_image.py" />
+            <source>the image is coming …</source>
+            <translation>arriba la imatge …</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/last_image.py" />
+            <source>{robot} has sent no image lately</source>
+            <translation>{robot} no ha enviat cap imatge darrerament</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/position_crs.py" />
+            <source>There is no way from {site} to {crs}. Choose another CRS under Columns.</source>
+            <translation>No hi ha cap via de {site} a {crs}. Trieu un altre SRC a Columnes.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/position_crs.py" />
+            <source>site frame</source>
+            <translation>marc del recinte</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_details.py" />
+            <source>Alarms</source>
+            <translation>Alarmes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_details.py" />
+            <source>Ask again</source>
+            <translation>Torna a demanar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_details.py" />
+            <source>Ask for the robot's last image and its commands again</source>
+            <translation>Torna a demanar l'última imatge i les ordres del robot</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_details.py" />
+            <source>Diagnostics as received</source>
+            <translation>Diagnòstic tal com ha arribat</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_details.py" />
+            <source>Now</source>
+            <translation>Ara</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_details.py" />
+            <source>Select a robot in the table or on the map</source>
+            <translation>Seleccioneu un robot a la taula o al mapa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_details.py" />
+            <source>{robot}, selected last of several</source>
+            <translation>{robot}, l'últim seleccionat de diversos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_model.py" />
+            <source>at {x:.2f}, {y:.2f} m in the site frame</source>
+            <translation>a {x:.2f}, {y:.2f} m en el marc del recinte</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_model.py" />
+            <source>it says: {text}</source>
+            <translation>diu: {text}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_model.py" />
+            <source>its link takes {ms:.1f} ms there and back</source>
+            <translation>el seu enllaç triga {ms:.1f} ms anar i tornar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_panel.py" />
+            <source>Another CRS…</source>
+            <translation>Un altre SRC…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_panel.py" />
+            <source>CRS of the project ({crs})</source>
+            <translation>SRC del projecte ({crs})</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_panel.py" />
+            <source>Columns</source>
+            <translation>Columnes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_panel.py" />
+            <source>Latitude, longitude (WGS 84)</source>
+            <translation>Latitud, longitud (WGS 84)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_panel.py" />
+            <source>Name, state, task or link; several words have to be there all</source>
+            <translation>Nom, estat, tasca o enllaç; si hi ha diverses paraules hi han de ser totes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_panel.py" />
+            <source>Positions in: {crs}</source>
+            <translation>Posicions en: {crs}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_panel.py" />
+            <source>Search robots</source>
+            <translation>Cerca robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_panel.py" />
+            <source>Site frame (metres)</source>
+            <translation>Marc del recinte (metres)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_panel.py" />
+            <source>Which columns are shown, and in which CRS positions are</source>
+            <translation>Quines columnes es mostren, i en quin SRC són les posicions</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_panel.py" />
+            <source>With a task</source>
+            <translation>Amb tasca</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_panel.py" />
+            <source>With alarms, or not fresh</source>
+            <translation>Amb alarmes, o no frescos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_panel.py" />
+            <source>Without a task</source>
+            <translation>Sense tasca</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_panel.py" />
+            <source>{listed} of {all}</source>
+            <translation>{listed} de {all}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_table.py" />
+            <source>no such place</source>
+            <translation>cap lloc així</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/route_preview.py" />
+            <source>; {tight} corners tighter than the robot turns</source>
+            <translation>; {tight} cantonades més tancades que el gir del robot</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/route_preview.py" />
+            <source>surface not known</source>
+            <translation>superfície desconeguda</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/route_preview.py" />
+            <source>the gateway's answer holds no way; it may be older than this plugin</source>
+            <translation>la resposta de la passarel·la no porta cap recorregut; pot ser més antiga que aquest connector</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/route_preview.py" />
+            <source>{metres:.0f} m {surface}</source>
+            <translation>{metres:.0f} m {surface}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/route_preview.py" />
+            <source>{metres:.1f} m</source>
+            <translation>{metres:.1f} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/route_preview.py" />
+            <source>{minutes} min {seconds} s</source>
+            <translation>{minutes} min {seconds} s</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/route_preview.py" />
+            <source>{seconds} s</source>
+            <translation>{seconds} s</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/surface_action.py" />
+            <source>Road surface</source>
+            <translation>Superfície de via</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/surface_action.py" />
+            <source>Tell the road surface under the cursor; a click says it with its coordinates, Esc ends</source>
+            <translation>Diu la superfície de via sota el cursor; un clic la diu amb les coordenades, Esc acaba</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/surface_action.py" />
+            <source>Which road surface is here?</source>
+            <translation>Quina superfície de via hi ha aquí?</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/surface_tool.py" />
+            <source>No layer of the project has the role road surface: set it in Plugins &gt; Fleet Supervisor &gt; Layer roles.</source>
+            <translation>Cap capa del projecte té el paper superfície de via: poseu-lo a Connectors &gt; Fleet Supervisor &gt; Papers de les capes.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/surface_tool.py" />
+            <source>No road surface</source>
+            <translation>Cap superfície de via</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/surface_tool.py" />
+            <source>no road surface</source>
+            <translation>cap superfície de via</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/surface_tool.py" />
+            <source>road surface without a class</source>
+            <translation>superfície de via sense classe</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/surface_tool.py" />
+            <source>{told} at {where}</source>
+            <translation>{told} a {where}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/practice_fleet.py" />
+            <source>The practice fleet ended: {why}. Start it again; if that fails, see what {program} says by hand.</source>
+            <translation>La flota de pràctica s'ha acabat: {why}. Torneu-la a arrencar; si falla, mireu què diu {program} a mà.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/practice_fleet.py" />
+            <source>The practice fleet needs robot-bridge, which is not on this computer. In a terminal, in the project's folder: python3 -m venv gateway, then gateway/bin/pip install . and put gateway/bin on PATH; or make setup. Then restart QGIS. The tour can be read without it.</source>
+            <translation>La flota de pràctica necessita robot-bridge, que no és en aquest ordinador. En un terminal, a la carpeta del projecte: python3 -m venv gateway, després gateway/bin/pip install . i poseu gateway/bin al PATH; o make setup. Després reinicieu QGIS. La visita es pot llegir sense ell.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>A site is an ordinary QGIS project: an orthophoto, roads, obstacles, each layer with a role. Open the sample site; QGIS asks first if your own project is not saved.</source>
+            <translation>Un recinte és un projecte de QGIS corrent: una ortofoto, vies, obstacles, cada capa amb un paper. Obriu el recinte d'exemple; QGIS pregunta abans si el vostre projecte no està desat.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>Abort robot: the selected robots give up their task. ABORT ALL: every robot does. EMERGENCY STOP (F10): every robot stops now, and none can be sent anywhere until a supervisor clears it.</source>
+            <translation>Avorta robot: els robots seleccionats abandonen la tasca. AVORTA-HO TOT: tots. PARADA D'EMERGÈNCIA (F10): tots els robots s'aturen ara, i cap no es pot enviar enlloc fins que un supervisor ho aixequi.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>An arrow shows where a robot heads, its colour and shape the state. Hold the mouse over one for its card; with Select robot a click selects, a rectangle selects several, a double click goes there.</source>
+            <translation>Una fletxa mostra cap on mira un robot, el color i la forma l'estat. Deixeu-hi el ratolí a sobre per veure'n la fitxa; amb Selecciona robot un clic selecciona, un rectangle en selecciona diversos, un doble clic hi va.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>Click r1: it is selected on the map, too.</source>
+            <translation>Feu clic a r1: també queda seleccionat al mapa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>Closing it ends the practice fleet. What else the desk does is in the operator's guide, docs/operator.md; how real robots are connected in docs/integrator.md.</source>
+            <translation>En tancar-la s'acaba la flota de pràctica. Què més fa la consola és a la guia de l'operador, docs/operator.md; com es connecten robots reals, a docs/integrator.md.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>Cone target, a click on the map, Enter: that sends the selected robot. Before that it is a draft, checked against the site; Esc takes it away, and nothing was sent.</source>
+            <translation>Objectiu de con, un clic al mapa, Retorn: això envia el robot seleccionat. Abans és un esborrany, comprovat amb el recinte; Esc el treu, i no s'ha enviat res.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>Each robot has a row: its state, its task, its battery, and how old its last message is. A robot that falls silent is stale, then lost; it stays on the map, marked.</source>
+            <translation>Cada robot té una fila: l'estat, la tasca, la bateria, i l'edat de l'últim missatge. Un robot que calla queda desactualitzat, després perdut; es queda al mapa, marcat.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>Every command is here with each of its steps: queued, delivered, acknowledged, reached; or why it failed. A double click shows its place on the map.</source>
+            <translation>Aquí hi ha cada ordre amb tots els passos: queued, delivered, acknowledged, reached; o per què ha fallat. Un doble clic en mostra el lloc al mapa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>Five minutes with a practice fleet</source>
+            <translation>Cinc minuts amb una flota de pràctica</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>Here stand the gateway's address and your name, which every log shows. For a real fleet write them and press Connect. For the tour, start the practice fleet: it connects by itself.</source>
+            <translation>Aquí hi ha l'adreça de la passarel·la i el vostre nom, que mostren tots els registres. Per a una flota real escriviu-los i premeu Connecta. Per a la visita, arrenqueu la flota de pràctica: es connecta sola.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>Open the sample site</source>
+            <translation>Obre el recinte d'exemple</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>Send a robot</source>
+            <translation>Enviar un robot</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>Start the practice fleet</source>
+            <translation>Arrenca la flota de pràctica</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>Stop</source>
+            <translation>Aturar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>That was the tour</source>
+            <translation>Això era la visita</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>The link</source>
+            <translation>L'enllaç</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>The map</source>
+            <translation>El mapa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>The robots</source>
+            <translation>Els robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>The site</source>
+            <translation>El recinte</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>The tour needs no network: a gateway and three simulated robots run on this computer, and nothing real moves. Next and Back lead on, Esc closes. It is in the menu Plugins &gt; Fleet Supervisor &gt; Tour.</source>
+            <translation>La visita no necessita xarxa: una passarel·la i tres robots simulats funcionen en aquest ordinador, i res de real es mou. Següent i Enrere hi porten, Esc la tanca. És al menú Connectors &gt; Fleet Supervisor &gt; Visita.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>Try it: only practice robots stop. Then clear it in the red banner.</source>
+            <translation>Proveu-ho: només s'aturen robots de pràctica. Després aixequeu-la a la franja vermella.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>Try it: press Cone target, click on the road near r1, then Enter.</source>
+            <translation>Proveu-ho: premeu Objectiu de con, feu clic a la via prop de r1, i Retorn.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>What became of it</source>
+            <translation>Què se n'ha fet</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/tour_action.py" />
+            <source>Fleet Supervisor is new here. A tour of five minutes shows it with simulated robots.</source>
+            <translation>Fleet Supervisor és nou aquí. Una visita de cinc minuts el mostra amb robots simulats.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/tour_action.py" />
+            <source>Start the tour</source>
+            <translation>Comença la visita</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/tour_action.py" />
+            <source>Starting …</source>
+            <translation>Arrencant …</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/tour_action.py" />
+            <source>The desk is connected to another gateway. Disconnect first: the tour moves no real robots.</source>
+            <translation>La consola està connectada a una altra passarel·la. Desconnecteu abans: la visita no mou robots reals.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/tour_action.py" />
+            <source>The practice fleet runs, and the desk is connected to it.</source>
+            <translation>La flota de pràctica funciona, i la consola hi està connectada.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/tour_action.py" />
+            <source>The sample site is open.</source>
+            <translation>El recinte d'exemple és obert.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/tour_action.py" />
+            <source>The sample site was not opened: {path}.</source>
+            <translation>El recinte d'exemple no s'ha obert: {path}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/tour_action.py" />
+            <source>Tour</source>
+            <translation>Visita</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/tour_panel.py" />
+            <source>&amp;Back</source>
+            <translation>&amp;Enrere</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/tour_panel.py" />
+            <source>&amp;Finish</source>
+            <translation>&amp;Acaba</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/tour_panel.py" />
+            <source>&amp;Next</source>
+            <translation>&amp;Següent</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/tour_panel.py" />
+            <source>C&amp;lose</source>
+            <translation>&amp;Tanca</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/window_alarms.py" />
+            <source>Alarms ({number})</source>
+            <translation>Alarmes ({number})</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/assign_cones.py" />
+            <source>Assign cones to robots</source>
+            <translation>Assigna cons a robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/assign_cones.py" />
+            <source>JSON (*.json)</source>
+            <translation>JSON (*.json)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/assign_cones.py" />
+            <source>Method</source>
+            <translation>Mètode</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/assign_cones.py" />
+            <source>Method that was used</source>
+            <translation>Mètode utilitzat</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/assign_cones.py" />
+            <source>Objective</source>
+            <translation>Criteri</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/assign_cones.py" />
+            <source>Paths</source>
+            <translation>Camins</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/assign_cones.py" />
+            <source>Planned by {method} along {travel}: the last robot is done after {end_s:.0f} s, {metres:.0f} m in all</source>
+            <translation>Planificat amb {method} per {travel}: l'últim robot acaba al cap de {end_s:.0f} s, {metres:.0f} m en total</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/assign_cones.py" />
+            <source>Plans which robot places or collects which cone, on which trip, along which roads, and when.</source>
+            <translation>Planifica quin robot col·loca o recull quin con, en quin viatge, per quines vies i quan.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/assign_cones.py" />
+            <source>Robot {id}: {cones} cones on {trips} trips, {metres:.0f} m, done after {end_s:.0f} s</source>
+            <translation>Robot {id}: {cones} cons en {trips} viatges, {metres:.0f} m, acaba al cap de {end_s:.0f} s</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/assign_cones.py" />
+            <source>Targets</source>
+            <translation>Objectius</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/assign_cones.py" />
+            <source>The assignment was cancelled.</source>
+            <translation>S'ha cancel·lat l'assignació.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/assign_cones.py" />
+            <source>The plan</source>
+            <translation>El pla</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/assign_cones.py" />
+            <source>The plan cannot be driven: {faults}. Please report this.</source>
+            <translation>El pla no es pot recórrer: {faults}. Comuniqueu-ho.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/assign_cones.py" />
+            <source>Time limit [s]</source>
+            <translation>Límit de temps [s]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/assign_cones.py" />
+            <source>What the ways follow</source>
+            <translation>Què segueixen els recorreguts</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_network.py" />
+            <source>Build road network</source>
+            <translation>Construeix la xarxa de vies</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_network.py" />
+            <source>Edges</source>
+            <translation>Arestes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_network.py" />
+            <source>Nodes</source>
+            <translation>Nodes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_network.py" />
+            <source>Parts that are not connected</source>
+            <translation>Parts no connectades</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_network.py" />
+            <source>Repairs</source>
+            <translation>Reparacions</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_network.py" />
+            <source>Roads</source>
+            <translation>Vies</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_network.py" />
+            <source>Splits road centrelines where they meet, passes over and under at bridges, and repairs on request.</source>
+            <translation>Divideix els eixos de via on es troben, passa per sobre i per sota als ponts, i repara si es demana.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_network.py" />
+            <source>Warnings</source>
+            <translation>Avisos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_network.py" />
+            <source>{edges} edges, {nodes} nodes, {parts} parts, {repairs} repairs</source>
+            <translation>{edges} arestes, {nodes} nodes, {parts} parts, {repairs} reparacions</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_surfaces.py" />
+            <source>Area [m²]</source>
+            <translation>Àrea [m²]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_surfaces.py" />
+            <source>Build road surfaces</source>
+            <translation>Construeix les superfícies de via</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_surfaces.py" />
+            <source>Classes that keep their ground where several are, the first before the second</source>
+            <translation>Classes que conserven el terreny on n'hi ha diverses, la primera abans que la segona</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_surfaces.py" />
+            <source>Generated ones</source>
+            <translation>Generades</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_surfaces.py" />
+            <source>Road surfaces</source>
+            <translation>Superfícies de via</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_surfaces.py" />
+            <source>Roads without a width</source>
+            <translation>Vies sense amplada</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_surfaces.py" />
+            <source>Surfaces</source>
+            <translation>Superfícies</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_surfaces.py" />
+            <source>Surfaces drawn by hand, which keep their ground</source>
+            <translation>Superfícies dibuixades a mà, que conserven el seu terreny</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_surfaces.py" />
+            <source>The width of this road is not known; {width:g} m is used.</source>
+            <translation>L'amplada d'aquesta via no es coneix; s'hi posa {width:g} m.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_surfaces.py" />
+            <source>Widens centrelines to surfaces, one for each class; surfaces drawn by hand keep their ground.</source>
+            <translation>Eixampla els eixos en superfícies, una per classe; les dibuixades a mà conserven el seu terreny.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_surfaces.py" />
+            <source>{old} of the surfaces that are given as drawn say that they were generated (field origin); they are left out and made anew</source>
+            <translation>{old} de les superfícies donades com a dibuixades diuen que es van generar (camp origin); s'ometen i es tornen a fer</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_surfaces.py" />
+            <source>{value}: {own:.1f} m²</source>
+            <translation>{value}: {own:.1f} m²</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/check_road_network.py" />
+            <source>Check road network</source>
+            <translation>Comprova la xarxa de vies</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/check_road_network.py" />
+            <source>Dead ends</source>
+            <translation>Carrerons sense sortida</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/check_road_network.py" />
+            <source>Edges without a way back</source>
+            <translation>Arestes sense camí de tornada</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/check_road_network.py" />
+            <source>Findings</source>
+            <translation>Troballes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/check_road_network.py" />
+            <source>Finds gaps, overshoots, duplicates, dead ends, separate parts and one-way traps in road centrelines.</source>
+            <translation>Troba forats, sobrepassaments, duplicats, carrerons sense sortida, parts separades i trampes de sentit únic als eixos de via.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/check_road_network.py" />
+            <source>Gaps</source>
+            <translation>Forats</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/check_road_network.py" />
+            <source>Nothing is odd in this network.</source>
+            <translation>No hi ha res estrany en aquesta xarxa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/check_road_network.py" />
+            <source>Overshoots</source>
+            <translation>Sobrepassaments</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/check_road_network.py" />
+            <source>Parts of their own</source>
+            <translation>Parts separades</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/check_road_network.py" />
+            <source>Roads drawn twice</source>
+            <translation>Vies dibuixades dues vegades</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/check_robot_map.py" />
+            <source>Check robot map</source>
+            <translation>Comprova el mapa de robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/check_robot_map.py" />
+            <source>Errors</source>
+            <translation>Errors</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/check_robot_map.py" />
+            <source>Finds turned outlines, gaps, slivers, repeats, overlaps and unreachable pockets in a robot map.</source>
+            <translation>Troba contorns girats, forats, estelles, repeticions, encavalcaments i racons inaccessibles en un mapa de robots.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/check_robot_map.py" />
+            <source>Longest gap that was not meant [m]</source>
+            <translation>Forat més llarg que no és volgut [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/check_robot_map.py" />
+            <source>Narrowest ring that is an obstacle [m]</source>
+            <translation>Anell més estret que és un obstacle [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/check_robot_map.py" />
+            <source>Nothing is odd in this map.</source>
+            <translation>No hi ha res estrany en aquest mapa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/check_robot_map.py" />
+            <source>Smallest unreachable pocket [m²]</source>
+            <translation>Racó inaccessible més petit [m²]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/check_robot_map.py" />
+            <source>Width of the robot, for unreachable pockets [m]</source>
+            <translation>Amplada del robot, per als racons inaccessibles [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/check_robot_map.py" />
+            <source>Worth knowing</source>
+            <translation>Val la pena saber-ho</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_ground.py" />
+            <source>Classes of surface that are allowed, such as asphalt (default: all)</source>
+            <translation>Classes de superfície permeses, com ara asphalt (per defecte: totes)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_ground.py" />
+            <source>Distance between cones [m]</source>
+            <translation>Distància entre cons [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_ground.py" />
+            <source>Distance to obstacles [m]</source>
+            <translation>Distància als obstacles [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_ground.py" />
+            <source>Layer {name}: {note}</source>
+            <translation>Capa {name}: {note}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_ground.py" />
+            <source>No layer of surfaces is given: whether the cones stand on the road is not checked.</source>
+            <translation>No s'ha donat cap capa de superfícies: no es comprova si els cons són a la via.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_ground.py" />
+            <source>No surface is of class {classes}: the layers have {classes_there}.</source>
+            <translation>No hi ha cap superfície de classe {classes}: les capes tenen {classes_there}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_ground.py" />
+            <source>Nothing is wrong with the places of the cones.</source>
+            <translation>No hi ha res incorrecte en els llocs dels cons.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_ground.py" />
+            <source>Obstacles to keep away from</source>
+            <translation>Obstacles dels quals cal allunyar-se</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_ground.py" />
+            <source>Surfaces to stand on (default: not checked)</source>
+            <translation>Superfícies on han d'estar (per defecte: no es comprova)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_ground.py" />
+            <source>cannot be transformed into the site's CRS ({error})</source>
+            <translation>no es pot transformar al SRC del recinte ({error})</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_ground.py" />
+            <source>{name}, feature {id}</source>
+            <translation>{name}, entitat {id}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layer.py" />
+            <source>Site CRS, in metres (default: the project's, else the line's or the layer's)</source>
+            <translation>SRC del recinte, en metres (per defecte: el del projecte, si no el de la línia o la capa)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layer.py" />
+            <source>The CRS of the site is not known: give SITE_CRS, such as EPSG:32633.</source>
+            <translation>El SRC del recinte no es coneix: doneu SITE_CRS, com ara EPSG:32633.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
+            <source>Against the direction of the line</source>
+            <translation>En sentit contrari a la línia</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
+            <source>Begin so far along the line [m]</source>
+            <translation>Comença a aquesta distància al llarg de la línia [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
+            <source>Both POINT and LINE are</source>
+            <translation>S'han donat POINT i LINE alhora</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
+            <source>DIMENSIONS has {part!r}, which is not name=value with a number: write such as spacing=15.</source>
+            <translation>DIMENSIONS té {part!r}, que no és nom=valor amb un nombre: escriviu per exemple spacing=15.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
+            <source>Dimensions other than the standard's, as name=value; ...</source>
+            <translation>Dimensions diferents de les de la norma, com a nom=valor; ...</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
+            <source>Heading, clockwise from north [degrees]</source>
+            <translation>Rumb, des del nord en sentit horari [graus]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
+            <source>Id of the line's feature (default: the only one)</source>
+            <translation>Id de l'entitat de la línia (per defecte: l'única)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
+            <source>Ids begin with (default: the layout)</source>
+            <translation>Els ids comencen amb (per defecte: la disposició)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
+            <source>Layout</source>
+            <translation>Disposició</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
+            <source>Line to lie along, instead of a place</source>
+            <translation>Línia per on s'estén, en lloc d'un punt</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
+            <source>Neither POINT nor LINE is</source>
+            <translation>No s'ha donat ni POINT ni LINE</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
+            <source>POINT or HEADING is not finite: give numbers.</source>
+            <translation>POINT o HEADING no és finit: doneu nombres.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
+            <source>Place of the layout's origin</source>
+            <translation>Lloc de l'origen de la disposició</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
+            <source>Places a standard cone layout at a point and heading or along a line, and checks every cone.</source>
+            <translation>Col·loca una disposició de cons normalitzada en un punt i rumb o al llarg d'una línia, i comprova cada con.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
+            <source>The feature {id} of {sourcename} has {lines} lines: split it, or choose one that has one.</source>
+            <translation>L'entitat {id} de {sourcename} té {lines} línies: dividiu-la, o trieu-ne una que en tingui una.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
+            <source>The layer {sourcename} has {found}: choose one line by LINE_ID, or select it and tick 'Selected features only'.</source>
+            <translation>La capa {sourcename} té {found}: trieu una línia amb LINE_ID, o seleccioneu-la i marqueu «Només les entitats seleccionades».</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
+            <source>The line cannot be transformed into the site's CRS ({error}).</source>
+            <translation>La línia no es pot transformar al SRC del recinte ({error}).</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
+            <source>no feature {wanted}</source>
+            <translation>cap entitat {wanted}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
+            <source>not exactly one feature</source>
+            <translation>no exactament una entitat</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
+            <source>{how} given: give the place of the layout, or a line that it lies along.</source>
+            <translation>{how}: doneu el lloc de la disposició, o una línia per on s'estengui.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>Areas with a speed limit</source>
+            <translation>Zones amb límit de velocitat</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>Export navigation map</source>
+            <translation>Exporta el mapa de navegació</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>FORMATS has {format}, which needs {name}: give it, or leave {format} out.</source>
+            <translation>FORMATS té {format}, que necessita {name}: doneu-lo, o traieu {format}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>FORMATS is {formats}: choose of {known}.</source>
+            <translation>FORMATS és {formats}: trieu entre {known}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>File of format {name}</source>
+            <translation>Fitxer de format {name}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>Files</source>
+            <translation>Fitxers</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>Folder</source>
+            <translation>Carpeta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>Formats</source>
+            <translation>Formats</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>Inside of obstacles in the occupancy grid</source>
+            <translation>Interior dels obstacles a la graella d'ocupació</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>Keepout areas</source>
+            <translation>Zones prohibides</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>Making {format}</source>
+            <translation>S'està fent {format}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>NAME {name!r} is no file's name: leave out folders and leading dots.</source>
+            <translation>NAME {name!r} no és un nom de fitxer: traieu les carpetes i els punts inicials.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>Name of the files (default: the robot map's)</source>
+            <translation>Nom dels fitxers (per defecte: el del mapa de robots)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>Robots drive over what is lower than [m]</source>
+            <translation>Els robots passen per sobre del que és més baix que [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>Side of a cell of grid and masks [m]</source>
+            <translation>Costat d'una cel·la de la graella i les màscares [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>Speed limit of each area [m/s]</source>
+            <translation>Límit de velocitat de cada zona [m/s]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>The coordinates of the keepout and speed layers are taken as the map's own metres.</source>
+            <translation>Les coordenades de les capes de zones prohibides i de velocitat es prenen com a metres del mateix mapa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>The folder {folder} cannot be made: {reason}. Choose another OUTPUT.</source>
+            <translation>No es pot crear la carpeta {folder}: {reason}. Trieu un altre OUTPUT.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>Writes a robot map as Nav2 occupancy grid and masks, GeoJSON, GeoPackage, SVG or PNG.</source>
+            <translation>Escriu un mapa de robots com a graella d'ocupació i màscares de Nav2, GeoJSON, GeoPackage, SVG o PNG.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>above 0, such as 0.05</source>
+            <translation>superior a 0, com ara 0.05</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>of 0 or more</source>
+            <translation>de 0 o més</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>{name} is {value}: give a number of metres {wanted}.</source>
+            <translation>{name} és {value}: doneu un nombre de metres {wanted}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>{parameter} {layer} cannot be opened: check the file and the layer's name.</source>
+            <translation>{parameter} {layer} no es pot obrir: comproveu el fitxer i el nom de la capa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>{target} is the robot map itself: choose another NAME or OUTPUT.</source>
+            <translation>{target} és el mateix mapa de robots: trieu un altre NAME o OUTPUT.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>{target}: {content} bytes</source>
+            <translation>{target}: {content} bytes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_plan.py" />
+            <source>DEFAULT_HEIGHT is {height}: give a number of metres of 0 or more.</source>
+            <translation>DEFAULT_HEIGHT és {height}: doneu un nombre de metres de 0 o més.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_plan.py" />
+            <source>OUTPUT {target} is the file of the layer {layer}: choose another one.</source>
+            <translation>OUTPUT {target} és el fitxer de la capa {layer}: trieu-ne un altre.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_plan.py" />
+            <source>SITE_CRS {crs} is no CRS that QGIS knows: write a code such as EPSG:32633.</source>
+            <translation>SITE_CRS {crs} no és un SRC que QGIS conegui: escriviu un codi com ara EPSG:32633.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_plan.py" />
+            <source>The layer {layer} is no vector layer: leave it out.</source>
+            <translation>La capa {layer} no és vectorial: ometeu-la.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_plan.py" />
+            <source>The obstacle layer {layer} cannot be opened: check the file, and the layer's name after '|layername='.</source>
+            <translation>La capa d'obstacles {layer} no es pot obrir: comproveu el fitxer i el nom de la capa després de '|layername='.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map.py" />
+            <source>Compactness [bytes/m²]</source>
+            <translation>Compacitat [bytes/m²]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map.py" />
+            <source>Export robot map</source>
+            <translation>Exporta el mapa de robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map.py" />
+            <source>Height of each feature [m] (default: its field height)</source>
+            <translation>Alçada de cada entitat [m] (per defecte: el seu camp height)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map.py" />
+            <source>Height where none is known, marked as estimated [m]</source>
+            <translation>Alçada on no se'n coneix cap, marcada com a estimada [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map.py" />
+            <source>Label of each feature (default: the layer's name)</source>
+            <translation>Etiqueta de cada entitat (per defecte: el nom de la capa)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map.py" />
+            <source>Obstacle layers</source>
+            <translation>Capes d'obstacles</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map.py" />
+            <source>Obstacles</source>
+            <translation>Obstacles</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map.py" />
+            <source>Robot map</source>
+            <translation>Mapa de robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map.py" />
+            <source>Robot map, text (*.txt);;Robot map, binary (*.rmap)</source>
+            <translation>Mapa de robots, text (*.txt);;Mapa de robots, binari (*.rmap)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map.py" />
+            <source>Segments</source>
+            <translation>Segments</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map.py" />
+            <source>Size of the file [bytes]</source>
+            <translation>Mida del fitxer [bytes]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map.py" />
+            <source>Such as "clearance" of arches, or 2.2 for signs; the height of a feature counts from there. The upper height of the robot's plane leaves out what begins above it.</source>
+            <translation>Com ara "clearance" dels arcs, o 2.2 per als senyals; l'alçada d'una entitat es compta des d'allà. L'alçada superior del pla del robot omet el que comença per sobre.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map.py" />
+            <source>There is no obstacle in the window: check its place and the site CRS.</source>
+            <translation>No hi ha cap obstacle a la finestra: comproveu el lloc i el SRC del recinte.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map.py" />
+            <source>Where each feature begins above the ground [m] (default: on it)</source>
+            <translation>On comença cada entitat sobre el terra [m] (per defecte: a terra)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map.py" />
+            <source>Whether each feature is outdoors (default: true)</source>
+            <translation>Si cada entitat és a l'exterior (per defecte: cert)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map.py" />
+            <source>Window {width:g} m x {height:g} m = {area:.0f} m², from ({x_min:.2f}, {y_min:.2f}) to ({x_max:.2f}, {y_max:.2f}) in the site frame</source>
+            <translation>Finestra {width:g} m x {height:g} m = {area:.0f} m², de ({x_min:.2f}, {y_min:.2f}) a ({x_max:.2f}, {y_max:.2f}) en el marc del recinte</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map.py" />
+            <source>Writes the obstacles of line and polygon layers inside a window as a map that robots read.</source>
+            <translation>Escriu els obstacles de capes de línies i polígons dins d'una finestra com a mapa que llegeixen els robots.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map.py" />
+            <source>{obstacles} obstacles, {segment_count} segments</source>
+            <translation>{obstacles} obstacles, {segment_count} segments</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map.py" />
+            <source>{size} bytes in binary, {ratio:.2f} bytes/m²</source>
+            <translation>{size} bytes en binari, {ratio:.2f} bytes/m²</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map.py" />
+            <source>{size} bytes of text, {ratio:.2f} bytes/m² (paper 1: about 3 bytes/m² as text)</source>
+            <translation>{size} bytes de text, {ratio:.2f} bytes/m² (article 1: uns 3 bytes/m² com a text)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map_tiles.py" />
+            <source>Export robot map tiles</source>
+            <translation>Exporta tessel·les del mapa de robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map_tiles.py" />
+            <source>Extent of a grid (or choose a route)</source>
+            <translation>Extensió d'una graella (o trieu una ruta)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map_tiles.py" />
+            <source>Folder of the tiles</source>
+            <translation>Carpeta de les tessel·les</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map_tiles.py" />
+            <source>Height of a tile, along y [m]</source>
+            <translation>Alçada d'una tessel·la, en y [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map_tiles.py" />
+            <source>Index of the tiles</source>
+            <translation>Índex de les tessel·les</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map_tiles.py" />
+            <source>Leave out tiles without obstacles</source>
+            <translation>Omet les tessel·les sense obstacles</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map_tiles.py" />
+            <source>Obstacles in all tiles</source>
+            <translation>Obstacles a totes les tessel·les</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map_tiles.py" />
+            <source>Route, instead of a grid</source>
+            <translation>Ruta, en lloc d'una graella</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map_tiles.py" />
+            <source>Segments in all tiles</source>
+            <translation>Segments a totes les tessel·les</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map_tiles.py" />
+            <source>Size of all tiles [bytes]</source>
+            <translation>Mida de totes les tessel·les [bytes]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map_tiles.py" />
+            <source>There is no obstacle in any tile: check their place and the site CRS.</source>
+            <translation>No hi ha cap obstacle a cap tessel·la: comproveu el lloc i el SRC del recinte.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map_tiles.py" />
+            <source>Tiles</source>
+            <translation>Tessel·les</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map_tiles.py" />
+            <source>What neighbouring tiles share [m]</source>
+            <translation>El que comparteixen tessel·les veïnes [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map_tiles.py" />
+            <source>Width of a tile, along x [m]</source>
+            <translation>Amplada d'una tessel·la, en x [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map_tiles.py" />
+            <source>Writes many robot maps, in a grid or along a route, and a layer that tells which is where.</source>
+            <translation>Escriu molts mapes de robots, en graella o al llarg d'una ruta, i una capa que diu on és cadascun.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map_tiles.py" />
+            <source>{rows} tiles, {segments} segments, {size} bytes</source>
+            <translation>{rows} tessel·les, {segments} segments, {size} bytes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>Corners tighter than the robot turns</source>
+            <translation>Cantonades més tancades que el gir del robot</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>Engine</source>
+            <translation>Motor</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>Engine that was used</source>
+            <translation>Motor utilitzat</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>Finds the shortest or fastest way along road centrelines, and the path that a robot drives.</source>
+            <translation>Troba el recorregut més curt o més ràpid pels eixos de via, i el camí que fa un robot.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>Goal</source>
+            <translation>Final</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>Length of the route [m]</source>
+            <translation>Longitud de la ruta [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>Path</source>
+            <translation>Camí</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>Points of the path</source>
+            <translation>Punts del camí</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>Points of the path at most this far apart [m]</source>
+            <translation>Punts del camí separats com a màxim [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>Roads at least this wide [m]</source>
+            <translation>Vies almenys així d'amples [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>Route</source>
+            <translation>Ruta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>Start</source>
+            <translation>Inici</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>Start and goal at most this far from a road [m]</source>
+            <translation>Inici i final com a màxim a aquesta distància d'una via [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>Surfaces that may be used (default: all)</source>
+            <translation>Superfícies que es poden fer servir (per defecte: totes)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>The corner at ({x:.2f}, {y:.2f}) is tighter than the robot turns.</source>
+            <translation>La cantonada a ({x:.2f}, {y:.2f}) és més tancada que el gir del robot.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>Time on the route [s]</source>
+            <translation>Temps de la ruta [s]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>Turning radius of the robot [m]</source>
+            <translation>Radi de gir del robot [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>Way</source>
+            <translation>Recorregut</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>Width of the robot [m]</source>
+            <translation>Amplada del robot [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>{closed} edges lead through areas to be avoided, and are closed</source>
+            <translation>{closed} arestes passen per zones que cal evitar, i es tanquen</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>{metres:.1f} m, {seconds:.1f} s, {points} points, found by {engine}; start {off_start:.2f} m and goal {off_goal:.2f} m from the road</source>
+            <translation>{metres:.1f} m, {seconds:.1f} s, {points} punts, trobada per {engine}; inici a {off_start:.2f} m i final a {off_goal:.2f} m de la via</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/fleet_algorithm.py" />
+            <source>Robot maps</source>
+            <translation>Mapes de robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>Both FILE and INPUT are</source>
+            <translation>S'han donat FILE i INPUT alhora</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>CSV file</source>
+            <translation>Fitxer CSV</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>Column of colours</source>
+            <translation>Columna dels colors</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>Column of headings, clockwise from the y axis [degrees]</source>
+            <translation>Columna dels rumbs, des de l'eix y en sentit horari [graus]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>Column of ids</source>
+            <translation>Columna dels ids</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>Column of roles</source>
+            <translation>Columna dels papers</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>Column of the order of placing</source>
+            <translation>Columna de l'ordre de col·locació</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>Column of x [m]</source>
+            <translation>Columna de x [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>Column of y [m]</source>
+            <translation>Columna de y [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>Column that names the layout of each row</source>
+            <translation>Columna que anomena la disposició de cada fila</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>Feature {id} of {sourcename} is not one point with a place in the site's CRS: correct it or leave it out.</source>
+            <translation>L'entitat {id} de {sourcename} no és un sol punt amb lloc al SRC del recinte: corregiu-la o ometeu-la.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>Import cone layout</source>
+            <translation>Importa una disposició de cons</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>Layer, instead of a file</source>
+            <translation>Capa, en lloc d'un fitxer</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>Name (default: the layout's, else the file's)</source>
+            <translation>Nom (per defecte: el de la disposició, si no el del fitxer)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>Neither FILE nor INPUT is</source>
+            <translation>No s'ha donat ni FILE ni INPUT</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>ORIGIN is not given: say where the table's 0,0 goes.</source>
+            <translation>No s'ha donat ORIGIN: digueu on va el 0,0 de la taula.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>Places the cones of a CSV file or a layer, turned and moved to their place, and checks them.</source>
+            <translation>Col·loca els cons d'un fitxer CSV o d'una capa, girats i moguts al seu lloc, i els comprova.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>Rotation, counter-clockwise [degrees]</source>
+            <translation>Rotació, en sentit antihorari [graus]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>The one layout to take, by that column</source>
+            <translation>L'única disposició que s'agafa, segons aquesta columna</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>Where the table's 0,0 goes</source>
+            <translation>On va el 0,0 de la taula</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>{how} given: give a CSV file, or a layer.</source>
+            <translation>{how}: doneu un fitxer CSV o una capa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_source.py" />
+            <source>Cones that a robot carries (default of field capacity)</source>
+            <translation>Cons que porta un robot (per defecte del camp capacity)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_source.py" />
+            <source>Field of the stage: cones of lower ones come first</source>
+            <translation>Camp de l'etapa: els cons d'etapes més baixes van primer</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_source.py" />
+            <source>Metres that a robot's battery lasts, 0 for any (default of field range_m)</source>
+            <translation>Metres que dura la bateria d'un robot, 0 per a qualsevol (per defecte del camp range_m)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_source.py" />
+            <source>Robots, where they are</source>
+            <translation>Robots, on són</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_source.py" />
+            <source>Seconds of a visit to a store (default of its field service_s)</source>
+            <translation>Segons d'una visita a un magatzem (per defecte del seu camp service_s)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_source.py" />
+            <source>Seconds to place or collect a cone (default of field service_s)</source>
+            <translation>Segons per col·locar o recollir un con (per defecte del camp service_s)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_source.py" />
+            <source>Speed of a robot [m/s] (default of field speed)</source>
+            <translation>Velocitat d'un robot [m/s] (per defecte del camp speed)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_source.py" />
+            <source>Stores of cones</source>
+            <translation>Magatzems de cons</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_source.py" />
+            <source>What is done with cones (default of field task)</source>
+            <translation>Què es fa amb els cons (per defecte del camp task)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_source.py" />
+            <source>Where robots go at the end</source>
+            <translation>On van els robots al final</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_source.py" />
+            <source>{layer} is not one point with a place in {authid}: correct it.</source>
+            <translation>{layer} no és un sol punt amb lloc a {authid}: corregiu-lo.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_source.py" />
+            <source>{layer}: {field} is {value!r}, which is no number; correct it.</source>
+            <translation>{layer}: {field} és {value!r}, que no és un nombre; corregiu-lo.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_source.py" />
+            <source>{layer}: {field} is {value:g}; give a whole number.</source>
+            <translation>{layer}: {field} és {value:g}; doneu un nombre enter.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_source.py" />
+            <source>{name} {given} cannot be opened: check the file and the layer's name.</source>
+            <translation>{name} {given} no es pot obrir: comproveu el fitxer i el nom de la capa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_source.py" />
+            <source>{sourcename}, feature {id}</source>
+            <translation>{sourcename}, entitat {id}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_travel.py" />
+            <source>Areas that no road leads through</source>
+            <translation>Zones per on no passa cap via</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_travel.py" />
+            <source>Cones, robots and stores at most this far from a road [m]</source>
+            <translation>Cons, robots i magatzems com a màxim a aquesta distància d'una via [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_travel.py" />
+            <source>No roads are given: distances and paths are straight lines.</source>
+            <translation>No s'han donat vies: distàncies i camins són línies rectes.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_travel.py" />
+            <source>Points of the paths at most this far apart [m]</source>
+            <translation>Punts dels camins separats com a màxim [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_travel.py" />
+            <source>Road centrelines (default: straight lines)</source>
+            <translation>Eixos de via (per defecte: línies rectes)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_travel.py" />
+            <source>SITE_CRS {given} is no CRS that QGIS knows: write a code such as EPSG:32633.</source>
+            <translation>SITE_CRS {given} no és un SRC que QGIS conegui: escriviu un codi com ara EPSG:32633.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_travel.py" />
+            <source>The CRS of the cones is not known: give SITE_CRS, such as EPSG:32633.</source>
+            <translation>El SRC dels cons no es coneix: doneu SITE_CRS, com ara EPSG:32633.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_travel.py" />
+            <source>Turning radius of the robots [m]</source>
+            <translation>Radi de gir dels robots [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_travel.py" />
+            <source>Width of the robots [m]</source>
+            <translation>Amplada dels robots [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_travel.py" />
+            <source>{closed} edges lead through keepouts and are not used</source>
+            <translation>{closed} arestes passen per zones prohibides i no es fan servir</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/keepout_areas.py" />
+            <source>Areas that must not be driven through</source>
+            <translation>Zones que no s'han de travessar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/load_robot_map.py" />
+            <source>Border of the map</source>
+            <translation>Límit del mapa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/load_robot_map.py" />
+            <source>Load robot map</source>
+            <translation>Carrega un mapa de robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/load_robot_map.py" />
+            <source>Obstacles that are areas</source>
+            <translation>Obstacles que són àrees</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/load_robot_map.py" />
+            <source>Obstacles that are lines</source>
+            <translation>Obstacles que són línies</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/load_robot_map.py" />
+            <source>Turns a robot map, text or binary, into layers with all that the map says.</source>
+            <translation>Converteix un mapa de robots, text o binari, en capes amb tot el que diu el mapa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_file.py" />
+            <source>ORIGIN {origin} or ROTATION {rotation} is not finite: give numbers.</source>
+            <translation>ORIGIN {origin} o ROTATION {rotation} no és finit: doneu nombres.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_file.py" />
+            <source>Origin of the site frame in it (default: as the map says, else 0,0)</source>
+            <translation>Origen del marc del recinte en ell (per defecte: el que diu el mapa, si no 0,0)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_file.py" />
+            <source>Robot map, text or binary</source>
+            <translation>Mapa de robots, text o binari</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_file.py" />
+            <source>Robot maps (*.txt *.map *.rmap *.bin);;All files (*)</source>
+            <translation>Mapes de robots (*.txt *.map *.rmap *.bin);;Tots els fitxers (*)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_file.py" />
+            <source>Rotation of the site frame, counter-clockwise [degrees] (default: as the map says, else 0)</source>
+            <translation>Rotació del marc del recinte, en sentit antihorari [graus] (per defecte: la que diu el mapa, si no 0)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_file.py" />
+            <source>Site CRS (default: as the map says)</source>
+            <translation>SRC del recinte (per defecte: el que diu el mapa)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_file.py" />
+            <source>The file {path} has {size} bytes, and a robot map at most {largest_text}: choose a map.</source>
+            <translation>El fitxer {path} té {size} bytes, i un mapa de robots com a màxim {largest_text}: trieu un mapa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_file.py" />
+            <source>The file {path} is no robot map: it is neither UTF-8 (byte {start}) nor in the binary format, which begins with {decode}. Choose another file.</source>
+            <translation>El fitxer {path} no és un mapa de robots: ni és UTF-8 (byte {start}) ni és en el format binari, que comença per {decode}. Trieu un altre fitxer.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_file.py" />
+            <source>The leading line '%{key} {meta}' of the map should hold {wanted}: correct it there, or give {upper}.</source>
+            <translation>La línia inicial '%{key} {meta}' del mapa hauria de contenir {wanted}: corregiu-la allà, o doneu {upper}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_file.py" />
+            <source>The map's place is not known, because {why}: its layers are in local metres. Give SITE_CRS, ORIGIN and ROTATION to place it.</source>
+            <translation>El lloc del mapa no es coneix, perquè {why}: les capes són en metres locals. Doneu SITE_CRS, ORIGIN i ROTATION per situar-lo.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_file.py" />
+            <source>The robot map {path} cannot be read: {error}</source>
+            <translation>El mapa de robots {path} no es pot llegir: {error}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_file.py" />
+            <source>The robot map {path} cannot be read: {reason}. Check its rights.</source>
+            <translation>El mapa de robots {path} no es pot llegir: {reason}. Comproveu-ne els permisos.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_file.py" />
+            <source>There is no file {file}: choose a robot map (MAP).</source>
+            <translation>No hi ha cap fitxer {file}: trieu un mapa de robots (MAP).</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_file.py" />
+            <source>a number</source>
+            <translation>un nombre</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_file.py" />
+            <source>it names no CRS</source>
+            <translation>no anomena cap SRC</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_file.py" />
+            <source>the CRS {stated!r} that the map names is not known to QGIS</source>
+            <translation>QGIS no coneix el SRC {stated!r} que el mapa anomena</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_file.py" />
+            <source>two numbers 'x,y'</source>
+            <translation>dos nombres 'x,y'</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_format.py" />
+            <source>Format (compact: binary in columns, about a third of binary)</source>
+            <translation>Format (compact: binari en columnes, un terç del binari)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_format.py" />
+            <source>Only what the paper's Fig. 2 has: no leading lines, no extras</source>
+            <translation>Només el que té la fig. 2 de l'article: sense línies inicials ni extres</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_format.py" />
+            <source>text: lines that people and scripts read. binary: that text compressed, with a check sum. compact: the same map in columns of centimetres, also with a check sum (codec 2).</source>
+            <translation>text: línies que llegeixen persones i scripts. binary: aquest text comprimit, amb suma de verificació. compact: el mateix mapa en columnes de centímetres, també amb suma de verificació (còdec 2).</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_place.py" />
+            <source>GeoJSON needs longitudes and latitudes, and the map's place is not known: give SITE_CRS, ORIGIN and ROTATION, or choose geopackage, which keeps the site's metres.</source>
+            <translation>GeoJSON necessita longituds i latituds, i el lloc del mapa no es coneix: doneu SITE_CRS, ORIGIN i ROTATION, o trieu geopackage, que conserva els metres del recinte.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_place.py" />
+            <source>The map's positions cannot be transformed from {authid} to longitudes and latitudes ({error}): check the map's lines crs, origin and rotation.</source>
+            <translation>Les posicions del mapa no es poden transformar de {authid} a longituds i latituds ({error}): comproveu les línies crs, origin i rotation del mapa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_profile.py" />
+            <source>Map profile ({kinds});;All files (*)</source>
+            <translation>Perfil de mapa ({kinds});;Tots els fitxers (*)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_profile.py" />
+            <source>Map profile: what the layers are, by their names (default: as each layer keeps it)</source>
+            <translation>Perfil de mapa: què són les capes, pel seu nom (per defecte: com ho guarda cada capa)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_shaping.py" />
+            <source>0 is off. An outline that would cross itself stays as it is. Needs the Python package shapely 2.</source>
+            <translation>0: desactivat. Un contorn que es creuaria a si mateix es queda com és. Necessita el paquet de Python shapely 2.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_shaping.py" />
+            <source>0 is off. Ends of lines stay and rings keep three corners. Needs the Python package shapely 2.</source>
+            <translation>0: desactivat. Els extrems de les línies es queden i els anells conserven tres cantonades. Necessita el paquet de Python shapely 2.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_shaping.py" />
+            <source>0 is off. Half a metre makes a compact map smaller still, and no obstacle lower than it is.</source>
+            <translation>0: desactivat. Mig metre fa encara més petit un mapa compacte, i cap obstacle més baix del que és.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_shaping.py" />
+            <source>DISSOLVE, TOLERANCE and SHORTEST need the Python package shapely 2, and {version} is installed here: install a newer one (python3 -m pip install 'shapely&gt;=2'), or leave them off.</source>
+            <translation>DISSOLVE, TOLERANCE i SHORTEST necessiten el paquet de Python shapely 2, i aquí hi ha {version}: instal·leu-ne un de més nou (python3 -m pip install 'shapely&gt;=2'), o deixeu-los desactivats.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_shaping.py" />
+            <source>Fewer corners: how far an outline may then be from the drawn one [m]</source>
+            <translation>Menys cantonades: a quina distància pot quedar un contorn del dibuixat [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_shaping.py" />
+            <source>Heights are rounded up to a multiple of this [m]</source>
+            <translation>Les alçades s'arrodoneixen cap amunt a un múltiple de [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_shaping.py" />
+            <source>Join lines that meet end to end into one obstacle</source>
+            <translation>Uneix línies que es troben pels extrems en un sol obstacle</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_shaping.py" />
+            <source>Leave out walls between buildings that touch and lines inside or along buildings</source>
+            <translation>Omet parets entre edificis que es toquen i línies dins o al llarg d'edificis</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_shaping.py" />
+            <source>No robot outside can meet them. What stays keeps its height and its source. Needs the Python package shapely 2.</source>
+            <translation>Cap robot de fora se'ls pot trobar. El que es queda conserva l'alçada i la font. Necessita el paquet de Python shapely 2.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_shaping.py" />
+            <source>Only lines that are alike in height, label and all else. The source of a joined line is that of its first part and how many others are in it, such as walls:3+7.</source>
+            <translation>Només línies iguals en alçada, etiqueta i tota la resta. La font d'una línia unida és la de la primera part i quantes més hi ha, com ara walls:3+7.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_shaping.py" />
+            <source>PLANE_LOW is {low:g} and PLANE_HIGH {high:g}: give the lower and the upper height in metres.</source>
+            <translation>PLANE_LOW és {low:g} i PLANE_HIGH {high:g}: doneu l'alçada inferior i la superior en metres.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_shaping.py" />
+            <source>Robot's plane: from this height above the ground [m]</source>
+            <translation>Pla del robot: des d'aquesta alçada sobre el terra [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_shaping.py" />
+            <source>Robot's plane: up to this height above the ground [m]</source>
+            <translation>Pla del robot: fins a aquesta alçada sobre el terra [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_shaping.py" />
+            <source>Shortest segment: corners nearer than this to the one before are left out [m]</source>
+            <translation>Segment més curt: s'ometen les cantonades més properes a l'anterior [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_shaping.py" />
+            <source>What begins at this height or above it is left out: the robot drives under it. Where things begin is said by the layers or by the parameter BASE_EXPRESSION.</source>
+            <translation>El que comença a aquesta alçada o per sobre s'omet: el robot hi passa per sota. On comencen les coses ho diuen les capes o el paràmetre BASE_EXPRESSION.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_shaping.py" />
+            <source>What is not higher than this is left out: the robot drives over it. Stairs and ramps stay. Give the lower and the upper height together, or neither.</source>
+            <translation>El que no és més alt s'omet: el robot hi passa per sobre. Escales i rampes es queden. Doneu l'alçada inferior i la superior juntes, o cap.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_shaping.py" />
+            <source>{name} is {value:g}: give a number of metres of 0 or more.</source>
+            <translation>{name} és {value:g}: doneu un nombre de metres de 0 o més.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_shaping.py" />
+            <source>{other} is given and {missing} is not: give both heights in metres, or none.</source>
+            <translation>S'ha donat {other} i no {missing}: doneu les dues alçades en metres, o cap.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_window.py" />
+            <source>Both CENTER and EXTENT are given: give one of them, the window cannot be both.</source>
+            <translation>S'han donat CENTER i EXTENT alhora: doneu-ne un, la finestra no pot ser tots dos.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_window.py" />
+            <source>Centre of the window (or choose an extent)</source>
+            <translation>Centre de la finestra (o trieu una extensió)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_window.py" />
+            <source>EXTENT {extent} is no extent: write 'xmin,xmax,ymin,ymax'.</source>
+            <translation>EXTENT {extent} no és una extensió: escriviu 'xmin,xmax,ymin,ymax'.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_window.py" />
+            <source>Extent (instead of centre, width and height)</source>
+            <translation>Extensió (en lloc de centre, amplada i alçada)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_window.py" />
+            <source>Height of the window, along y [m]</source>
+            <translation>Alçada de la finestra, en y [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_window.py" />
+            <source>Layers without a CRS are already in the site frame's metres</source>
+            <translation>Les capes sense SRC ja són en metres del marc del recinte</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_window.py" />
+            <source>Neither CENTER nor EXTENT is given: give the centre of the window with WIDTH and HEIGHT in metres, or an extent.</source>
+            <translation>No s'ha donat ni CENTER ni EXTENT: doneu el centre de la finestra amb WIDTH i HEIGHT en metres, o una extensió.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_window.py" />
+            <source>ORIGIN {origin} or ROTATION {degrees} is not finite: give numbers.</source>
+            <translation>ORIGIN {origin} o ROTATION {degrees} no és finit: doneu nombres.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_window.py" />
+            <source>Origin of the site frame (default: as the project has it, else 0,0)</source>
+            <translation>Origen del marc del recinte (per defecte: el del projecte, si no 0,0)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_window.py" />
+            <source>Rotation of the site frame, counter-clockwise from the CRS's x axis [degrees]</source>
+            <translation>Rotació del marc del recinte, en sentit antihorari des de l'eix x del SRC [graus]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_window.py" />
+            <source>Site CRS, in metres (default: the project's, else the layers')</source>
+            <translation>SRC del recinte, en metres (per defecte: el del projecte, si no el de les capes)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_window.py" />
+            <source>Width of the window, along x [m]</source>
+            <translation>Amplada de la finestra, en x [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_window.py" />
+            <source>{side} is {length}: give a finite number of metres.</source>
+            <translation>{side} és {length}: doneu un nombre finit de metres.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/mask_areas.py" />
+            <source>Layer {sourcename}, feature {id}</source>
+            <translation>Capa {sourcename}, entitat {id}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/mask_areas.py" />
+            <source>SPEED {text!r} is no expression ({reason}): write a field's name or a number.</source>
+            <translation>SPEED {text!r} no és una expressió ({reason}): escriviu el nom d'un camp o un nombre.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/mask_areas.py" />
+            <source>cannot be transformed into the site's CRS ({error}); it is left out</source>
+            <translation>no es pot transformar al SRC del recinte ({error}); s'omet</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/mask_areas.py" />
+            <source>has no geometry; it is left out</source>
+            <translation>no té geometria; s'omet</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/mask_areas.py" />
+            <source>{name}: it has no speed above 0 m/s, so it sets no limit; it is left out</source>
+            <translation>{name}: no té cap velocitat superior a 0 m/s, així que no limita; s'omet</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/obstacle_outlines.py" />
+            <source>Reducing obstacles</source>
+            <translation>S'estan reduint els obstacles</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/obstacle_outlines.py" />
+            <source>{obstacles} obstacles with {segments} segments became {obstacles_left} with {segments_left}</source>
+            <translation>{obstacles} obstacles amb {segments} segments s'han convertit en {obstacles_left} amb {segments_left}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/plan_rows.py" />
+            <source>Metres of all robots</source>
+            <translation>Metres de tots els robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/plan_rows.py" />
+            <source>Robots that drive</source>
+            <translation>Robots que circulen</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/plan_rows.py" />
+            <source>Seconds until the last cone is done</source>
+            <translation>Segons fins que està fet l'últim con</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/plan_rows.py" />
+            <source>Seconds until the last robot has finished</source>
+            <translation>Segons fins que acaba l'últim robot</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/plan_rows.py" />
+            <source>Trips</source>
+            <translation>Viatges</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_plan.py" />
+            <source>BOUNDS {bounds} is no extent: write 'xmin,xmax,ymin,ymax'.</source>
+            <translation>BOUNDS {bounds} no és una extensió: escriviu 'xmin,xmax,ymin,ymax'.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_plan.py" />
+            <source>SITE_ID is empty and the project has no variable {site_variable}: give the site an id of letters, digits, '_', '.' and '-', such as north_yard.</source>
+            <translation>SITE_ID és buit i el projecte no té la variable {site_variable}: doneu al recinte un id de lletres, dígits, '_', '.' i '-', com ara north_yard.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_plan.py" />
+            <source>The layer {layer} is no vector layer: take its role away.</source>
+            <translation>La capa {layer} no és vectorial: traieu-li el paper.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_plan.py" />
+            <source>The site's CRS is not known, and</source>
+            <translation>El SRC del recinte no es coneix, i</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_plan.py" />
+            <source>The site's CRS, {crs_name},</source>
+            <translation>El SRC del recinte, {crs_name},</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_plan.py" />
+            <source>There is nothing to publish: no layer is given and no layer of the project has a role. Give roles (Fleet Supervisor &gt; Layer roles), a PROFILE, or layers.</source>
+            <translation>No hi ha res a publicar: no s'ha donat cap capa i cap capa del projecte té un paper. Doneu papers (Fleet Supervisor &gt; Papers de les capes), un PROFILE, o capes.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_plan.py" />
+            <source>{named} has no code that a gateway knows it by: choose SITE_CRS such as EPSG:32633. Layers in local metres can be published with ORIGIN and LOCAL=true.</source>
+            <translation>{named} no té cap codi pel qual el conegui una passarel·la: trieu SITE_CRS, com ara EPSG:32633. Les capes en metres locals es poden publicar amb ORIGIN i LOCAL=true.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_plan.py" />
+            <source>{name} is {value}: give a number of metres above 0.</source>
+            <translation>{name} és {value}: doneu un nombre de metres superior a 0.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_plan.py" />
+            <source>{name}: the layer {layer} cannot be opened: check the file, and the layer's name after '|layername='.</source>
+            <translation>{name}: la capa {layer} no es pot obrir: comproveu el fitxer i el nom de la capa després de '|layername='.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_plan.py" />
+            <source>{place} = {text} is no number: correct it there.</source>
+            <translation>{place} = {text} no és un nombre: corregiu-lo allà.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>A robot is lost without a message for [s]</source>
+            <translation>Un robot és perdut sense missatge durant [s]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>A robot is stale without a message for [s]</source>
+            <translation>Un robot és desactualitzat sense missatge durant [s]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>A target is reached within [m]</source>
+            <translation>Un objectiu s'assoleix a menys de [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>Folder of the published site</source>
+            <translation>Carpeta del recinte publicat</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>Height where none is known [m]</source>
+            <translation>Alçada on no se'n coneix cap [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>Id of the site</source>
+            <translation>Id del recinte</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>Keepout layers (default: the project's with that role)</source>
+            <translation>Capes de zones prohibides (per defecte: les del projecte amb aquest paper)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>Keepouts</source>
+            <translation>Zones prohibides</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>Obstacle layers, stairs, ramps and furniture (default: the project's with such a role)</source>
+            <translation>Capes d'obstacles, escales, rampes i mobiliari (per defecte: les del projecte amb aquest paper)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>Obstacle outlines</source>
+            <translation>Contorns d'obstacles</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>Publish site</source>
+            <translation>Publica el recinte</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>Replace the publication of another site</source>
+            <translation>Substitueix la publicació d'un altre recinte</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>Road centreline layers (default: the project's with that role)</source>
+            <translation>Capes d'eixos de via (per defecte: les del projecte amb aquest paper)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>Road centrelines</source>
+            <translation>Eixos de via</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>Road surface layers (default: the project's with that role)</source>
+            <translation>Capes de superfícies de via (per defecte: les del projecte amb aquest paper)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>Site id (default: the project's)</source>
+            <translation>Id del recinte (per defecte: el del projecte)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>Site name (default: the project's title)</source>
+            <translation>Nom del recinte (per defecte: el títol del projecte)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>Site {id} version {version} is published in {folder}: {outlines} obstacle outlines, {centrelines} centrelines, {surfaces} road surfaces, {keepouts} keepouts; bounds {bounds} m</source>
+            <translation>El recinte {id} versió {version} s'ha publicat a {folder}: {outlines} contorns d'obstacles, {centrelines} eixos, {surfaces} superfícies de via, {keepouts} zones prohibides; límits {bounds} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>Sites</source>
+            <translation>Recintes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>There is nothing to publish: the layers hold nothing that can be read. See the warnings, or give BOUNDS to publish an empty site.</source>
+            <translation>No hi ha res a publicar: les capes no contenen res que es pugui llegir. Vegeu els avisos, o doneu BOUNDS per publicar un recinte buit.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>Version of the site</source>
+            <translation>Versió del recinte</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>Where robots may be sent (default: all that is published)</source>
+            <translation>On es poden enviar robots (per defecte: tot el que es publica)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>Width of a road where none is known [m]</source>
+            <translation>Amplada d'una via on no se'n coneix cap [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>Writes the layers of a site, by their roles, into the folder that a gateway serves.</source>
+            <translation>Escriu les capes d'un recinte, segons els seus papers, a la carpeta que serveix una passarel·la.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>{title} (default: as published, at first {default:g})</source>
+            <translation>{title} (per defecte: com es va publicar, al principi {default:g})</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_source.py" />
+            <source>CRS in metres (default: the layer's, or the project's)</source>
+            <translation>SRC en metres (per defecte: el de la capa o el del projecte)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_source.py" />
+            <source>Direction: yes along the line, -1 against it, no both (default: a field oneway, ...)</source>
+            <translation>Sentit: yes al llarg de la línia, -1 en contra, no tots dos (per defecte: un camp oneway, ...)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_source.py" />
+            <source>Ends this near to a road were meant to meet it [m]</source>
+            <translation>Els extrems així de prop d'una via s'hi havien de trobar [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_source.py" />
+            <source>Layer {name}, feature {id}: {note}</source>
+            <translation>Capa {name}, entitat {id}: {note}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_source.py" />
+            <source>Layer {name}: the width of {unknown} roads is not known; {width:g} m is used</source>
+            <translation>Capa {name}: l'amplada de {unknown} vies no es coneix; s'hi posa {width:g} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_source.py" />
+            <source>Level of each road, 0 on the ground (default: fields level, layer, bridge, tunnel)</source>
+            <translation>Nivell de cada via, 0 a terra (per defecte: camps level, layer, bridge, tunnel)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_source.py" />
+            <source>ROADS {roads} cannot be opened: check the file and the layer's name.</source>
+            <translation>ROADS {roads} no es pot obrir: comproveu el fitxer i el nom de la capa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_source.py" />
+            <source>Repair: close gaps, cut overshoots, leave out what is drawn twice</source>
+            <translation>Repara: tanca forats, talla sobrepassaments, omet el que s'ha dibuixat dues vegades</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_source.py" />
+            <source>Repaired: {kind} of feature {feature} at {where}: {text}</source>
+            <translation>Reparat: {kind} de l'entitat {feature} a {where}: {text}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_source.py" />
+            <source>Speed on each road [m/s] (default: a field speed_ms, or maxspeed in km/h)</source>
+            <translation>Velocitat a cada via [m/s] (per defecte: un camp speed_ms, o maxspeed en km/h)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_source.py" />
+            <source>Speed on roads of which it is not known [m/s]</source>
+            <translation>Velocitat a les vies de les quals no es coneix [m/s]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_source.py" />
+            <source>Surface of each road (default: the layer's role, else a field surface)</source>
+            <translation>Superfície de cada via (per defecte: el paper de la capa, si no un camp surface)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_source.py" />
+            <source>Whether each road is closed (default: a field closed)</source>
+            <translation>Si cada via és tancada (per defecte: un camp closed)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_source.py" />
+            <source>Width of each road [m] (default: the layer's role, else a field width_m or width)</source>
+            <translation>Amplada de cada via [m] (per defecte: el paper de la capa, si no un camp width_m o width)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_source.py" />
+            <source>Width of roads of which it is not known [m]</source>
+            <translation>Amplada de les vies de les quals no es coneix [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_source.py" />
+            <source>cannot be transformed into the CRS in metres ({error}); it is left out</source>
+            <translation>no es pot transformar al SRC en metres ({error}); s'omet</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/sinks.py" />
+            <source>A layer cannot be written ({reason}): choose another place or format for it, and check the free space.</source>
+            <translation>No es pot escriure una capa ({reason}): trieu-li un altre lloc o format, i comproveu l'espai lliure.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/surface_at_point.py" />
+            <source>Adds to points, in any CRS, the class of the road surface that they are on.</source>
+            <translation>Afegeix a punts, en qualsevol SRC, la classe de la superfície de via on són.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/surface_at_point.py" />
+            <source>Feature {id} has points on several surfaces; none is given for it</source>
+            <translation>L'entitat {id} té punts sobre diverses superfícies; no se'n dona cap</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/surface_at_point.py" />
+            <source>No road surfaces are given, and no layer of the project has the role road surface: give SURFACES, or set the role in Plugins &gt; Fleet Supervisor &gt; Layer roles.</source>
+            <translation>No s'han donat superfícies de via, i cap capa del projecte té el paper superfície de via: doneu SURFACES, o poseu el paper a Connectors &gt; Fleet Supervisor &gt; Papers de les capes.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/surface_at_point.py" />
+            <source>Points</source>
+            <translation>Punts</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/surface_at_point.py" />
+            <source>Points on a surface</source>
+            <translation>Punts sobre una superfície</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/surface_at_point.py" />
+            <source>Points on none</source>
+            <translation>Punts sobre cap</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/surface_at_point.py" />
+            <source>Points with surface</source>
+            <translation>Punts amb superfície</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/surface_at_point.py" />
+            <source>Road surfaces (default: the project's layers with that role)</source>
+            <translation>Superfícies de via (per defecte: les capes del projecte amb aquest paper)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/surface_at_point.py" />
+            <source>Surface at point</source>
+            <translation>Superfície al punt</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/surface_at_point.py" />
+            <source>{counts} points are on a surface, {counts2} on none.</source>
+            <translation>{counts} punts són sobre una superfície, {counts2} sobre cap.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/svg_picture.py" />
+            <source>Qt cannot draw the picture of this map: choose svg and open that in a browser.</source>
+            <translation>Qt no pot dibuixar la imatge d'aquest mapa: trieu svg i obriu-lo en un navegador.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/tile_folder.py" />
+            <source>The tiles cannot be written to {folder}: {reason}. Choose a folder that may be written to, and check the free space.</source>
+            <translation>Les tessel·les no es poden escriure a {folder}: {reason}. Trieu una carpeta on es pugui escriure, i comproveu l'espai lliure.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/tile_folder.py" />
+            <source>{path} is a folder: choose another folder for the tiles.</source>
+            <translation>{path} és una carpeta: trieu una altra carpeta per a les tessel·les.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/tile_plan.py" />
+            <source>Both EXTENT and ROUTE are given: give one of them, for a grid or for tiles along a route.</source>
+            <translation>S'han donat EXTENT i ROUTE alhora: doneu-ne un, per a una graella o per a tessel·les al llarg d'una ruta.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/tile_plan.py" />
+            <source>Neither EXTENT nor ROUTE is given: give an extent for a grid, or a layer of lines to follow.</source>
+            <translation>No s'ha donat ni EXTENT ni ROUTE: doneu una extensió per a una graella, o una capa de línies a seguir.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/tile_plan.py" />
+            <source>OUTPUT {folder} is a file: choose a folder for the tiles.</source>
+            <translation>OUTPUT {folder} és un fitxer: trieu una carpeta per a les tessel·les.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/tile_plan.py" />
+            <source>ROUTE {route} cannot be opened: choose a layer of lines.</source>
+            <translation>ROUTE {route} no es pot obrir: trieu una capa de línies.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/tile_plan.py" />
+            <source>ROUTE: feature {id} of {layer}: {doubts}. Correct the filter of the layer.</source>
+            <translation>ROUTE: entitat {id} de {layer}: {doubts}. Corregiu el filtre de la capa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/tile_plan.py" />
+            <source>ROUTE: feature {id} of {sourcename} has no place in the site's CRS ({error}): correct its geometry or the CRS.</source>
+            <translation>ROUTE: l'entitat {id} de {sourcename} no té lloc al SRC del recinte ({error}): corregiu-ne la geometria o el SRC.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/tile_windows.py" />
+            <source>OVERLAP is {overlap} m: give 0 or more, and at most nine tenths of a tile's side.</source>
+            <translation>OVERLAP és {overlap} m: doneu 0 o més, i com a màxim nou dècimes del costat d'una tessel·la.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/tile_windows.py" />
+            <source>ROUTE holds no line: choose a layer with the route to export along.</source>
+            <translation>ROUTE no té cap línia: trieu una capa amb la ruta al llarg de la qual exportar.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/tile_windows.py" />
+            <source>That would be {count} tiles, and {most_tiles} are the most: choose larger tiles, less overlap or a smaller area.</source>
+            <translation>Serien {count} tessel·les, i {most_tiles} són el màxim: trieu tessel·les més grans, menys solapament o una zona més petita.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/tile_windows.py" />
+            <source>The {name} of a tile is {value} m: give at least 1 m, such as 100.</source>
+            <translation>La mida ({name}) d'una tessel·la és {value} m: doneu almenys 1 m, com ara 100.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/whole_file.py" />
+            <source>The robot map</source>
+            <translation>El mapa de robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/whole_file.py" />
+            <source>{what} cannot be written to {target}: {reason}. Choose a file in a folder that exists and may be written to.</source>
+            <translation>{what} no es pot escriure a {target}: {reason}. Trieu un fitxer en una carpeta que existeixi i on es pugui escriure.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/live_preview.py" />
+            <source>Reading {sources} layers …</source>
+            <translation>S'estan llegint {sources} capes …</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/measure.py" />
+            <source> of {counted}</source>
+            <translation> de {counted}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/measure.py" />
+            <source>{counted} refused</source>
+            <translation>{counted} rebutjades</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/picture.py" />
+            <source>{metres:g} m</source>
+            <translation>{metres:g} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/preview_task.py" />
+            <source>Preview of the site</source>
+            <translation>Vista prèvia del recinte</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/roles_action.py" />
+            <source>Layer roles…</source>
+            <translation>Papers de les capes…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/roles_action.py" />
+            <source>Say what each layer of the project is to robots</source>
+            <translation>Digueu què és cada capa del projecte per als robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/roles_dialog.py" />
+            <source>Apply profile</source>
+            <translation>Aplica el perfil</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/roles_dialog.py" />
+            <source>Layer roles</source>
+            <translation>Papers de les capes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/roles_dialog.py" />
+            <source>Map profile</source>
+            <translation>Perfil de mapa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/roles_dialog.py" />
+            <source>Map profile ({kinds})</source>
+            <translation>Perfil de mapa ({kinds})</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/roles_dialog.py" />
+            <source>Map profile:</source>
+            <translation>Perfil de mapa:</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/roles_dialog.py" />
+            <source>Profile from file…</source>
+            <translation>Perfil d'un fitxer…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/roles_dialog.py" />
+            <source>{name} knows none of these layers by name and fields.</source>
+            <translation>{name} no coneix cap d'aquestes capes pel nom i els camps.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/roles_dialog.py" />
+            <source>{name}: {known} of {setups} layers set up.</source>
+            <translation>{name}: {known} de {setups} capes configurades.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Comes to</source>
+            <translation>Resultat</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Estimate [m]</source>
+            <translation>Estimació [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Expression for metres above the ground where it begins, as of an arch; empty: 0</source>
+            <translation>Expressió per als metres sobre el terra on comença, com un arc; buida: 0</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Expression for metres from the foot up; empty: the field height or height_m</source>
+            <translation>Expressió per als metres des del peu cap amunt; buida: el camp height o height_m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Expression for the degrees clockwise that the template is turned; empty: 0</source>
+            <translation>Expressió per als graus que es gira la plantilla en sentit horari; buida: 0</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Expression for the height where it is not known, such as 3 * "levels"; marked as estimated</source>
+            <translation>Expressió per a l'alçada on no es coneix, com ara 3 * "levels"; marcada com a estimada</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Expression for the label, such as 'building,' || "name"; of a road its surface</source>
+            <translation>Expressió per a l'etiqueta, com ara 'building,' || "name"; d'una via, la superfície</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Expression for the metres across, of a road or of furniture that is points</source>
+            <translation>Expressió per als metres d'amplada, d'una via o de mobiliari que són punts</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Expression for the shape that a point of furniture stands for: {shapes}, 'circle 0.6', 'square 1' or 'rectangle 2 0.5'; empty: an octagon of its width</source>
+            <translation>Expressió per a la forma que representa un punt de mobiliari: {shapes}, 'circle 0.6', 'square 1' o 'rectangle 2 0.5'; buida: un octàgon de la seva amplada</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Expression for true or false; empty: true</source>
+            <translation>Expressió per a cert o fals; buida: cert</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Expression that is true of the features that count, such as "amenity" = 'bench'; empty: all</source>
+            <translation>Expressió certa per a les entitats que compten, com ara "amenity" = 'bench'; buida: totes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Filter</source>
+            <translation>Filtre</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Foot [m]</source>
+            <translation>Peu [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Height [m]</source>
+            <translation>Alçada [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Label</source>
+            <translation>Etiqueta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Layer</source>
+            <translation>Capa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Layers of the project that can have a role</source>
+            <translation>Capes del projecte que poden tenir un paper</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Outdoors</source>
+            <translation>Exterior</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Role</source>
+            <translation>Paper</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Template</source>
+            <translation>Plantilla</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Turned [°]</source>
+            <translation>Girat [°]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>What is published of the layer</source>
+            <translation>Què es publica de la capa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>What the layer is to robots and operators</source>
+            <translation>Què és la capa per als robots i els operadors</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Width [m]</source>
+            <translation>Amplada [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>road centreline</source>
+            <translation>eix de via</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>road surface</source>
+            <translation>superfície de via</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/obstacle_source.py" />
+            <source>The layer {name} cannot be opened ({source}): repair its data source or leave it out.</source>
+            <translation>La capa {name} no es pot obrir ({source}): repareu-ne l'origen de dades o ometeu-la.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/obstacle_source.py" />
+            <source>The layer {name} holds {held}, and only lines and polygons are obstacles: leave it out, give it an extent first (for example with Buffer), or the role furniture.</source>
+            <translation>La capa {name} conté {held}, i només les línies i els polígons són obstacles: ometeu-la, doneu-li abans extensió (per exemple amb Buffer), o el paper mobiliari.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/obstacle_source.py" />
+            <source>no geometry</source>
+            <translation>cap geometria</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/obstacle_source.py" />
+            <source>points</source>
+            <translation>punts</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/placing.py" />
+            <source>The layer {name} has no CRS, so its place on the site is not known: set the layer's CRS (Layer &gt; Set CRS of Layer), or {tick}.</source>
+            <translation>La capa {name} no té SRC, així que el seu lloc al recinte no es coneix: definiu el SRC de la capa (Capa &gt; Defineix el SRC de la capa), o {tick}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/placing.py" />
+            <source>The layer {name} is in the CRS {crs}, which has no known relation to the site CRS {site_crs}: choose the layer's CRS as the site CRS, or {tick}.</source>
+            <translation>La capa {name} és en el SRC {crs}, que no té cap relació coneguda amb el SRC del recinte {site_crs}: trieu el SRC de la capa com a SRC del recinte, o {tick}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/placing.py" />
+            <source>tick 'Layers without a CRS are already in the site frame's metres' (LOCAL=true)</source>
+            <translation>marqueu «Les capes sense SRC ja són en metres del marc del recinte» (LOCAL=true)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/profile_file.py" />
+            <source>The profile {file} cannot be read: {error}.</source>
+            <translation>El perfil {file} no es pot llegir: {error}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/profile_file.py" />
+            <source>The profile {file} is not there: give the path of a file, or one of {shipped}.</source>
+            <translation>El perfil {file} no hi és: doneu el camí d'un fitxer, o un de {shipped}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/profile_file.py" />
+            <source>{file} cannot be read: this QGIS runs Python older than 3.11, which reads no TOML. Save the profile with the same keys as JSON and choose that file.</source>
+            <translation>{file} no es pot llegir: aquest QGIS fa servir un Python anterior a 3.11, que no llegeix TOML. Deseu el perfil amb les mateixes claus com a JSON i trieu aquell fitxer.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/profile_file.py" />
+            <source>{file} is no profile: write an object with name and layers.</source>
+            <translation>{file} no és un perfil: escriviu un objecte amb name i layers.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/profile_file.py" />
+            <source>{file} is not valid {kind}: {error}. Correct that place.</source>
+            <translation>{file} no és {kind} vàlid: {error}. Corregiu aquest lloc.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/profile_file.py" />
+            <source>{file}: layers is missing or empty: write one table [[layers]] or more.</source>
+            <translation>{file}: layers falta o és buit: escriviu una o més taules [[layers]].</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/profile_file.py" />
+            <source>{file}: {key} fits no layer: write names = ["*building*"] or fields = ["building"].</source>
+            <translation>{file}: {key} no encaixa amb cap capa: escriviu names = ["*building*"] o fields = ["building"].</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/profile_file.py" />
+            <source>{file}: {key} is {content!r}: write a table [[layers]].</source>
+            <translation>{file}: {key} és {content!r}: escriviu una taula [[layers]].</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/profile_file.py" />
+            <source>{file}: {key}.geometry is {geometry!r}: write one of {geometries}.</source>
+            <translation>{file}: {key}.geometry és {geometry!r}: escriviu un de {geometries}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/profile_file.py" />
+            <source>{file}: {key}.role is {role!r}: write one of {roles}.</source>
+            <translation>{file}: {key}.role és {role!r}: escriviu un de {roles}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/profile_file.py" />
+            <source>{file}: {key}.{name} is no QGIS expression: {error}. Correct it.</source>
+            <translation>{file}: {key}.{name} no és una expressió de QGIS: {error}. Corregiu-la.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/profile_file.py" />
+            <source>{file}: {key}.{name} is {value!r}: write a list of texts, such as ["walls"].</source>
+            <translation>{file}: {key}.{name} és {value!r}: escriviu una llista de textos, com ara ["walls"].</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/profile_file.py" />
+            <source>{file}: {prefix}{name} is no key of a profile: known are {known}. Remove it or correct its name.</source>
+            <translation>{file}: {prefix}{name} no és una clau de perfil: les conegudes són {known}. Traieu-la o corregiu-ne el nom.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/profile_file.py" />
+            <source>{file}: {prefix}{name} is {value!r}: write text in quotes.</source>
+            <translation>{file}: {prefix}{name} és {value!r}: escriviu text entre cometes.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/publication.py" />
+            <source>{file} is there and is no part of a published site: choose another folder, or say that it may be replaced (REPLACE=true).</source>
+            <translation>{file} hi és i no forma part d'un recinte publicat: trieu una altra carpeta, o digueu que es pot substituir (REPLACE=true).</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/publication.py" />
+            <source>{folder} holds version {version} of another site, {other}: choose another folder for {site}, or say that the other site may be replaced (REPLACE=true).</source>
+            <translation>{folder} conté la versió {version} d'un altre recinte, {other}: trieu una altra carpeta per a {site}, o digueu que l'altre recinte es pot substituir (REPLACE=true).</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/publication_lock.py" />
+            <source>Another publication into {folder} is under way, by {who}: wait until it has ended, or choose another folder. If it ended on another computer without a word, remove {file}.</source>
+            <translation>Una altra publicació a {folder} és en curs, de {who}: espereu que acabi, o trieu una altra carpeta. Si va acabar en un altre ordinador sense dir res, esborreu {file}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/publication_lock.py" />
+            <source>The site cannot be published in {folder}: {reason}. Check the folder's rights and the free space.</source>
+            <translation>El recinte no es pot publicar a {folder}: {reason}. Comproveu els permisos de la carpeta i l'espai lliure.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/publication_lock.py" />
+            <source>another process</source>
+            <translation>un altre procés</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/publication_lock.py" />
+            <source>no file {lock_file} can be made in it</source>
+            <translation>no s'hi pot crear cap fitxer {lock_file}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/publication_lock.py" />
+            <source>process {process} on {host}</source>
+            <translation>el procés {process} a {host}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/site_crs.py" />
+            <source> (EPSG:326xx north, EPSG:327xx south of the equator)</source>
+            <translation> (EPSG:326xx al nord, EPSG:327xx al sud de l'equador)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/site_crs.py" />
+            <source>The CRS {crs} cannot carry a site</source>
+            <translation>El SRC {crs} no pot portar un recinte</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/site_crs.py" />
+            <source>without a name</source>
+            <translation>sense nom</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/site_crs.py" />
+            <source>{named}: its coordinates are not metres on a plane. Choose a projected CRS such as the local UTM zone{suggestion}.</source>
+            <translation>{named}: les coordenades no són metres en un pla. Trieu un SRC projectat com la zona UTM local{suggestion}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/site_crs.py" />
+            <source>{named}: its metres are not metres; 1 m on the ground is 1.56 m there at latitude 50°. Choose the local UTM zone, such as EPSG:32633 for 12°E to 18°E.</source>
+            <translation>{named}: els seus metres no són metres; 1 m sobre el terreny hi són 1.56 m a 50° de latitud. Trieu la zona UTM local, com ara EPSG:32633 de 12°E a 18°E.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/site_crs.py" />
+            <source>{named}: its unit is {unit}, and robots speak metres. Choose a CRS in metres such as the local UTM zone{suggestion}.</source>
+            <translation>{named}: la unitat és {unit}, i els robots parlen en metres. Trieu un SRC en metres com la zona UTM local{suggestion}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/site_file.py" />
+            <source>GDAL does not say why</source>
+            <translation>GDAL no diu per què</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/site_file.py" />
+            <source>The Python bindings of GDAL (osgeo) are missing in this QGIS, which write site.gpkg: install the distribution's package, such as python3-gdal.</source>
+            <translation>En aquest QGIS falten els enllaços de Python de GDAL (osgeo), que escriuen site.gpkg: instal·leu el paquet de la distribució, com ara python3-gdal.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/site_file.py" />
+            <source>{file} cannot be written in {folder}: {error}. Check the folder's rights and the free space.</source>
+            <translation>{file} no es pot escriure a {folder}: {error}. Comproveu els permisos de la carpeta i l'espai lliure.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/surface_store.py" />
+            <source>Reading road surfaces</source>
+            <translation>S'estan llegint les superfícies de via</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/websocket_library.py" />
+            <source>The Python package websockets is missing, which the connection to the gateway needs. Install the plugin from its release zip, which contains it, or run 'python3 -m pip install websockets' with the Python that QGIS uses, and restart QGIS.</source>
+            <translation>Falta el paquet de Python websockets, que necessita la connexió amb la passarel·la. Instal·leu el connector des del zip publicat, que el conté, o executeu 'python3 -m pip install websockets' amb el Python de QGIS, i reinicieu QGIS.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/websocket_library.py" />
+            <source>The Python package websockets {version} in {path} is too old for the connection to the gateway. Install the plugin from its release zip, which contains a newer one, or run 'python3 -m pip install "websockets&gt;={oldest}"' with the Python that QGIS uses, and restart QGIS.</source>
+            <translation>El paquet de Python websockets {version} a {path} és massa antic per a la connexió amb la passarel·la. Instal·leu el connector des del zip publicat, que en conté un de més nou, o executeu 'python3 -m pip install "websockets&gt;={oldest}"' amb el Python de QGIS, i reinicieu QGIS.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/addresses.py" />
+            <source>Over {url} everybody on the way could read the token. Write wss:// instead of ws://; a gateway that other computers can reach has TLS.</source>
+            <translation>Per {url} tothom pel camí podria llegir el testimoni. Escriviu wss:// en lloc de ws://; una passarel·la accessible des d'altres ordinadors té TLS.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/addresses.py" />
+            <source>The CA file {file} cannot be used: {reason}. Choose the ca.pem that whoever runs the site gave you.</source>
+            <translation>El fitxer de CA {file} no es pot fer servir: {reason}. Trieu el ca.pem que us va donar qui porta el recinte.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/addresses.py" />
+            <source>The gateway's URL is empty. {example}</source>
+            <translation>L'URL de la passarel·la és buida. {example}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/addresses.py" />
+            <source>The gateway's URL {url} begins with {scheme}; a gateway is reached over ws:// (or wss:// with TLS). {example}</source>
+            <translation>L'URL de la passarel·la {url} comença per {scheme}; s'hi arriba per ws:// (o wss:// amb TLS). {example}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/addresses.py" />
+            <source>The gateway's URL {url} cannot be read: {error}. {example}</source>
+            <translation>L'URL de la passarel·la {url} no es pot llegir: {error}. {example}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/addresses.py" />
+            <source>The gateway's URL {url} has port 0, where nothing can listen. {example}</source>
+            <translation>L'URL de la passarel·la {url} té el port 0, on res pot escoltar. {example}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/addresses.py" />
+            <source>The gateway's URL {url} names no host. {example}</source>
+            <translation>L'URL de la passarel·la {url} no anomena cap servidor. {example}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/addresses.py" />
+            <source>The token cannot be right: it is one word. Paste it again, whole and alone.</source>
+            <translation>El testimoni no pot ser correcte: és una sola paraula. Enganxeu-lo una altra vegada, sencer i sol.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/addresses.py" />
+            <source>Write it like {default_url}.</source>
+            <translation>Escriviu-la com {default_url}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/addresses.py" />
+            <source>no scheme</source>
+            <translation>cap esquema</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/client.py" />
+            <source>The gateway at {url} closed the link. It is tried again.</source>
+            <translation>La passarel·la a {url} ha tancat l'enllaç. Es torna a provar.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/client.py" />
+            <source>What answers at {url} opens a WebSocket but did not answer the desk's greeting within {answer_within:g} s. Check that the URL leads to a Fleet Supervisor gateway.</source>
+            <translation>El que respon a {url} obre un WebSocket però no ha contestat la salutació de la consola en {answer_within:g} s. Comproveu que l'URL porta a una passarel·la de Fleet Supervisor.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>No secure link to {place}: {reason}. If the gateway has no TLS, write ws:// instead of wss://.</source>
+            <translation>No hi ha enllaç segur amb {place}: {reason}. Si la passarel·la no té TLS, escriviu ws:// en lloc de wss://.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>Nothing listens at {place}. Start the gateway (robot-bridge serve --site ...) or correct the URL.</source>
+            <translation>No escolta res a {place}. Arrenqueu la passarel·la (robot-bridge serve --site ...) o corregiu l'URL.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>The certificate of {place} cannot be trusted: {reason}.</source>
+            <translation>No es pot confiar en el certificat de {place}: {reason}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>The certificate of {place} has expired. Whoever runs the site renews it with 'robot-bridge tls renew'; if it was renewed, check this computer's clock.</source>
+            <translation>El certificat de {place} ha caducat. Qui porta el recinte el renova amb 'robot-bridge tls renew'; si ja s'ha renovat, comproveu el rellotge d'aquest ordinador.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>The certificate of {place} holds only later: check this computer's clock.</source>
+            <translation>El certificat de {place} només val més tard: comproveu el rellotge d'aquest ordinador.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>The certificate of {place} is for another name: {reason} Use the name that the gateway's certificate was made for, or have one made for this name.</source>
+            <translation>El certificat de {place} és per a un altre nom: {reason} Feu servir el nom per al qual es va fer el certificat de la passarel·la, o feu-ne fer un per a aquest nom.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>The certificate of {place} is from an authority that this desk does not trust. Choose the site's ca.pem as CA file under Access; whoever runs the site has it.</source>
+            <translation>El certificat de {place} és d'una autoritat en què aquesta consola no confia. Trieu el ca.pem del recinte com a fitxer de CA a Accés; el té qui porta el recinte.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>The gateway at {place} closed the link (code {code}{why}). It is tried again by itself.</source>
+            <translation>La passarel·la a {place} ha tancat l'enllaç (codi {code}{why}). Es torna a provar sol.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>The gateway at {place} ended the link{why}. Ask whoever runs the site for a new token and enter it under Access.</source>
+            <translation>La passarel·la a {place} ha acabat l'enllaç{why}. Demaneu un testimoni nou a qui porta el recinte i introduïu-lo a Accés.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>The gateway at {place} ended your session{why}. Connect brings it back.</source>
+            <translation>La passarel·la a {place} ha acabat la vostra sessió{why}. Connecta la recupera.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>The gateway's URL {url} cannot be used. Write it like {default_url}.</source>
+            <translation>L'URL de la passarel·la {url} no es pot fer servir. Escriviu-la com {default_url}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>The host of {place} is not known to this network. Correct the URL.</source>
+            <translation>Aquesta xarxa no coneix el servidor de {place}. Corregiu l'URL.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>The link to the gateway at {place} broke off. It is tried again by itself; if it does not come back, check the gateway and the network.</source>
+            <translation>L'enllaç amb la passarel·la a {place} s'ha trencat. Es torna a provar sol; si no torna, comproveu la passarel·la i la xarxa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>There is no desk at {url} (HTTP 404). A gateway's desk has the path /desk, as in {default_url}; or another program answers there.</source>
+            <translation>No hi ha cap consola a {url} (HTTP 404). La d'una passarel·la té el camí /desk, com a {default_url}; o hi respon un altre programa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>What answers at {place} does not speak WebSocket. Check host and port, and ws:// or wss://: a gateway prints its URL when it starts.</source>
+            <translation>El que respon a {place} no parla WebSocket. Comproveu servidor i port, i ws:// o wss://: una passarel·la escriu la seva URL quan arrenca.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>it wants a token.</source>
+            <translation>vol un testimoni.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>no reason given.</source>
+            <translation>sense dir per què.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>{place} broke off while the secure link was made. If the gateway has no TLS, write ws:// instead of wss://.</source>
+            <translation>{place} ha tallat mentre es feia l'enllaç segur. Si la passarel·la no té TLS, escriviu ws:// en lloc de wss://.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>{place} cannot be reached: {reason}. Check network and URL.</source>
+            <translation>No s'arriba a {place}: {reason}. Comproveu la xarxa i l'URL.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>{place} did not answer in time. Check that the gateway runs, and the network and firewall.</source>
+            <translation>{place} no ha respost a temps. Comproveu que la passarel·la funciona, la xarxa i el tallafoc.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>{url} answered HTTP {status} instead of opening a WebSocket. Check that a gateway runs there and what its log says.</source>
+            <translation>{url} ha respost HTTP {status} en lloc d'obrir un WebSocket. Comproveu que hi funciona una passarel·la i què diu el seu registre.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>{url} refuses this desk: {said}</source>
+            <translation>{url} rebutja aquesta consola: {said}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>{url} refuses this desk: {said} Enter the operator's token under Access.</source>
+            <translation>{url} rebutja aquesta consola: {said} Introduïu el testimoni de l'operador a Accés.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>{url} takes no desk now: {said} It is tried again by itself.</source>
+            <translation>{url} ara no admet cap consola: {said} Es torna a provar sol.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/protocol.py" />
+            <source>The gateway at {url} refused a message: {error}</source>
+            <translation>La passarel·la a {url} ha rebutjat un missatge: {error}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/protocol.py" />
+            <source>The gateway at {url} sends no positions: {error}</source>
+            <translation>La passarel·la a {url} no envia posicions: {error}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/protocol.py" />
+            <source>The gateway at {url} speaks protocol {theirs}, this plugin protocol {ours}. Update whichever of the two is older, then press Connect.</source>
+            <translation>La passarel·la a {url} parla el protocol {theirs}, aquest connector el protocol {ours}. Actualitzeu el més antic dels dos i premeu Connecta.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/protocol.py" />
+            <source>The gateway at {url} turned the desk away: {error}</source>
+            <translation>La passarel·la a {url} ha rebutjat la consola: {error}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/protocol.py" />
+            <source>The link was closed before the gateway answered: whether it arrived is not known. Connect again and look in the command log.</source>
+            <translation>L'enllaç s'ha tancat abans que la passarel·la respongués: no se sap si ha arribat. Torneu a connectar i mireu el registre d'ordres.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/protocol.py" />
+            <source>The link was lost before the gateway answered, and {age:.0f} s later it was not repeated: a robot shall not drive off on an old order. Look in the command log and send it again if it is not there.</source>
+            <translation>L'enllaç s'ha perdut abans que la passarel·la respongués, i {age:.0f} s després no s'ha repetit: un robot no ha d'arrencar per una ordre antiga. Mireu el registre d'ordres i torneu-la a enviar si no hi és.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/protocol.py" />
+            <source>What answers at {url} sent something that is not the desk's protocol: {text} ({kind}: {error}). Check that the URL leads to a Fleet Supervisor gateway of this version.</source>
+            <translation>El que respon a {url} ha enviat una cosa que no és el protocol de la consola: {text} ({kind}: {error}). Comproveu que l'URL porta a una passarel·la de Fleet Supervisor d'aquesta versió.</translation>
+        </message>
+    </context>
+</TS>

@@ -1,0 +1,5589 @@
+<?xml version="1.0" encoding="utf-8"?>
+<!DOCTYPE TS>
+<TS version="2.1" language="es" sourcelanguage="en">
+    <context>
+        <name>FleetSupervisor</name>
+        <message>
+            <location filename="../../plugin/connection.py" />
+            <source>The connection stopped on an internal fault ({name}: {error}). Press Connect to try again and report this text.</source>
+            <translation>La conexión se detuvo por un error interno ({name}: {error}). Pulse Conectar para volver a intentarlo y comunique este texto.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/connection.py" />
+            <source>The desk is not connected to a gateway. Press Connect first.</source>
+            <translation>La consola no está conectada a ninguna pasarela. Pulse antes Conectar.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/access_fields.py" />
+            <source>&amp;Keep in QGIS</source>
+            <translation>&amp;Guardar en QGIS</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/access_fields.py" />
+            <source>CA &amp;file</source>
+            <translation>A&amp;rchivo de CA</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/access_fields.py" />
+            <source>Certificates (*.pem *.crt *.cer);;All files (*)</source>
+            <translation>Certificados (*.pem *.crt *.cer);;Todos los archivos (*)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/access_fields.py" />
+            <source>Encrypted, under the master password of the QGIS authentication manager</source>
+            <translation>Cifrado, con la contraseña maestra del gestor de autenticación de QGIS</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/access_fields.py" />
+            <source>The site's ca.pem</source>
+            <translation>El ca.pem del recinto</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/access_fields.py" />
+            <source>fleet_op_…, as it was printed when the account was made</source>
+            <translation>fleet_op_…, tal como se escribió al crear la cuenta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/access_fields.py" />
+            <source>kept by QGIS; enter another one to replace it</source>
+            <translation>lo guarda QGIS; introduzca otro para cambiarlo</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/access_fields.py" />
+            <source>of the connection's authentication; enter another one for this time</source>
+            <translation>de la autenticación de la conexión; introduzca otro para esta vez</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/access_fields.py" />
+            <source>the site's ca.pem; empty for public authorities</source>
+            <translation>el ca.pem del recinto; vacío para autoridades públicas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>ABORT ALL</source>
+            <translation>ABORTAR TODO</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Abort robot</source>
+            <translation>Abortar robot</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Add to queue</source>
+            <translation>Añadir a la cola</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Cancel</source>
+            <translation>Cancelar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Clear emergency stop …</source>
+            <translation>Levantar la parada de emergencia …</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Close a road for every robot by a click on it, or open a closed one again</source>
+            <translation>Cerrar una vía a todos los robots con un clic, o volver a abrir una cerrada</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Close road</source>
+            <translation>Cerrar vía</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Cone target</source>
+            <translation>Objetivo de cono</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Connect</source>
+            <translation>Conectar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Connect to the gateway, or disconnect</source>
+            <translation>Conectar a la pasarela, o desconectar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Coordinates …</source>
+            <translation>Coordenadas …</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Draw a route for the selected robot: click its points, drag points or lines to change it, Backspace takes the last one back, Enter or Send sends, Esc cancels</source>
+            <translation>Dibujar una ruta para el robot seleccionado: haga clic en sus puntos, arrastre puntos o líneas para cambiarla, Retroceso quita el último, Intro o Enviar la envía, Esc cancela</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Draw route</source>
+            <translation>Dibujar ruta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>EMERGENCY STOP</source>
+            <translation>PARADA DE EMERGENCIA</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Every robot gives up its task, at once and without a question</source>
+            <translation>Todos los robots abandonan su tarea, al instante y sin preguntar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Every robot stops now, and none can be sent anywhere until a supervisor clears it ({emergency_keys})</source>
+            <translation>Todos los robots se detienen ahora, y ninguno se puede enviar a ningún sitio hasta que un supervisor lo levante ({emergency_keys})</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Every selected robot gives up its task at once</source>
+            <translation>Cada robot seleccionado abandona su tarea al instante</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Fleet panel</source>
+            <translation>Panel de la flota</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Follow</source>
+            <translation>Seguir</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Keep all in view</source>
+            <translation>Todos a la vista</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Keep every robot in view</source>
+            <translation>Mantener a la vista todos los robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Keep the selected robots in view</source>
+            <translation>Mantener a la vista los robots seleccionados</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Let a draft be sent in spite of what the checks found; asks why</source>
+            <translation>Permitir enviar un borrador a pesar de lo que hallaron las comprobaciones; pregunta por qué</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Let robots be sent again; takes a supervisor, and asks first</source>
+            <translation>Permitir enviar robots otra vez; hace falta un supervisor, y antes pregunta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Let the route begin at its end (R over the map)</source>
+            <translation>Hacer que la ruta empiece por el final (R sobre el mapa)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Make the change again that was taken back (Ctrl+Shift+Z over the map)</source>
+            <translation>Volver a hacer el cambio deshecho (Ctrl+Mayús+Z sobre el mapa)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Make the draft of what is selected in the active layer: a point, a line, or many points</source>
+            <translation>Hacer el borrador con lo seleccionado en la capa activa: un punto, una línea o muchos puntos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Override …</source>
+            <translation>Imponer …</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Put what is drawn at the end of its robot's queue, instead of sending it</source>
+            <translation>Poner lo dibujado al final de la cola de su robot, en lugar de enviarlo</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Redo</source>
+            <translation>Rehacer</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Route along the roads for the selected robot: the way to the mouse is shown, a click takes it; Backspace takes the last leg back, Enter or Send sends, Esc cancels</source>
+            <translation>Ruta por vías para el robot seleccionado: se muestra el recorrido hasta el ratón, un clic lo toma; Retroceso quita el último tramo, Intro o Enviar la envía, Esc cancela</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Route on roads</source>
+            <translation>Ruta por vías</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Select robot</source>
+            <translation>Seleccionar robot</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Select robots on the map: click one or drag a rectangle, with Shift to add, with Ctrl to take away; double click goes there</source>
+            <translation>Seleccionar robots en el mapa: haga clic en uno o arrastre un rectángulo, con Mayús para añadir, con Ctrl para quitar; el doble clic va allí</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Send</source>
+            <translation>Enviar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Send map</source>
+            <translation>Enviar mapa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Send the selected robots the map of the whole site now</source>
+            <translation>Enviar ahora a los robots seleccionados el mapa de todo el recinto</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Send what is drawn on the map to its robot</source>
+            <translation>Enviar a su robot lo dibujado en el mapa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Set a cone target for the selected robot: click, then Enter or Send; Esc cancels</source>
+            <translation>Poner un objetivo de cono para el robot seleccionado: clic, y después Intro o Enviar; Esc cancela</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Show or hide the fleet panel</source>
+            <translation>Mostrar u ocultar el panel de la flota</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Start position</source>
+            <translation>Posición inicial</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Take from layer</source>
+            <translation>De la capa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Take the last change of the draft back (Ctrl+Z over the map)</source>
+            <translation>Deshacer el último cambio del borrador (Ctrl+Z sobre el mapa)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Take what is drawn off the map; nothing is sent</source>
+            <translation>Quitar del mapa lo dibujado; no se envía nada</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Tell the selected robot where it stands: click, or drag to where it points; then Enter or Send</source>
+            <translation>Decir al robot seleccionado dónde está: clic, o arrastre hacia donde mira; después Intro o Enviar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Turn route round</source>
+            <translation>Invertir ruta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Type or paste coordinates in any CRS in place of a click</source>
+            <translation>Escribir o pegar coordenadas en cualquier SRC en lugar de un clic</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Undo</source>
+            <translation>Deshacer</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/desk/alarms/alarm_bar.py" />
+            <source>%n alarms</source>
+            <translation>
+                <numerusform>%n alarma</numerusform>
+                <numerusform>%n alarmas</numerusform>
+            </translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_bar.py" />
+            <source>; and {number} more</source>
+            <translation>; y {number} más</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_bar.py" />
+            <source>Acknowledge all</source>
+            <translation>Reconocer todas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_bar.py" />
+            <source>Show</source>
+            <translation>Mostrar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_model.py" />
+            <source>Alarm</source>
+            <translation>Alarma</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_model.py" />
+            <source>Since</source>
+            <translation>Desde</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_model.py" />
+            <source>State</source>
+            <translation>Estado</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_model.py" />
+            <source>acknowledged {time} by {operator}</source>
+            <translation>reconocida a las {time} por {operator}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_model.py" />
+            <source>it began {times} times</source>
+            <translation>ha empezado {times} veces</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_model.py" />
+            <source>over since {time}, not acknowledged yet</source>
+            <translation>terminada desde las {time}, aún sin reconocer</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_model.py" />
+            <source>since {time}</source>
+            <translation>desde las {time}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_panel.py" />
+            <source>&amp;Acknowledge</source>
+            <translation>&amp;Reconocer</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_panel.py" />
+            <source>&amp;Log…</source>
+            <translation>Re&amp;gistro…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_panel.py" />
+            <source>&amp;Settings…</source>
+            <translation>&amp;Configuración…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_panel.py" />
+            <source>Acknowledge a&amp;ll</source>
+            <translation>Reconocer &amp;todas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_panel.py" />
+            <source>Every alarm of this session, and who acknowledged it when</source>
+            <translation>Todas las alarmas de la sesión, y quién las reconoció y cuándo</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_panel.py" />
+            <source>Say that you have seen every alarm</source>
+            <translation>Indicar que ha visto todas las alarmas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_panel.py" />
+            <source>Say that you have seen the chosen alarms</source>
+            <translation>Indicar que ha visto las alarmas elegidas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_panel.py" />
+            <source>What is an alarm, and from where on</source>
+            <translation>Qué es una alarma, y a partir de dónde</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_panel.py" />
+            <source>over</source>
+            <translation>terminada</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/log_dialog.py" />
+            <source>By</source>
+            <translation>Quién</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/log_dialog.py" />
+            <source>CSV (*.csv)</source>
+            <translation>CSV (*.csv)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/log_dialog.py" />
+            <source>Export CSV…</source>
+            <translation>Exportar CSV…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/log_dialog.py" />
+            <source>Export the log of alarms</source>
+            <translation>Exportar el registro de alarmas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/log_dialog.py" />
+            <source>Kind</source>
+            <translation>Tipo</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/log_dialog.py" />
+            <source>Log of alarms</source>
+            <translation>Registro de alarmas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/log_dialog.py" />
+            <source>Robot</source>
+            <translation>Robot</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/log_dialog.py" />
+            <source>Time</source>
+            <translation>Hora</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/log_dialog.py" />
+            <source>What</source>
+            <translation>Qué</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/log_dialog.py" />
+            <source>{count} lines written to {path}</source>
+            <translation>{count} líneas escritas en {path}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/road_ground.py" />
+            <source>layers of road surfaces cannot be read: {why}</source>
+            <translation>las capas de superficies de vía no se pueden leer: {why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/road_ground.py" />
+            <source>layers of road surfaces hold no areas ({names})</source>
+            <translation>las capas de superficies de vía no tienen áreas ({names})</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/road_ground.py" />
+            <source>no layer of the project has the role road surface</source>
+            <translation>ninguna capa del proyecto tiene el papel superficie de vía</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/road_ground.py" />
+            <source>reading was cancelled</source>
+            <translation>se canceló la lectura</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/road_ground.py" />
+            <source>the road surfaces are being read</source>
+            <translation>se están leyendo las superficies de vía</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/thresholds_dialog.py" />
+            <source>Alarm settings</source>
+            <translation>Configuración de las alarmas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/thresholds_form.py" />
+            <source>begins after standing with a task for</source>
+            <translation>empieza después de estar parado con una tarea durante</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/thresholds_form.py" />
+            <source>begins below</source>
+            <translation>empieza por debajo de</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/thresholds_form.py" />
+            <source>begins so far beside the road</source>
+            <translation>empieza tanto al lado de la vía</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/thresholds_form.py" />
+            <source>begins so far outside</source>
+            <translation>empieza tanto fuera</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/thresholds_form.py" />
+            <source>begins when two are nearer than</source>
+            <translation>empieza cuando dos están más cerca de</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/thresholds_form.py" />
+            <source>ends so much above that</source>
+            <translation>termina tanto por encima</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/thresholds_form.py" />
+            <source>ends so much further apart</source>
+            <translation>termina tanto más lejos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/thresholds_form.py" />
+            <source>the site's settings say after how long (see the robots' state)</source>
+            <translation>la configuración del recinto dice al cabo de cuánto (vea el estado de los robots)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/watch.py" />
+            <source>Nothing is watched: the desk is not connected.</source>
+            <translation>No se vigila nada: la consola no está conectada.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/watch.py" />
+            <source>Off the road is not watched: {why}.</source>
+            <translation>No se vigila si salen de la vía: {why}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/watch.py" />
+            <source>Switched off: {kinds}.</source>
+            <translation>Desactivadas: {kinds}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/watch.py" />
+            <source>and {number} more alarms: see the log of alarms in the Fleet panel</source>
+            <translation>y {number} alarmas más: vea el registro de alarmas en el panel de la flota</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/watch.py" />
+            <source>this desk</source>
+            <translation>esta consola</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source> at {x:.1f}, {y:.1f} m</source>
+            <translation> en {x:.1f}, {y:.1f} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>; last{where}</source>
+            <translation>; la última vez{where}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>acknowledged</source>
+            <translation>reconocida</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>began</source>
+            <translation>empezada</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>ended</source>
+            <translation>terminada</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>lost</source>
+            <translation>perdido</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>low battery</source>
+            <translation>batería baja</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>new</source>
+            <translation>nueva</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>off the road</source>
+            <translation>fuera de la vía</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>outside the site</source>
+            <translation>fuera del recinto</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>seen</source>
+            <translation>vista</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>stopped unasked</source>
+            <translation>parado sin pedirlo</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>too close</source>
+            <translation>demasiado cerca</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>{robot} and {other}</source>
+            <translation>{robot} y {other}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>{robot} and {other} are {apart:.1f} m apart{where}</source>
+            <translation>{robot} y {other} están a {apart:.1f} m uno de otro{where}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>{robot} has a task and stands{where}</source>
+            <translation>{robot} tiene una tarea y está parado{where}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>{robot} has {part:.0%} of its battery left</source>
+            <translation>a {robot} le queda el {part:.0%} de la batería</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>{robot} is lost: nothing is heard of it{last}</source>
+            <translation>{robot} está perdido: no se sabe nada de él{last}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>{robot} is off the road{where}</source>
+            <translation>{robot} está fuera de la vía{where}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>{robot} is outside the site{where}</source>
+            <translation>{robot} está fuera del recinto{where}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/checks.py" />
+            <source>({points:.2f}, {points2:.2f}) m</source>
+            <translation>({points:.2f}, {points2:.2f}) m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/checks.py" />
+            <source>({x:.2f}, {y:.2f}) m is</source>
+            <translation>({x:.2f}, {y:.2f}) m está</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/checks.py" />
+            <source>The route</source>
+            <translation>La ruta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/checks.py" />
+            <source>{layer} (feature {id})</source>
+            <translation>{layer} (objeto {id})</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/checks.py" />
+            <source>{off} of {points} points are</source>
+            <translation>{off} de {points} puntos están</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/checks.py" />
+            <source>{spot} enters the keepout {name}. Choose a place or way outside it.</source>
+            <translation>{spot} entra en la zona prohibida {name}. Elija un lugar o recorrido fuera.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/checks.py" />
+            <source>{where} m is outside the site {name}, which reaches from ({x_min:g}, {y_min:g}) to ({x_max:g}, {y_max:g}) m. Click inside it.</source>
+            <translation>{where} m está fuera del recinto {name}, que va de ({x_min:g}, {y_min:g}) a ({x_max:g}, {y_max:g}) m. Haga clic dentro.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/checks.py" />
+            <source>{where} not on a road surface.</source>
+            <translation>{where} fuera de las superficies de vía.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/clear_dialog.py" />
+            <source>Clear emergency stop</source>
+            <translation>Levantar la parada de emergencia</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/clear_dialog.py" />
+            <source>Clear the emergency stop?</source>
+            <translation>¿Levantar la parada de emergencia?</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/clear_dialog.py" />
+            <source>Cleared, robots can be sent again. None sets off by itself: what they were doing was aborted.</source>
+            <translation>Levantada, se pueden volver a enviar robots. Ninguno arranca solo: lo que hacían se abortó.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/clear_dialog.py" />
+            <source>Keep it in force</source>
+            <translation>Mantenerla en vigor</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/clear_dialog.py" />
+            <source>Why robots may drive again, for the log</source>
+            <translation>Por qué los robots pueden volver a circular, para el registro</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/closure_dialog.py" />
+            <source>Closed</source>
+            <translation>Cerrada</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/closure_dialog.py" />
+            <source>Reason</source>
+            <translation>Motivo</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/closure_dialog.py" />
+            <source>The road is closed for every robot from this junction to the next. Robots whose way leads along it get another way; one that has no other way is stopped, unless the site's settings say otherwise.</source>
+            <translation>La vía se cierra a todos los robots desde este cruce hasta el siguiente. Los que debían pasar por ella reciben otro recorrido; el que no tiene otro se detiene, si la configuración del recinto no dice otra cosa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/closure_dialog.py" />
+            <source>for 1 day</source>
+            <translation>durante 1 día</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/closure_dialog.py" />
+            <source>for 1 hour</source>
+            <translation>durante 1 hora</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/closure_dialog.py" />
+            <source>for 15 minutes</source>
+            <translation>durante 15 minutos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/closure_dialog.py" />
+            <source>for 4 hours</source>
+            <translation>durante 4 horas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/closure_dialog.py" />
+            <source>such as: tree on the road</source>
+            <translation>como: árbol en la vía</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/closure_dialog.py" />
+            <source>until it is opened</source>
+            <translation>hasta que se abra</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/closure_tool.py" />
+            <source>Open it again for every robot?</source>
+            <translation>¿Volver a abrirla a todos los robots?</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/closure_tool.py" />
+            <source>Open road</source>
+            <translation>Abrir la vía</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/closure_tool.py" />
+            <source>{by} closed this road at {time}{because}</source>
+            <translation>{by} cerró esta vía a las {time}{because}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_book.py" />
+            <source>abort</source>
+            <translation>aborto</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_book.py" />
+            <source>cone at {x}, {y}</source>
+            <translation>cono en {x}, {y}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_book.py" />
+            <source>route of {number} points</source>
+            <translation>ruta de {number} puntos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_book.py" />
+            <source>target at {x}, {y}</source>
+            <translation>objetivo en {x}, {y}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/entries.py" />
+            <source>None open</source>
+            <translation>Ninguna abierta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/entries.py" />
+            <source>by {by}</source>
+            <translation>por {by}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/entries.py" />
+            <source>{metres:.2f} m off</source>
+            <translation>{metres:.2f} m de desvío</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/entries.py" />
+            <source>{number} open: {counts}</source>
+            <translation>{number} abiertas: {counts}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/log_model.py" />
+            <source>Command</source>
+            <translation>Orden</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/log_model.py" />
+            <source>Details</source>
+            <translation>Detalles</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/log_panel.py" />
+            <source>All commands</source>
+            <translation>Todas las órdenes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/log_panel.py" />
+            <source>All robots</source>
+            <translation>Todos los robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/log_panel.py" />
+            <source>Ask the gateway for older commands</source>
+            <translation>Pedir a la pasarela órdenes más antiguas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/log_panel.py" />
+            <source>Export commands</source>
+            <translation>Exportar órdenes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/log_panel.py" />
+            <source>Export…</source>
+            <translation>Exportar…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/log_panel.py" />
+            <source>Failed, aborted, expired</source>
+            <translation>Fallidas, abortadas, caducadas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/log_panel.py" />
+            <source>Go there</source>
+            <translation>Ir allí</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/log_panel.py" />
+            <source>Older</source>
+            <translation>Más antiguas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/log_panel.py" />
+            <source>Older commands: {why}</source>
+            <translation>Órdenes más antiguas: {why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/log_panel.py" />
+            <source>Open</source>
+            <translation>Abiertas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/log_panel.py" />
+            <source>Selected robots</source>
+            <translation>Robots seleccionados</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/log_panel.py" />
+            <source>Show where the chosen command leads to (double click)</source>
+            <translation>Mostrar adónde lleva la orden elegida (doble clic)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/log_panel.py" />
+            <source>Which commands are listed</source>
+            <translation>Qué órdenes se listan</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/log_panel.py" />
+            <source>Whose commands are listed</source>
+            <translation>De quién son las órdenes listadas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/log_panel.py" />
+            <source>Write what is listed, every step of it, as CSV</source>
+            <translation>Escribir lo listado, con todos sus pasos, como CSV</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/log_panel.py" />
+            <source>{commands} commands with {steps} steps written to {path}</source>
+            <translation>{commands} órdenes con {steps} pasos escritas en {path}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/log_panel.py" />
+            <source>{what} of {robot} leads to no place.</source>
+            <translation>{what} de {robot} no lleva a ningún lugar.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/coordinates_dialog.py" />
+            <source>C&amp;RS</source>
+            <translation>S&amp;RC</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/coordinates_dialog.py" />
+            <source>Coordinates</source>
+            <translation>Coordenadas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/coordinates_dialog.py" />
+            <source>Set on the map</source>
+            <translation>Poner en el mapa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/coordinates_dialog.py" />
+            <source>Write {order} in {authid}.
+{path}</source>
+            <translation>Escriba {order} en {authid}.
+{path}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/coordinates_dialog.py" />
+            <source>latitude, longitude</source>
+            <translation>latitud, longitud</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/coordinates_dialog.py" />
+            <source>x, y</source>
+            <translation>x, y</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/coordinates_dialog.py" />
+            <source>{place:.2f}, {place2:.2f} m on the site</source>
+            <translation>{place:.2f}, {place2:.2f} m en el recinto</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/coordinates_dialog.py" />
+            <source>{site}; {east:.2f}, {north:.2f} in {authid}.
+{path}</source>
+            <translation>{site}; {east:.2f}, {north:.2f} en {authid}.
+{path}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/draft_commands.py" />
+            <source>Map for {robot}</source>
+            <translation>Mapa para {robot}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/draft_commands.py" />
+            <source>No robot is selected, so none was sent the map. Select it first.</source>
+            <translation>No hay ningún robot seleccionado, así que a ninguno se le envió el mapa. Selecciónelo antes.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/draft_commands.py" />
+            <source>The draft has changed since it was looked at, so nothing was overridden. Press Override again.</source>
+            <translation>El borrador ha cambiado desde que se miró, así que no se impuso nada. Pulse Imponer otra vez.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/draft_commands.py" />
+            <source>The gateway has not answered yet what was asked of the queue of {robot} before. Try again in a moment.</source>
+            <translation>La pasarela aún no ha respondido a lo que se pidió antes de la cola de {robot}. Inténtelo de nuevo en un momento.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/draft_commands.py" />
+            <source>There is no draft on the map. Select a robot, then set a cone target or draw a route.</source>
+            <translation>No hay ningún borrador en el mapa. Seleccione un robot, y ponga un objetivo de cono o dibuje una ruta.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/draft_commands.py" />
+            <source>{in_words} is still on the map. Send it (Enter) or cancel it (Esc) first.</source>
+            <translation>{in_words} sigue en el mapa. Envíelo (Intro) o cancélelo (Esc) antes.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/draft_commands.py" />
+            <source>{in_words} was not put into the queue: {fault}</source>
+            <translation>{in_words} no se puso en la cola: {fault}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/draft_commands.py" />
+            <source>{in_words}, into the queue</source>
+            <translation>{in_words}, a la cola</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/draft_commands.py" />
+            <source>{in_words}: there is nothing here that an override would help.</source>
+            <translation>{in_words}: aquí no hay nada en lo que ayude imponerse.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/layer_drafts.py" />
+            <source>A coordinate of what is selected is no number. Correct it, or leave it out.</source>
+            <translation>Una coordenada de lo seleccionado no es un número. Corríjala u omítala.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/layer_drafts.py" />
+            <source>A route is one line, and {features} of the layer {layer} are meant: select one.</source>
+            <translation>Una ruta es una línea, y hay {features} de la capa {layer}: seleccione una.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/layer_drafts.py" />
+            <source>Feature {id} of {layer} has no place in the site's CRS ({error}). Leave it out, or correct the layer's CRS.</source>
+            <translation>El objeto {id} de {layer} no tiene lugar en el SRC del recinto ({error}). Omítalo, o corrija el SRC de la capa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/layer_drafts.py" />
+            <source>No layer of points or lines is active. Click one in the Layers panel, then try again.</source>
+            <translation>No hay ninguna capa de puntos o líneas activa. Haga clic en una en el panel Capas e inténtelo de nuevo.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/layer_drafts.py" />
+            <source>No robot is selected. Select the one that the draft is for, then try again.</source>
+            <translation>No hay ningún robot seleccionado. Seleccione aquel para quien es el borrador e inténtelo de nuevo.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/layer_drafts.py" />
+            <source>The layer {layer} has no CRS, so nobody knows where its points are. Set it in the layer's properties.</source>
+            <translation>La capa {layer} no tiene SRC, así que nadie sabe dónde están sus puntos. Defínalo en las propiedades de la capa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/layer_drafts.py" />
+            <source>The layer {layer} has no feature with a place to go to.</source>
+            <translation>La capa {layer} no tiene ningún objeto con un lugar adonde ir.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/layer_drafts.py" />
+            <source>The layer {layer} has {featurecount} features and a queue takes {longest_queue}: select those that are meant.</source>
+            <translation>La capa {layer} tiene {featurecount} objetos y una cola admite {longest_queue}: seleccione los que quiere.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/layer_drafts.py" />
+            <source>The layer {layer} has {places} points selected and a queue takes {longest_queue}: select fewer.</source>
+            <translation>La capa {layer} tiene {places} puntos seleccionados y una cola admite {longest_queue}: seleccione menos.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/layer_drafts.py" />
+            <source>The layer {layer} holds polygons: take a layer of points (targets) or lines (a route).</source>
+            <translation>La capa {layer} contiene polígonos: tome una capa de puntos (objetivos) o líneas (una ruta).</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/layer_drafts.py" />
+            <source>The line has {places} vertices; a route takes 2 to {longest_path}: simplify it first.</source>
+            <translation>La línea tiene {places} vértices; una ruta admite de 2 a {longest_path}: simplifíquela antes.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/layer_drafts.py" />
+            <source>The line that is selected in {layer} has {partcount} parts, and a robot cannot leap from one to the next: make it one line.</source>
+            <translation>La línea seleccionada en {layer} tiene {partcount} partes, y un robot no puede saltar de una a otra: haga una sola línea.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/override_dialog.py" />
+            <source>Override</source>
+            <translation>Imponer</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/override_dialog.py" />
+            <source>Override the checks</source>
+            <translation>Imponerse a las comprobaciones</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/override_dialog.py" />
+            <source>Why it is right all the same</source>
+            <translation>Por qué es correcto de todos modos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/override_dialog.py" />
+            <source>Your name, what was found and why go into the gateway's log. Nothing is sent yet.</source>
+            <translation>Su nombre, lo hallado y el porqué van al registro de la pasarela. Aún no se envía nada.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/override_dialog.py" />
+            <source>because: {strip}</source>
+            <translation>porque: {strip}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/cone_store.py" />
+            <source>Cones</source>
+            <translation>Conos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/cone_store.py" />
+            <source>The layer {layer} takes no cones: make it writable, or remove it.</source>
+            <translation>La capa {layer} no admite conos: hágala editable, o quítela.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/cone_store.py" />
+            <source>The project has no CRS: choose one in metres, at the bottom right in QGIS.</source>
+            <translation>El proyecto no tiene SRC: elija uno en metros, abajo a la derecha en QGIS.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/conflict_panel.py" />
+            <source>and {more} more: see the layer Conflicts</source>
+            <translation>y {more} más: vea la capa Conflictos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/conflict_panel.py" />
+            <source>at {x:.0f}, {y:.0f} m</source>
+            <translation>en {x:.0f}, {y:.0f} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/conflict_panel.py" />
+            <source>{robot} gives way</source>
+            <translation>{robot} cede el paso</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/conflict_panel.py" />
+            <source>{robot} waits for {other} or takes another way, whichever gets it there sooner</source>
+            <translation>{robot} espera a {other} o toma otro recorrido, el que llegue antes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/conflict_panel.py" />
+            <source>{robot} waits for {other}, until {time_of_day} at the earliest</source>
+            <translation>{robot} espera a {other}, como mínimo hasta las {time_of_day}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/connection_menu.py" />
+            <source>&amp;Keep under a name…</source>
+            <translation>&amp;Guardar con un nombre…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/connection_menu.py" />
+            <source>&amp;Manage connections…</source>
+            <translation>Ges&amp;tionar conexiones…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/connection_menu.py" />
+            <source>Connection: {name}</source>
+            <translation>Conexión: {name}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/connection_menu.py" />
+            <source>Connections that are kept under a name</source>
+            <translation>Conexiones guardadas con un nombre</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/connection_panel.py" />
+            <source>Connected</source>
+            <translation>Conectado</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/connection_panel.py" />
+            <source>Connecting</source>
+            <translation>Conectando</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/connection_panel.py" />
+            <source>Failed</source>
+            <translation>Fallido</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/connection_panel.py" />
+            <source>Not connected</source>
+            <translation>No conectado</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/connection_panel.py" />
+            <source>Retrying</source>
+            <translation>Reintentando</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/connection_panel.py" />
+            <source>Retrying in {wait:.0f} s</source>
+            <translation>Reintento en {wait:.0f} s</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/connection_panel.py" />
+            <source>Token and CA file, for a gateway with accounts and TLS</source>
+            <translation>Testigo y archivo de CA, para una pasarela con cuentas y TLS</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/connection_panel.py" />
+            <source>Who you are: it stands beside every command in every log</source>
+            <translation>Quién es usted: está junto a cada orden en todos los registros</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/csv_files.py" />
+            <source>{file} was not written ({why}). Choose another folder, or close the file where it is open.</source>
+            <translation>{file} no se escribió ({why}). Elija otra carpeta, o cierre el archivo donde esté abierto.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/desk.py" />
+            <source>EMERGENCY STOP is NOT sent yet: the link is down. It is sent as soon as that is back; use the robots' own emergency stops now.</source>
+            <translation>La PARADA DE EMERGENCIA aún NO se ha enviado: el enlace está caído. Se envía en cuanto vuelva; use ahora las paradas de emergencia de los propios robots.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/desk.py" />
+            <source>No robot is selected, so none was aborted. Select it in the table or on the map.</source>
+            <translation>No hay ningún robot seleccionado, así que no se abortó ninguno. Selecciónelo en la tabla o en el mapa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/desk.py" />
+            <source>The operator's name is empty. Write who you are: it stands in every log.</source>
+            <translation>El nombre del operador está vacío. Escriba quién es: está en todos los registros.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/desk.py" />
+            <source>The site is not known yet. Connect to a gateway first.</source>
+            <translation>El recinto aún no se conoce. Conéctese antes a una pasarela.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/desk.py" />
+            <source>There is nothing to send. Select a robot, then set a cone target or draw a route on the map.</source>
+            <translation>No hay nada que enviar. Seleccione un robot, y ponga un objetivo de cono o dibuje una ruta en el mapa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/desk.py" />
+            <source>the desk is not connected to a gateway. Connect first; to stop a robot now use the robot's own emergency stop.</source>
+            <translation>la consola no está conectada a ninguna pasarela. Conéctese antes; para detener ahora un robot use su propia parada de emergencia.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/desk.py" />
+            <source>{in_words} was not sent: {error}</source>
+            <translation>{in_words} no se envió: {error}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/dock.py" />
+            <source>Commands</source>
+            <translation>Órdenes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/dock.py" />
+            <source>Queue</source>
+            <translation>Cola</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/draft_panel.py" />
+            <source> Override… sends it all the same, where your role may.</source>
+            <translation> Imponer… lo envía de todos modos, donde su papel lo permita.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/draft_panel.py" />
+            <source>Select a robot, choose Cone target or Draw route, and click on the map.</source>
+            <translation>Seleccione un robot, elija Objetivo de cono o Dibujar ruta, y haga clic en el mapa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/draft_panel.py" />
+            <source>{in_words}. Not to be sent: {found}{hint}</source>
+            <translation>{in_words}. No se puede enviar: {found}{hint}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/draft_panel.py" />
+            <source>{in_words}. OVERRIDDEN: {override}. Enter or Send sends it.</source>
+            <translation>{in_words}. IMPUESTO: {override}. Intro o Enviar lo envía.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/draft_panel.py" />
+            <source>{in_words}.{warnings} Add to queue lets them be placed one after the other.</source>
+            <translation>{in_words}.{warnings} Añadir a la cola hace que se coloquen uno tras otro.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/draft_panel.py" />
+            <source>{in_words}.{warnings} Enter or Send sends it.</source>
+            <translation>{in_words}.{warnings} Intro o Enviar lo envía.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/draft_tool.py" />
+            <source>No robot is selected, so there is nobody to send there. Select one in the table or on the map.</source>
+            <translation>No hay ningún robot seleccionado, así que no hay a quién enviar. Seleccione uno en la tabla o en el mapa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/draft_tool.py" />
+            <source>Select a robot first, in the table or on the map.</source>
+            <translation>Seleccione antes un robot, en la tabla o en el mapa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/draft_tool.py" />
+            <source>There is nothing to do again.</source>
+            <translation>No hay nada que rehacer.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/draft_tool.py" />
+            <source>There is nothing to take back.</source>
+            <translation>No hay nada que deshacer.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/datum_path.py" />
+            <source>A way accurate to {accuracy:g} m needs the grid {grids}, which is not installed.</source>
+            <translation>Una vía con exactitud de {accuracy:g} m necesita la malla {grids}, que no está instalada.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/datum_path.py" />
+            <source>By {name} ({exact}).{value}</source>
+            <translation>Por {name} ({exact}).{value}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/datum_path.py" />
+            <source>PROJ knows no exact way between these two: the place may be off by metres.</source>
+            <translation>PROJ no conoce ninguna vía exacta entre estos dos: el lugar puede fallar por metros.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/datum_path.py" />
+            <source>accuracy not known</source>
+            <translation>exactitud desconocida</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/datum_path.py" />
+            <source>accurate to {accuracy:g} m</source>
+            <translation>exactitud de {accuracy:g} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/datum_path.py" />
+            <source>no change: it is the site's CRS</source>
+            <translation>ningún cambio: es el SRC del recinto</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/datum_path.py" />
+            <source>the default operation of PROJ</source>
+            <translation>la operación por defecto de PROJ</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/obstacle_check.py" />
+            <source>({point:.2f}, {point2:.2f}) m</source>
+            <translation>({point:.2f}, {point2:.2f}) m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/obstacle_check.py" />
+            <source>The layer {layer} cannot be placed on the site ({error}), so obstacles in it are not seen. Correct its CRS, or take its role away.</source>
+            <translation>La capa {layer} no se puede situar en el recinto ({error}), así que sus obstáculos no se ven. Corrija su SRC, o quítele el papel.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/obstacle_check.py" />
+            <source>The way to {to}</source>
+            <translation>El camino hasta {to}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/obstacle_check.py" />
+            <source>is on</source>
+            <translation>está sobre</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/obstacle_check.py" />
+            <source>is {away:.2f} m from</source>
+            <translation>está a {away:.2f} m de</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/obstacle_check.py" />
+            <source>{spot} {where} {name}. Choose a place or way beside it.</source>
+            <translation>{spot} {where} {name}. Elija un lugar o recorrido al lado.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/place_text.py" />
+            <source>latitude, longitude, as in 48.2083, 16.3725</source>
+            <translation>latitud, longitud, como 48.2083, 16.3725</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/place_text.py" />
+            <source>x, y, as in 488070.50, 5190055.20</source>
+            <translation>x, y, como 488070.50, 5190055.20</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/place_text.py" />
+            <source>{shown!r} is no place: write {right}.</source>
+            <translation>{shown!r} no es ningún lugar: escriba {right}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/place_text.py" />
+            <source>{strip!r}: latitude {lat:g} and longitude {lon:g} are not on the earth; write latitude first, or choose the CRS that the numbers are in.</source>
+            <translation>{strip!r}: la latitud {lat:g} y la longitud {lon:g} no están en la Tierra; escriba antes la latitud, o elija el SRC en que están los números.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/route_editing.py" />
+            <source>A part of this route follows the roads, and the way back may be another: it is not turned round. Draw it from the other end with Route on roads.</source>
+            <translation>Una parte de esta ruta sigue las vías, y la vuelta puede ser otra: no se invierte. Dibújela desde el otro extremo con Ruta por vías.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/route_editing.py" />
+            <source>This part of the route follows the roads and is not changed by hand. Take it back with Backspace, or draw this part with Draw route.</source>
+            <translation>Esta parte de la ruta sigue las vías y no se cambia a mano. Quítela con Retroceso, o dibuje esta parte con Dibujar ruta.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/target_check.py" />
+            <source>({x:.2f}, {y:.2f}) m is {away:.2f} m from {what} of {robot} at {other_x:.2f}, {other_y:.2f}: keep {clear_m:g} m between targets.</source>
+            <translation>({x:.2f}, {y:.2f}) m está a {away:.2f} m de {what} de {robot} en {other_x:.2f}, {other_y:.2f}: deje {clear_m:g} m entre objetivos.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/target_check.py" />
+            <source>a task</source>
+            <translation>una tarea</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/target_check.py" />
+            <source>the end of the route</source>
+            <translation>el final de la ruta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/target_check.py" />
+            <source>the target</source>
+            <translation>el objetivo</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/tasks.py" />
+            <source>A start position is no task: Send tells the robot at once.</source>
+            <translation>Una posición inicial no es una tarea: Enviar se lo dice al robot al instante.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafts.py" />
+            <source>, theta {degrees:.0f}°</source>
+            <translation>, theta {degrees:.0f}°</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafts.py" />
+            <source>; along the roads {note}</source>
+            <translation>; por las vías {note}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafts.py" />
+            <source>And {more} more.</source>
+            <translation>Y {more} más.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafts.py" />
+            <source>Cone for {robot} at {place}</source>
+            <translation>Cono para {robot} en {place}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafts.py" />
+            <source>Route for {robot}: {points} points, {length:.1f} m{told}</source>
+            <translation>Ruta para {robot}: {points} puntos, {length:.1f} m{told}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafts.py" />
+            <source>Start position of {robot} at {place}{turned}</source>
+            <translation>Posición inicial de {robot} en {place}{turned}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafts.py" />
+            <source>a route needs at least two points: click the next one</source>
+            <translation>una ruta necesita al menos dos puntos: haga clic en el siguiente</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafts.py" />
+            <source>{point:.2f}, {point2:.2f} m</source>
+            <translation>{point:.2f}, {point2:.2f} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafts.py" />
+            <source>{points} cones for {robot}</source>
+            <translation>{points} conos para {robot}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/emergency_banner.py" />
+            <source> and {more} more</source>
+            <translation> y {more} más</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/emergency_banner.py" />
+            <source> since {time}</source>
+            <translation> desde las {time}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/emergency_banner.py" />
+            <source>EMERGENCY STOP asked for. The gateway has not confirmed it yet: watch the robots, and use their own emergency stops.</source>
+            <translation>PARADA DE EMERGENCIA pedida. La pasarela aún no la ha confirmado: vigile los robots y use sus propias paradas de emergencia.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/emergency_banner.py" />
+            <source>EMERGENCY STOP in force{since}, by {by}{reason}</source>
+            <translation>PARADA DE EMERGENCIA en vigor{since}, por {by}{reason}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/emergency_banner.py" />
+            <source>No answer from {names}</source>
+            <translation>Sin respuesta de {names}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/emergency_banner.py" />
+            <source>Not stored yet: the gateway cannot write its database, so robots on SQL are not told.</source>
+            <translation>Aún no se ha guardado: la pasarela no puede escribir su base de datos, así que los robots por SQL no se enteran.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/emergency_banner.py" />
+            <source>REFUSED by {names}</source>
+            <translation>RECHAZADA por {names}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/emergency_banner.py" />
+            <source>The link to the gateway is down: this is what it said last.</source>
+            <translation>El enlace con la pasarela está caído: esto es lo último que dijo.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/emergency_banner.py" />
+            <source>{acknowledged} of {robots} robots acknowledged, {standing} seen to stand</source>
+            <translation>{acknowledged} de {robots} robots lo confirmaron, {standing} se ven parados</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/layout_action.py" />
+            <source>Cone layout</source>
+            <translation>Disposición de conos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/layout_action.py" />
+            <source>Place a cone layout: it is shown under the cursor, the wheel turns it (Shift: finely), a click places it, Esc ends; nothing is sent to robots</source>
+            <translation>Colocar una disposición de conos: se muestra bajo el cursor, la rueda la gira (Mayús: fino), un clic la coloca, Esc termina; no se envía nada a los robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/layout_action.py" />
+            <source>Place cone layout</source>
+            <translation>Colocar disposición de conos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/layout_tool.py" />
+            <source>{cones} cones are in the layer {layer}.</source>
+            <translation>{cones} conos están en la capa {layer}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/layout_tool.py" />
+            <source>{wrong} of {cones} cones should not stand there: {text} All are in the layer {layer}.</source>
+            <translation>{wrong} de {cones} conos no deberían estar ahí: {text} Todos están en la capa {layer}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/hover_card.py" />
+            <source>, {remaining:.1f} m to go</source>
+            <translation>, faltan {remaining:.1f} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/hover_card.py" />
+            <source>it says</source>
+            <translation>dice</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/hover_card.py" />
+            <source>last message</source>
+            <translation>último mensaje</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/hover_card.py" />
+            <source>{age_in_words} ago, {escape}</source>
+            <translation>hace {age_in_words}, {escape}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/hover_card.py" />
+            <source>{v:.2f} m/s</source>
+            <translation>{v:.2f} m/s</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/hover_card.py" />
+            <source>{x:.2f}, {y:.2f} m in the site</source>
+            <translation>{x:.2f}, {y:.2f} m en el recinto</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/hover_card.py" />
+            <source>± {accuracy:.2f} m</source>
+            <translation>± {accuracy:.2f} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/labels.py" />
+            <source>{days:.0f} d</source>
+            <translation>{days:.0f} d</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/labels.py" />
+            <source>{hours:.0f} h</source>
+            <translation>{hours:.0f} h</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/labels.py" />
+            <source>{minutes:.0f} min</source>
+            <translation>{minutes:.0f} min</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/labels.py" />
+            <source>{seconds:.0f} s</source>
+            <translation>{seconds:.0f} s</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/names_painting.py" />
+            <source>· offline</source>
+            <translation>· sin conexión</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/plans_painting.py" />
+            <source>{km:.0f} km</source>
+            <translation>{km:.0f} km</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/plans_painting.py" />
+            <source>{metres:.0f} m</source>
+            <translation>{metres:.0f} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/robot_features.py" />
+            <source>Robots (live)</source>
+            <translation>Robots (en vivo)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/placement.py" />
+            <source>A position in {crs} has no place in {target} ({error}). Choose the site's CRS as the project's CRS (bottom right in the QGIS window).</source>
+            <translation>Una posición en {crs} no tiene lugar en {target} ({error}). Elija el SRC del recinto como SRC del proyecto (abajo a la derecha en la ventana de QGIS).</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/placement.py" />
+            <source>The site {name} is in the CRS {crs}, which this QGIS does not know: its robots cannot be placed on the map. Correct crs in the site's site.toml, or update QGIS.</source>
+            <translation>El recinto {name} está en el SRC {crs}, que este QGIS no conoce: sus robots no se pueden situar en el mapa. Corrija crs en el site.toml del recinto, o actualice QGIS.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/placement.py" />
+            <source>not a finite place</source>
+            <translation>no es un lugar finito</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed.py" />
+            <source> of {expected}</source>
+            <translation> de {expected}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed.py" />
+            <source>, {collected} collected again</source>
+            <translation>, {collected} recogidos de nuevo</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed.py" />
+            <source>No cone was put down yet.</source>
+            <translation>Aún no se ha dejado ningún cono.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed.py" />
+            <source>off by {mean:.3f} m on average, at most {largest:.3f} m</source>
+            <translation>desvío medio de {mean:.3f} m, como máximo {largest:.3f} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed.py" />
+            <source>{cones}{of} cones placed{gone}; {off}</source>
+            <translation>{cones}{of} conos colocados{gone}; {off}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed_page.py" />
+            <source>As-placed report</source>
+            <translation>Informe de colocación</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed_page.py" />
+            <source>Collected</source>
+            <translation>Recogido</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed_page.py" />
+            <source>Cone</source>
+            <translation>Cono</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed_page.py" />
+            <source>Off [m]</source>
+            <translation>Desvío [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed_page.py" />
+            <source>Placed</source>
+            <translation>Colocado</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed_page.py" />
+            <source>Plan collecting</source>
+            <translation>Planificar la recogida</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed_page.py" />
+            <source>Planned x, y</source>
+            <translation>x, y previstas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed_page.py" />
+            <source>Refresh</source>
+            <translation>Actualizar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed_page.py" />
+            <source>Save as CSV…</source>
+            <translation>Guardar como CSV…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed_page.py" />
+            <source>Stands at x, y</source>
+            <translation>Está en x, y</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed_page.py" />
+            <source>The report could not be written as {path}: {error}. Choose another place.</source>
+            <translation>El informe no se pudo escribir en {path}: {error}. Elija otro lugar.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed_page.py" />
+            <source>layout {name}</source>
+            <translation>disposición {name}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed_page.py" />
+            <source>the plan that is driven</source>
+            <translation>el plan que se ejecuta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/collecting.py" />
+            <source>; {queued} are in queues already</source>
+            <translation>; {queued} ya están en colas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/collecting.py" />
+            <source>Collecting cannot be planned: {error}</source>
+            <translation>No se puede planificar la recogida: {error}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/collecting.py" />
+            <source>No cone stands {what} that could be collected{also}.</source>
+            <translation>No hay ningún cono {what} que se pueda recoger{also}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/collecting.py" />
+            <source>What is to be collected</source>
+            <translation>Qué hay que recoger</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/collecting.py" />
+            <source>of layout {layout}</source>
+            <translation>de la disposición {layout}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/cone_source.py" />
+            <source>Choose another, or none.</source>
+            <translation>Elija otra, o ninguna.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/cone_source.py" />
+            <source>Choose one, or place a cone layout first.</source>
+            <translation>Elija una, o coloque antes una disposición de conos.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/cone_source.py" />
+            <source>No layer of {what} is chosen. {help_text}</source>
+            <translation>No se ha elegido ninguna capa de {what}. {help_text}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/cone_source.py" />
+            <source>The layer {layer} has {which}: there is nothing to be placed.</source>
+            <translation>La capa {layer} tiene {which}: no hay nada que colocar.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/cone_source.py" />
+            <source>no features</source>
+            <translation>ningún objeto</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/cone_source.py" />
+            <source>no selected features</source>
+            <translation>ningún objeto seleccionado</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/cone_source.py" />
+            <source>{layer}, feature {id}</source>
+            <translation>{layer}, objeto {id}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/cone_source.py" />
+            <source>{where} is not one point with a place on the site: correct or delete it.</source>
+            <translation>{where} no es un solo punto con lugar en el recinto: corríjalo o bórrelo.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/cone_source.py" />
+            <source>{where}: {field} is {value!r}, which is no number; correct it.</source>
+            <translation>{where}: {field} es {value!r}, que no es un número; corríjalo.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/draft_plan.py" />
+            <source>A plan is being made. Wait for it, or press Cancel.</source>
+            <translation>Se está haciendo un plan. Espérelo, o pulse Cancelar.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/draft_plan.py" />
+            <source>Change of the cone plan</source>
+            <translation>Cambio del plan de conos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/draft_plan.py" />
+            <source>Cone plan</source>
+            <translation>Plan de conos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/draft_plan.py" />
+            <source>No robot that is there is chosen: tick robots in the table, or connect some.</source>
+            <translation>No se ha elegido ningún robot presente: marque robots en la tabla, o conecte alguno.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/draft_plan.py" />
+            <source>Preview of the cone plan</source>
+            <translation>Vista previa del plan de conos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driven_plan.py" />
+            <source>A new plan is sent by itself, as you switched on: {why}</source>
+            <translation>Se envía solo un plan nuevo, como activó: {why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driven_plan.py" />
+            <source>An emergency stop is in force. It has to be cleared first.</source>
+            <translation>Hay una parada de emergencia en vigor. Antes hay que levantarla.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driven_plan.py" />
+            <source>Cone {cones} was given up since this plan was made: plan what is left again.</source>
+            <translation>Se renunció al cono {cones} desde que se hizo este plan: planifique de nuevo lo que queda.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driven_plan.py" />
+            <source>No plan is being driven, or something is still being sent.</source>
+            <translation>No se ejecuta ningún plan, o aún se está enviando algo.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driven_plan.py" />
+            <source>No robot is left to take over: connect one, and plan anew.</source>
+            <translation>No queda ningún robot que lo asuma: conecte uno y planifique de nuevo.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driven_plan.py" />
+            <source>Placed cones of the plan</source>
+            <translation>Conos colocados del plan</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driven_plan.py" />
+            <source>Plan of what is left</source>
+            <translation>Plan de lo que queda</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driven_plan.py" />
+            <source>The cone plan cannot go on as it is: {why}. Plan what is left.</source>
+            <translation>El plan de conos no puede seguir como está: {why}. Planifique lo que queda.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driven_plan.py" />
+            <source>The cone plan is in the robots' queues.</source>
+            <translation>El plan de conos está en las colas de los robots.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driven_plan.py" />
+            <source>The cone plan was not sent as a whole. {why}</source>
+            <translation>El plan de conos no se envió entero. {why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driven_plan.py" />
+            <source>The plan cannot be sent: {error}</source>
+            <translation>El plan no se puede enviar: {error}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driven_plan.py" />
+            <source>There is no new plan to confirm.</source>
+            <translation>No hay ningún plan nuevo que confirmar.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driven_plan.py" />
+            <source>There is no plan to send. Make one with Preview or Solve first.</source>
+            <translation>No hay ningún plan que enviar. Haga uno antes con Vista previa o Resolver.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driven_plan.py" />
+            <source>its robot is lost</source>
+            <translation>su robot se ha perdido</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driven_plan.py" />
+            <source>plan of what is left</source>
+            <translation>plan de lo que queda</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driven_plan.py" />
+            <source>plan of what is left: {in_words}</source>
+            <translation>plan de lo que queda: {in_words}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>Being sent …</source>
+            <translation>Enviando …</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>Clear</source>
+            <translation>Limpiar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>Confirm new plan</source>
+            <translation>Confirmar plan nuevo</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>Done: {done} of {all_of_them} cones</source>
+            <translation>Hecho: {done} de {all_of_them} conos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>Go on as before</source>
+            <translation>Seguir como antes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>Hold the robots once they have finished what they are doing, and plan what is left; nothing else is sent before you confirm</source>
+            <translation>Retener los robots cuando acaben lo que hacen, y planificar lo que queda; no se envía nada más hasta que lo confirme</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>New plan, not sent yet: {summary}</source>
+            <translation>Plan nuevo, aún no enviado: {summary}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>No plan. Choose cones and robots, then Preview or Solve.</source>
+            <translation>Ningún plan. Elija conos y robots, y después Vista previa o Resolver.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>Not sent yet: {summary}</source>
+            <translation>Aún no enviado: {summary}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>Plan what is left</source>
+            <translation>Planificar lo que queda</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>Send new plans without asking</source>
+            <translation>Enviar planes nuevos sin preguntar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>Send…</source>
+            <translation>Enviar…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>Under way: {done} of {all_of_them} cones</source>
+            <translation>En curso: {done} de {all_of_them} conos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>When a robot is lost or a cone fails, plan what is left and send it by itself</source>
+            <translation>Cuando se pierde un robot o falla un cono, planifica lo que queda y lo envía solo</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>and {more} more</source>
+            <translation>y {more} más</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>try failed cones again</source>
+            <translation>reintentar los conos fallidos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/near_meetings.py" />
+            <source>{robot} and {other} come within {metres:.1f} m at {x:.0f}, {y:.0f} m after {minutes}:{seconds:02d}</source>
+            <translation>{robot} y {other} se acercan a {metres:.1f} m en {x:.0f}, {y:.0f} m al cabo de {minutes}:{seconds:02d}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_dock.py" />
+            <source>A good plan, within the time that is given</source>
+            <translation>Un buen plan, dentro del tiempo dado</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_dock.py" />
+            <source>A plan is being driven. Plan what is left, or press Clear to watch it no more; robots go on with their queues then.</source>
+            <translation>Se está ejecutando un plan. Planifique lo que queda, o pulse Limpiar para no seguirlo más; los robots continúan entonces sus colas.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_dock.py" />
+            <source>A quick plan, to look at</source>
+            <translation>Un plan rápido, para mirarlo</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_dock.py" />
+            <source>As placed</source>
+            <translation>Como se colocó</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_dock.py" />
+            <source>Do not send</source>
+            <translation>No enviar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_dock.py" />
+            <source>Give up what is being planned</source>
+            <translation>Abandonar lo que se está planificando</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_dock.py" />
+            <source>Placed cones</source>
+            <translation>Conos colocados</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_dock.py" />
+            <source>Plan</source>
+            <translation>Plan</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_dock.py" />
+            <source>Preview</source>
+            <translation>Vista previa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_dock.py" />
+            <source>Send the cone plan</source>
+            <translation>Enviar el plan de conos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_dock.py" />
+            <source>Solve</source>
+            <translation>Resolver</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_layers.py" />
+            <source>Cone plan, stops</source>
+            <translation>Plan de conos, paradas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_layers.py" />
+            <source>Cone plan, ways</source>
+            <translation>Plan de conos, recorridos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_layers.py" />
+            <source>Cones as placed</source>
+            <translation>Conos tal como se colocaron</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_rows.py" />
+            <source>in the queue</source>
+            <translation>en la cola</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_rows.py" />
+            <source>taken out</source>
+            <translation>quitado</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_rows.py" />
+            <source>under way</source>
+            <translation>en curso</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_rows.py" />
+            <source>{cones} cones, {robots} robots, {metres:.0f} m, done after {span} ({method}, along {travel})</source>
+            <translation>{cones} conos, {robots} robots, {metres:.0f} m, hecho en {span} ({method}, por {travel})</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_rows.py" />
+            <source>{text}. Left out: {names}</source>
+            <translation>{text}. Fuera: {names}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_task.py" />
+            <source>The plan could not be made. Please report this:
+{format_exc}</source>
+            <translation>El plan no se pudo hacer. Comunique esto:
+{format_exc}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_tree.py" />
+            <source>Arrives</source>
+            <translation>Llega</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_tree.py" />
+            <source>Drag a cone to another place or robot; Alt+Up and Alt+Down move it, Del takes it out</source>
+            <translation>Arrastre un cono a otro lugar o robot; Alt+Arriba y Alt+Abajo lo mueven, Supr lo quita</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_tree.py" />
+            <source>Give to {name}</source>
+            <translation>Dar a {name}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_tree.py" />
+            <source>LOST, {text}</source>
+            <translation>PERDIDO, {text}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_tree.py" />
+            <source>Robot, stop</source>
+            <translation>Robot, parada</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_tree.py" />
+            <source>Take out</source>
+            <translation>Quitar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_tree.py" />
+            <source>end at </source>
+            <translation>fin en </translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_tree.py" />
+            <source>{cones} cones</source>
+            <translation>{cones} conos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_tree.py" />
+            <source>{done} of {cones} cones</source>
+            <translation>{done} de {cones} conos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_ways.py" />
+            <source>{name}, straight within {nearby:g} m</source>
+            <translation>{name}, recto dentro de {nearby:g} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plans_action.py" />
+            <source>Plan which robot places or collects which cone, send it, watch it; the as-placed report</source>
+            <translation>Planificar qué robot coloca o recoge qué cono, enviarlo y seguirlo; el informe de colocación</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/progress.py" />
+            <source>cone {cone} failed{why}</source>
+            <translation>el cono {cone} falló{why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/progress.py" />
+            <source>{robot} is lost or offline</source>
+            <translation>{robot} está perdido o sin conexión</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/robots_form.py" />
+            <source>Aboard</source>
+            <translation>A bordo</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/robots_form.py" />
+            <source>Aboard: cones on the robot now. Range: metres of battery, 0 if it does not matter</source>
+            <translation>A bordo: conos en el robot ahora. Alcance: metros de batería, 0 si no importa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/robots_form.py" />
+            <source>Carries</source>
+            <translation>Lleva</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/robots_form.py" />
+            <source>Range</source>
+            <translation>Alcance</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/robots_form.py" />
+            <source>m/s</source>
+            <translation>m/s</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/robots_form.py" />
+            <source>{heads} of {rows} is {text!r}: give {least:g} or more.</source>
+            <translation>{heads} de {rows} es {text!r}: dé {least:g} o más.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/robots_form.py" />
+            <source>{name} is away: it takes no part</source>
+            <translation>{name} no está: no participa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/sending.py" />
+            <source>holding {robot}</source>
+            <translation>retener a {robot}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/sending.py" />
+            <source>letting {robot} go on</source>
+            <translation>dejar continuar a {robot}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/sending.py" />
+            <source>taking over from {lost}</source>
+            <translation>relevar a {lost}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/sending.py" />
+            <source>the queue of {robot}</source>
+            <translation>la cola de {robot}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/sending.py" />
+            <source>{why} Done before: {done}.</source>
+            <translation>{why} Hecho antes: {done}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/sending.py" />
+            <source>{why} Not done therefore: {left}.</source>
+            <translation>{why} Por eso no se hizo: {left}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/sending_check.py" />
+            <source>Mind:</source>
+            <translation>Atención:</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/sending_check.py" />
+            <source>The queue of {robot} stays paused ({reason}): its cones wait until it is resumed.</source>
+            <translation>La cola de {robot} sigue en pausa ({reason}): sus conos esperan a que se reanude.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/sending_check.py" />
+            <source>The robots set off at once.</source>
+            <translation>Los robots arrancan al instante.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/sending_check.py" />
+            <source>it is not known where {id} is</source>
+            <translation>no se sabe dónde está {id}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/sending_check.py" />
+            <source>no reason</source>
+            <translation>ningún motivo</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/sending_check.py" />
+            <source>the queue of {id} is paused ({reason}): it is resumed</source>
+            <translation>la cola de {id} está en pausa ({reason}): se reanuda</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/sending_check.py" />
+            <source>{id} finishes first what it is doing</source>
+            <translation>{id} acaba antes lo que hace</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/sending_check.py" />
+            <source>{id} is {away:.1f} m from where the plan begins: better plan anew</source>
+            <translation>{id} está a {away:.1f} m de donde empieza el plan: mejor planificar de nuevo</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/sending_check.py" />
+            <source>{id} is {state}: it gets its queue when it is heard of again</source>
+            <translation>{id} está {state}: recibe su cola cuando se vuelva a saber de él</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/sending_check.py" />
+            <source>{id}: {sum} cones</source>
+            <translation>{id}: {sum} conos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/sending_check.py" />
+            <source>{waiting} tasks that wait in the queue of {id} are replaced</source>
+            <translation>se sustituyen {waiting} tareas que esperan en la cola de {id}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>A cone takes</source>
+            <translation>Un cono tarda</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>At the end</source>
+            <translation>Al final</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>How it is planned</source>
+            <translation>Cómo se planifica</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>Least</source>
+            <translation>Mínimo</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>Off cones by</source>
+            <translation>Lejos de conos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>Off robots by</source>
+            <translation>Lejos de robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>Only the features of the layer that are selected</source>
+            <translation>Solo los objetos seleccionados de la capa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>Robots that come nearer to one another by the plan are named</source>
+            <translation>Se nombran los robots que según el plan se acercan más</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>Solve for at most</source>
+            <translation>Resolver como máximo en</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>Stores</source>
+            <translation>Almacenes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>Straight within</source>
+            <translation>Recto dentro de</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>The layers of the project with the role road centreline</source>
+            <translation>Las capas del proyecto con el papel eje de vía</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>Ways are led round cones by so much</source>
+            <translation>Los recorridos rodean los conos a esta distancia</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>along the roads of the project</source>
+            <translation>por las vías del proyecto</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>choose a layer of points</source>
+            <translation>elija una capa de puntos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>done as early as possible</source>
+            <translation>acabar lo antes posible</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>drive back</source>
+            <translation>vuelven</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>drive to a store</source>
+            <translation>van a un almacén</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>fewest metres</source>
+            <translation>menos metros</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>selected</source>
+            <translation>seleccionados</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>stay where they are</source>
+            <translation>quedan donde están</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/queue_panel.py" />
+            <source>Do now</source>
+            <translation>Hacer ahora</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/queue_panel.py" />
+            <source>Let the robot do the selected task at once; what it is doing comes next (Ctrl+Enter)</source>
+            <translation>Que el robot haga la tarea seleccionada al instante; lo que hace viene después (Ctrl+Intro)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/queue_panel.py" />
+            <source>Let the robot go on with the task at the head of its queue</source>
+            <translation>Dejar que el robot siga con la primera tarea de su cola</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/queue_panel.py" />
+            <source>Move the selected task one down (Alt+Down)</source>
+            <translation>Mover la tarea seleccionada un lugar abajo (Alt+Abajo)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/queue_panel.py" />
+            <source>Move the selected task one up (Alt+Up)</source>
+            <translation>Mover la tarea seleccionada un lugar arriba (Alt+Arriba)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/queue_panel.py" />
+            <source>Pause</source>
+            <translation>Pausa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/queue_panel.py" />
+            <source>Remove</source>
+            <translation>Quitar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/queue_panel.py" />
+            <source>Resume</source>
+            <translation>Reanudar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/queue_panel.py" />
+            <source>Select a robot to see its queue. None has one yet.</source>
+            <translation>Seleccione un robot para ver su cola. Ninguno tiene aún.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/queue_panel.py" />
+            <source>Select a robot to see its queue. {queues} have one, {paused} of them paused.</source>
+            <translation>Seleccione un robot para ver su cola. {queues} tienen una, {paused} en pausa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/queue_panel.py" />
+            <source>Send the robot no further task; what it is doing it finishes (abort stops it)</source>
+            <translation>No enviar más tareas al robot; lo que hace lo acaba (abortar lo detiene)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/queue_panel.py" />
+            <source>Take the selected task out (Delete)</source>
+            <translation>Quitar la tarea seleccionada (Supr)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/queue_panel.py" />
+            <source>{selected} has no queue. Add a target or a route with Add to queue.</source>
+            <translation>{selected} no tiene cola. Añada un objetivo o una ruta con Añadir a la cola.</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/desk/queues/task_words.py" />
+            <source>%n tasks</source>
+            <translation>
+                <numerusform>%n tarea</numerusform>
+                <numerusform>%n tareas</numerusform>
+            </translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/task_words.py" />
+            <source>, a path of {path_points} points</source>
+            <translation>, un camino de {path_points} puntos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/task_words.py" />
+            <source>, {deviation:.2f} m off</source>
+            <translation>, {deviation:.2f} m de desvío</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/task_words.py" />
+            <source>. The robot is {state}: it is sent nothing until it is heard again</source>
+            <translation>. El robot está {state}: no se le envía nada hasta que se vuelva a saber de él</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/task_words.py" />
+            <source>Last: {task} {state} {time}{off}{why}</source>
+            <translation>Última: {task} {state} {time}{off}{why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/task_words.py" />
+            <source>collect cone</source>
+            <translation>recoger cono</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/task_words.py" />
+            <source>drive</source>
+            <translation>circular</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/task_words.py" />
+            <source>nothing to do</source>
+            <translation>nada que hacer</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/task_words.py" />
+            <source>now</source>
+            <translation>ahora</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/task_words.py" />
+            <source>place cone</source>
+            <translation>colocar cono</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/task_words.py" />
+            <source>running</source>
+            <translation>en marcha</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/task_words.py" />
+            <source>{kind}{name} at {x:.2f}, {y:.2f}{way}</source>
+            <translation>{kind}{name} en {x:.2f}, {y:.2f}{way}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/task_words.py" />
+            <source>{robot}: {count}, PAUSED{when}{why}</source>
+            <translation>{robot}: {count}, EN PAUSA{when}{why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/road_board.py" />
+            <source>Closing the road at {x:.1f}, {y:.1f} m</source>
+            <translation>Cierre de la vía en {x:.1f}, {y:.1f} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/road_board.py" />
+            <source>Opening the road</source>
+            <translation>Apertura de la vía</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/road_board.py" />
+            <source>{robot} gives way to {other}</source>
+            <translation>{robot} cede el paso a {other}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/road_layers.py" />
+            <source>Closed roads</source>
+            <translation>Vías cerradas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/road_layers.py" />
+            <source>Conflicts</source>
+            <translation>Conflictos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/road_layers.py" />
+            <source>closed</source>
+            <translation>cerrada</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/road_layers.py" />
+            <source>until</source>
+            <translation>hasta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>Age</source>
+            <translation>Edad</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>Batt.</source>
+            <translation>Bat.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>How far it is beside its path, or from the target that it reached last</source>
+            <translation>A qué distancia está de su camino, o del último objetivo alcanzado</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>How far what is known of it can be trusted</source>
+            <translation>Hasta qué punto se puede confiar en lo que se sabe de él</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>How full its battery is</source>
+            <translation>Cómo de llena tiene la batería</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>How it is connected</source>
+            <translation>Cómo está conectado</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>How long ago anything was heard of it</source>
+            <translation>Cuánto hace que se supo algo de él</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>How long its link takes there and back</source>
+            <translation>Cuánto tarda su enlace en ir y volver</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>Its speed, as it says</source>
+            <translation>Su velocidad, según dice</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>Link</source>
+            <translation>Enlace</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>Off</source>
+            <translation>Desv.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>Ping</source>
+            <translation>Ping</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>Position</source>
+            <translation>Posición</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>Speed</source>
+            <translation>Velocidad</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>Task</source>
+            <translation>Tarea</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>The robot's name</source>
+            <translation>El nombre del robot</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>What it is doing, or what it says</source>
+            <translation>Qué hace, o qué dice</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>Where it is, in the CRS chosen under Columns</source>
+            <translation>Dónde está, en el SRC elegido en Columnas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>cone</source>
+            <translation>cono</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>on its route</source>
+            <translation>en su ruta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>route</source>
+            <translation>ruta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>stopped</source>
+            <translation>parado</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>target</source>
+            <translation>objetivo</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>to its cone</source>
+            <translation>hacia el cono</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>to its target</source>
+            <translation>hacia el objetivo</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/detail_rows.py" />
+            <source>, {metres:.2f} m off</source>
+            <translation>, {metres:.2f} m de desvío</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/detail_rows.py" />
+            <source>It says</source>
+            <translation>Dice</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/detail_rows.py" />
+            <source>Off path or target</source>
+            <translation>Desvío del camino o del objetivo</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/detail_rows.py" />
+            <source>Position, {crs}</source>
+            <translation>Posición, {crs}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/detail_rows.py" />
+            <source>and {number} more</source>
+            <translation>y {number} más</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/detail_rows.py" />
+            <source>none</source>
+            <translation>ninguno</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/detail_rows.py" />
+            <source>{state}, last heard {age:.1f} s ago over {link}</source>
+            <translation>{state}, último mensaje hace {age:.1f} s por {link}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/detail_rows.py" />
+            <source>{told}, by {operator}</source>
+            <translation>{told}, por {operator}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/last_image.py" />
+            <source>No image: {why}</source>
+            <translation>Ninguna imagen: {why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/last_image.py" />
+            <source>Reading a robot's image</source>
+            <translation>Leyendo la imagen de un robot</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/last_image.py" />
+            <source>The image that came cannot be read: it is none of a kind that QGIS knows.</source>
+            <translation>La imagen que llegó no se puede leer: no es de ningún tipo que QGIS conozca.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/last_image.py" />
+            <source>looking for an image …</source>
+            <translation>buscando una imagen …</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/last_image.py" />
+            <source>the image is coming …</source>
+            <translation>llega la imagen …</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/last_image.py" />
+            <source>{robot} has sent no image lately</source>
+            <translation>{robot} no ha enviado ninguna imagen últimamente</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/position_crs.py" />
+            <source>There is no way from {site} to {crs}. Choose another CRS under Columns.</source>
+            <translation>No hay ninguna vía de {site} a {crs}. Elija otro SRC en Columnas.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/position_crs.py" />
+            <source>site frame</source>
+            <translation>marco del recinto</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_details.py" />
+            <source>Alarms</source>
+            <translation>Alarmas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_details.py" />
+            <source>Ask again</source>
+            <translation>Pedir otra vez</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_details.py" />
+            <source>Ask for the robot's last image and its commands again</source>
+            <translation>Pedir otra vez la última imagen y las órdenes del robot</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_details.py" />
+            <source>Diagnostics as received</source>
+            <translation>Diagnóstico tal como llegó</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_details.py" />
+            <source>Now</source>
+            <translation>Ahora</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_details.py" />
+            <source>Select a robot in the table or on the map</source>
+            <translation>Seleccione un robot en la tabla o en el mapa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_details.py" />
+            <source>{robot}, selected last of several</source>
+            <translation>{robot}, el último seleccionado de varios</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_model.py" />
+            <source>at {x:.2f}, {y:.2f} m in the site frame</source>
+            <translation>en {x:.2f}, {y:.2f} m en el marco del recinto</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_model.py" />
+            <source>it says: {text}</source>
+            <translation>dice: {text}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_model.py" />
+            <source>its link takes {ms:.1f} ms there and back</source>
+            <translation>su enlace tarda {ms:.1f} ms en ir y volver</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_panel.py" />
+            <source>Another CRS…</source>
+            <translation>Otro SRC…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_panel.py" />
+            <source>CRS of the project ({crs})</source>
+            <translation>SRC del proyecto ({crs})</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_panel.py" />
+            <source>Columns</source>
+            <translation>Columnas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_panel.py" />
+            <source>Latitude, longitude (WGS 84)</source>
+            <translation>Latitud, longitud (WGS 84)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_panel.py" />
+            <source>Name, state, task or link; several words have to be there all</source>
+            <translation>Nombre, estado, tarea o enlace; si hay varias palabras deben estar todas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_panel.py" />
+            <source>Positions in: {crs}</source>
+            <translation>Posiciones en: {crs}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_panel.py" />
+            <source>Search robots</source>
+            <translation>Buscar robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_panel.py" />
+            <source>Site frame (metres)</source>
+            <translation>Marco del recinto (metros)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_panel.py" />
+            <source>Which columns are shown, and in which CRS positions are</source>
+            <translation>Qué columnas se muestran, y en qué SRC están las posiciones</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_panel.py" />
+            <source>With a task</source>
+            <translation>Con tarea</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_panel.py" />
+            <source>With alarms, or not fresh</source>
+            <translation>Con alarmas, o no frescos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_panel.py" />
+            <source>Without a task</source>
+            <translation>Sin tarea</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_panel.py" />
+            <source>{listed} of {all}</source>
+            <translation>{listed} de {all}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_table.py" />
+            <source>no such place</source>
+            <translation>ningún lugar así</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/route_preview.py" />
+            <source>; {tight} corners tighter than the robot turns</source>
+            <translation>; {tight} esquinas más cerradas que el giro del robot</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/route_preview.py" />
+            <source>surface not known</source>
+            <translation>superficie desconocida</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/route_preview.py" />
+            <source>the gateway's answer holds no way; it may be older than this plugin</source>
+            <translation>la respuesta de la pasarela no trae ningún recorrido; puede ser más antigua que este complemento</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/route_preview.py" />
+            <source>{metres:.0f} m {surface}</source>
+            <translation>{metres:.0f} m {surface}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/route_preview.py" />
+            <source>{metres:.1f} m</source>
+            <translation>{metres:.1f} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/route_preview.py" />
+            <source>{minutes} min {seconds} s</source>
+            <translation>{minutes} min {seconds} s</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/route_preview.py" />
+            <source>{seconds} s</source>
+            <translation>{seconds} s</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/surface_action.py" />
+            <source>Road surface</source>
+            <translation>Superficie de vía</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/surface_action.py" />
+            <source>Tell the road surface under the cursor; a click says it with its coordinates, Esc ends</source>
+            <translation>Decir la superficie de vía bajo el cursor; un clic la dice con sus coordenadas, Esc termina</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/surface_action.py" />
+            <source>Which road surface is here?</source>
+            <translation>¿Qué superficie de vía hay aquí?</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/surface_tool.py" />
+            <source>No layer of the project has the role road surface: set it in Plugins &gt; Fleet Supervisor &gt; Layer roles.</source>
+            <translation>Ninguna capa del proyecto tiene el papel superficie de vía: póngalo en Complementos &gt; Fleet Supervisor &gt; Papeles de las capas.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/surface_tool.py" />
+            <source>No road surface</source>
+            <translation>Ninguna superficie de vía</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/surface_tool.py" />
+            <source>no road surface</source>
+            <translation>ninguna superficie de vía</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/surface_tool.py" />
+            <source>road surface without a class</source>
+            <translation>superficie de vía sin clase</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/surface_tool.py" />
+            <source>{told} at {where}</source>
+            <translation>{told} en {where}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/practice_fleet.py" />
+            <source>The practice fleet ended: {why}. Start it again; if that fails, see what {program} says by hand.</source>
+            <translation>La flota de práctica terminó: {why}. Arránquela otra vez; si falla, vea qué dice {program} a mano.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/practice_fleet.py" />
+            <source>The practice fleet needs robot-bridge, which is not on this computer. In a terminal, in the project's folder: python3 -m venv gateway, then gateway/bin/pip install . and put gateway/bin on PATH; or make setup. Then restart QGIS. The tour can be read without it.</source>
+            <translation>La flota de práctica necesita robot-bridge, que no está en este ordenador. En un terminal, en la carpeta del proyecto: python3 -m venv gateway, después gateway/bin/pip install . y ponga gateway/bin en el PATH; o make setup. Después reinicie QGIS. El recorrido se puede leer sin él.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>A site is an ordinary QGIS project: an orthophoto, roads, obstacles, each layer with a role. Open the sample site; QGIS asks first if your own project is not saved.</source>
+            <translation>Un recinto es un proyecto de QGIS corriente: una ortofoto, vías, obstáculos, cada capa con un papel. Abra el recinto de ejemplo; QGIS pregunta antes si su proyecto no está guardado.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>Abort robot: the selected robots give up their task. ABORT ALL: every robot does. EMERGENCY STOP (F10): every robot stops now, and none can be sent anywhere until a supervisor clears it.</source>
+            <translation>Abortar robot: los robots seleccionados abandonan su tarea. ABORTAR TODO: todos. PARADA DE EMERGENCIA (F10): todos los robots se detienen ahora, y ninguno se puede enviar a ningún sitio hasta que un supervisor lo levante.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>An arrow shows where a robot heads, its colour and shape the state. Hold the mouse over one for its card; with Select robot a click selects, a rectangle selects several, a double click goes there.</source>
+            <translation>Una flecha muestra hacia dónde mira un robot, su color y forma el estado. Deje el ratón encima para ver su ficha; con Seleccionar robot un clic selecciona, un rectángulo selecciona varios, un doble clic va allí.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>Click r1: it is selected on the map, too.</source>
+            <translation>Haga clic en r1: también queda seleccionado en el mapa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>Closing it ends the practice fleet. What else the desk does is in the operator's guide, docs/operator.md; how real robots are connected in docs/integrator.md.</source>
+            <translation>Al cerrarlo termina la flota de práctica. Qué más hace la consola está en la guía del operador, docs/operator.md; cómo se conectan robots reales, en docs/integrator.md.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>Cone target, a click on the map, Enter: that sends the selected robot. Before that it is a draft, checked against the site; Esc takes it away, and nothing was sent.</source>
+            <translation>Objetivo de cono, un clic en el mapa, Intro: eso envía el robot seleccionado. Antes es un borrador, comprobado con el recinto; Esc lo quita, y no se envió nada.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>Each robot has a row: its state, its task, its battery, and how old its last message is. A robot that falls silent is stale, then lost; it stays on the map, marked.</source>
+            <translation>Cada robot tiene una fila: su estado, su tarea, su batería, y la edad de su último mensaje. Un robot que calla queda desactualizado, después perdido; se queda en el mapa, marcado.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>Every command is here with each of its steps: queued, delivered, acknowledged, reached; or why it failed. A double click shows its place on the map.</source>
+            <translation>Aquí está cada orden con todos sus pasos: queued, delivered, acknowledged, reached; o por qué falló. Un doble clic muestra su lugar en el mapa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>Five minutes with a practice fleet</source>
+            <translation>Cinco minutos con una flota de práctica</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>Here stand the gateway's address and your name, which every log shows. For a real fleet write them and press Connect. For the tour, start the practice fleet: it connects by itself.</source>
+            <translation>Aquí están la dirección de la pasarela y su nombre, que muestran todos los registros. Para una flota real escríbalos y pulse Conectar. Para el recorrido, arranque la flota de práctica: se conecta sola.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>Open the sample site</source>
+            <translation>Abrir el recinto de ejemplo</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>Send a robot</source>
+            <translation>Enviar un robot</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>Start the practice fleet</source>
+            <translation>Arrancar la flota de práctica</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>Stop</source>
+            <translation>Detener</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>That was the tour</source>
+            <translation>Ese era el recorrido</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>The link</source>
+            <translation>El enlace</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>The map</source>
+            <translation>El mapa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>The robots</source>
+            <translation>Los robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>The site</source>
+            <translation>El recinto</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>The tour needs no network: a gateway and three simulated robots run on this computer, and nothing real moves. Next and Back lead on, Esc closes. It is in the menu Plugins &gt; Fleet Supervisor &gt; Tour.</source>
+            <translation>El recorrido no necesita red: una pasarela y tres robots simulados funcionan en este ordenador, y nada real se mueve. Siguiente y Atrás llevan por él, Esc lo cierra. Está en el menú Complementos &gt; Fleet Supervisor &gt; Recorrido guiado.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>Try it: only practice robots stop. Then clear it in the red banner.</source>
+            <translation>Pruébelo: solo se detienen robots de práctica. Después levántela en la franja roja.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>Try it: press Cone target, click on the road near r1, then Enter.</source>
+            <translation>Pruébelo: pulse Objetivo de cono, haga clic en la vía cerca de r1, e Intro.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>What became of it</source>
+            <translation>Qué fue de ello</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/tour_action.py" />
+            <source>Fleet Supervisor is new here. A tour of five minutes shows it with simulated robots.</source>
+            <translation>Fleet Supervisor es nuevo aquí. Un recorrido de cinco minutos lo muestra con robots simulados.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/tour_action.py" />
+            <source>Start the tour</source>
+            <translation>Empezar el recorrido</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/tour_action.py" />
+            <source>Starting …</source>
+            <translation>Arrancando …</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/tour_action.py" />
+            <source>The desk is connected to another gateway. Disconnect first: the tour moves no real robots.</source>
+            <translation>La consola está conectada a otra pasarela. Desconéctela antes: el recorrido no mueve robots reales.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/tour_action.py" />
+            <source>The practice fleet runs, and the desk is connected to it.</source>
+            <translation>La flota de práctica funciona, y la consola está conectada a ella.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/tour_action.py" />
+            <source>The sample site is open.</source>
+            <translation>El recinto de ejemplo está abierto.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/tour_action.py" />
+            <source>The sample site was not opened: {path}.</source>
+            <translation>El recinto de ejemplo no se abrió: {path}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/tour_action.py" />
+            <source>Tour</source>
+            <translation>Recorrido guiado</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/tour_panel.py" />
+            <source>&amp;Back</source>
+            <translation>&amp;Atrás</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/tour_panel.py" />
+            <source>&amp;Finish</source>
+            <translation>&amp;Finalizar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/tour_panel.py" />
+            <source>&amp;Next</source>
+            <translation>&amp;Siguiente</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/tour_panel.py" />
+            <source>C&amp;lose</source>
+            <translation>&amp;Cerrar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/window_alarms.py" />
+            <source>Alarms ({number})</source>
+            <translation>Alarmas ({number})</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/assign_cones.py" />
+            <source>Assign cones to robots</source>
+            <translation>Asignar conos a robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/assign_cones.py" />
+            <source>JSON (*.json)</source>
+            <translation>JSON (*.json)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/assign_cones.py" />
+            <source>Method</source>
+            <translation>Método</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/assign_cones.py" />
+            <source>Method that was used</source>
+            <translation>Método utilizado</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/assign_cones.py" />
+            <source>Objective</source>
+            <translation>Criterio</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/assign_cones.py" />
+            <source>Paths</source>
+            <translation>Caminos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/assign_cones.py" />
+            <source>Planned by {method} along {travel}: the last robot is done after {end_s:.0f} s, {metres:.0f} m in all</source>
+            <translation>Planificado con {method} por {travel}: el último robot termina al cabo de {end_s:.0f} s, {metres:.0f} m en total</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/assign_cones.py" />
+            <source>Plans which robot places or collects which cone, on which trip, along which roads, and when.</source>
+            <translation>Planifica qué robot coloca o recoge qué cono, en qué viaje, por qué vías y cuándo.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/assign_cones.py" />
+            <source>Robot {id}: {cones} cones on {trips} trips, {metres:.0f} m, done after {end_s:.0f} s</source>
+            <translation>Robot {id}: {cones} conos en {trips} viajes, {metres:.0f} m, termina al cabo de {end_s:.0f} s</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/assign_cones.py" />
+            <source>Targets</source>
+            <translation>Objetivos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/assign_cones.py" />
+            <source>The assignment was cancelled.</source>
+            <translation>Se canceló la asignación.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/assign_cones.py" />
+            <source>The plan</source>
+            <translation>El plan</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/assign_cones.py" />
+            <source>The plan cannot be driven: {faults}. Please report this.</source>
+            <translation>El plan no se puede recorrer: {faults}. Comuníquelo.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/assign_cones.py" />
+            <source>Time limit [s]</source>
+            <translation>Límite de tiempo [s]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/assign_cones.py" />
+            <source>What the ways follow</source>
+            <translation>Qué siguen los recorridos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_network.py" />
+            <source>Build road network</source>
+            <translation>Construir red de vías</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_network.py" />
+            <source>Edges</source>
+            <translation>Aristas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_network.py" />
+            <source>Nodes</source>
+            <translation>Nodos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_network.py" />
+            <source>Parts that are not connected</source>
+            <translation>Partes no conectadas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_network.py" />
+            <source>Repairs</source>
+            <translation>Reparaciones</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_network.py" />
+            <source>Roads</source>
+            <translation>Vías</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_network.py" />
+            <source>Splits road centrelines where they meet, passes over and under at bridges, and repairs on request.</source>
+            <translation>Divide los ejes de vía donde se encuentran, pasa por encima y por debajo en los puentes, y repara si se pide.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_network.py" />
+            <source>Warnings</source>
+            <translation>Avisos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_network.py" />
+            <source>{edges} edges, {nodes} nodes, {parts} parts, {repairs} repairs</source>
+            <translation>{edges} aristas, {nodes} nodos, {parts} partes, {repairs} reparaciones</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_surfaces.py" />
+            <source>Area [m²]</source>
+            <translation>Área [m²]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_surfaces.py" />
+            <source>Build road surfaces</source>
+            <translation>Construir superficies de vía</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_surfaces.py" />
+            <source>Classes that keep their ground where several are, the first before the second</source>
+            <translation>Clases que conservan el terreno donde hay varias, la primera antes que la segunda</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_surfaces.py" />
+            <source>Generated ones</source>
+            <translation>Generadas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_surfaces.py" />
+            <source>Road surfaces</source>
+            <translation>Superficies de vía</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_surfaces.py" />
+            <source>Roads without a width</source>
+            <translation>Vías sin anchura</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_surfaces.py" />
+            <source>Surfaces</source>
+            <translation>Superficies</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_surfaces.py" />
+            <source>Surfaces drawn by hand, which keep their ground</source>
+            <translation>Superficies dibujadas a mano, que conservan su terreno</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_surfaces.py" />
+            <source>The width of this road is not known; {width:g} m is used.</source>
+            <translation>La anchura de esta vía no se conoce; se usa {width:g} m.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_surfaces.py" />
+            <source>Widens centrelines to surfaces, one for each class; surfaces drawn by hand keep their ground.</source>
+            <translation>Ensancha los ejes en superficies, una por clase; las dibujadas a mano conservan su terreno.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_surfaces.py" />
+            <source>{old} of the surfaces that are given as drawn say that they were generated (field origin); they are left out and made anew</source>
+            <translation>{old} de las superficies dadas como dibujadas dicen que se generaron (campo origin); se omiten y se vuelven a hacer</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_surfaces.py" />
+            <source>{value}: {own:.1f} m²</source>
+            <translation>{value}: {own:.1f} m²</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/check_road_network.py" />
+            <source>Check road network</source>
+            <translation>Comprobar red de vías</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/check_road_network.py" />
+            <source>Dead ends</source>
+            <translation>Callejones sin salida</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/check_road_network.py" />
+            <source>Edges without a way back</source>
+            <translation>Aristas sin camino de vuelta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/check_road_network.py" />
+            <source>Findings</source>
+            <translation>Hallazgos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/check_road_network.py" />
+            <source>Finds gaps, overshoots, duplicates, dead ends, separate parts and one-way traps in road centrelines.</source>
+            <translation>Encuentra huecos, sobrepasos, duplicados, callejones sin salida, partes separadas y trampas de sentido único en los ejes de vía.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/check_road_network.py" />
+            <source>Gaps</source>
+            <translation>Huecos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/check_road_network.py" />
+            <source>Nothing is odd in this network.</source>
+            <translation>No hay nada extraño en esta red.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/check_road_network.py" />
+            <source>Overshoots</source>
+            <translation>Sobrepasos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/check_road_network.py" />
+            <source>Parts of their own</source>
+            <translation>Partes separadas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/check_road_network.py" />
+            <source>Roads drawn twice</source>
+            <translation>Vías dibujadas dos veces</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/check_robot_map.py" />
+            <source>Check robot map</source>
+            <translation>Comprobar mapa de robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/check_robot_map.py" />
+            <source>Errors</source>
+            <translation>Errores</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/check_robot_map.py" />
+            <source>Finds turned outlines, gaps, slivers, repeats, overlaps and unreachable pockets in a robot map.</source>
+            <translation>Encuentra contornos girados, huecos, astillas, repeticiones, solapes y rincones inaccesibles en un mapa de robots.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/check_robot_map.py" />
+            <source>Longest gap that was not meant [m]</source>
+            <translation>Hueco más largo que no es intencionado [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/check_robot_map.py" />
+            <source>Narrowest ring that is an obstacle [m]</source>
+            <translation>Anillo más estrecho que es un obstáculo [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/check_robot_map.py" />
+            <source>Nothing is odd in this map.</source>
+            <translation>No hay nada extraño en este mapa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/check_robot_map.py" />
+            <source>Smallest unreachable pocket [m²]</source>
+            <translation>Rincón inaccesible más pequeño [m²]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/check_robot_map.py" />
+            <source>Width of the robot, for unreachable pockets [m]</source>
+            <translation>Anchura del robot, para los rincones inaccesibles [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/check_robot_map.py" />
+            <source>Worth knowing</source>
+            <translation>Conviene saberlo</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_ground.py" />
+            <source>Classes of surface that are allowed, such as asphalt (default: all)</source>
+            <translation>Clases de superficie permitidas, como asphalt (por defecto: todas)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_ground.py" />
+            <source>Distance between cones [m]</source>
+            <translation>Distancia entre conos [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_ground.py" />
+            <source>Distance to obstacles [m]</source>
+            <translation>Distancia a los obstáculos [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_ground.py" />
+            <source>Layer {name}: {note}</source>
+            <translation>Capa {name}: {note}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_ground.py" />
+            <source>No layer of surfaces is given: whether the cones stand on the road is not checked.</source>
+            <translation>No se da ninguna capa de superficies: no se comprueba si los conos están en la vía.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_ground.py" />
+            <source>No surface is of class {classes}: the layers have {classes_there}.</source>
+            <translation>No hay ninguna superficie de clase {classes}: las capas tienen {classes_there}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_ground.py" />
+            <source>Nothing is wrong with the places of the cones.</source>
+            <translation>No hay nada incorrecto en los lugares de los conos.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_ground.py" />
+            <source>Obstacles to keep away from</source>
+            <translation>Obstáculos de los que alejarse</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_ground.py" />
+            <source>Surfaces to stand on (default: not checked)</source>
+            <translation>Superficies donde deben estar (por defecto: no se comprueba)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_ground.py" />
+            <source>cannot be transformed into the site's CRS ({error})</source>
+            <translation>no se puede transformar al SRC del recinto ({error})</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_ground.py" />
+            <source>{name}, feature {id}</source>
+            <translation>{name}, objeto espacial {id}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layer.py" />
+            <source>Site CRS, in metres (default: the project's, else the line's or the layer's)</source>
+            <translation>SRC del recinto, en metros (por defecto: el del proyecto, si no el de la línea o la capa)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layer.py" />
+            <source>The CRS of the site is not known: give SITE_CRS, such as EPSG:32633.</source>
+            <translation>El SRC del recinto no se conoce: dé SITE_CRS, como EPSG:32633.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
+            <source>Against the direction of the line</source>
+            <translation>En sentido contrario a la línea</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
+            <source>Begin so far along the line [m]</source>
+            <translation>Empezar a esta distancia a lo largo de la línea [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
+            <source>Both POINT and LINE are</source>
+            <translation>Se han dado POINT y LINE a la vez</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
+            <source>DIMENSIONS has {part!r}, which is not name=value with a number: write such as spacing=15.</source>
+            <translation>DIMENSIONS tiene {part!r}, que no es nombre=valor con un número: escriba por ejemplo spacing=15.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
+            <source>Dimensions other than the standard's, as name=value; ...</source>
+            <translation>Dimensiones distintas de las de la norma, como nombre=valor; ...</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
+            <source>Heading, clockwise from north [degrees]</source>
+            <translation>Rumbo, desde el norte en sentido horario [grados]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
+            <source>Id of the line's feature (default: the only one)</source>
+            <translation>Id del objeto de la línea (por defecto: el único)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
+            <source>Ids begin with (default: the layout)</source>
+            <translation>Los ids empiezan por (por defecto: la disposición)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
+            <source>Layout</source>
+            <translation>Disposición</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
+            <source>Line to lie along, instead of a place</source>
+            <translation>Línea por la que se extiende, en lugar de un punto</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
+            <source>Neither POINT nor LINE is</source>
+            <translation>No se ha dado ni POINT ni LINE</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
+            <source>POINT or HEADING is not finite: give numbers.</source>
+            <translation>POINT o HEADING no es finito: dé números.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
+            <source>Place of the layout's origin</source>
+            <translation>Lugar del origen de la disposición</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
+            <source>Places a standard cone layout at a point and heading or along a line, and checks every cone.</source>
+            <translation>Coloca una disposición de conos normalizada en un punto y rumbo o a lo largo de una línea, y comprueba cada cono.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
+            <source>The feature {id} of {sourcename} has {lines} lines: split it, or choose one that has one.</source>
+            <translation>El objeto {id} de {sourcename} tiene {lines} líneas: divídalo, o elija uno que tenga una.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
+            <source>The layer {sourcename} has {found}: choose one line by LINE_ID, or select it and tick 'Selected features only'.</source>
+            <translation>La capa {sourcename} tiene {found}: elija una línea con LINE_ID, o selecciónela y marque «Solo objetos seleccionados».</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
+            <source>The line cannot be transformed into the site's CRS ({error}).</source>
+            <translation>La línea no se puede transformar al SRC del recinto ({error}).</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
+            <source>no feature {wanted}</source>
+            <translation>ningún objeto espacial {wanted}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
+            <source>not exactly one feature</source>
+            <translation>no exactamente un objeto espacial</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
+            <source>{how} given: give the place of the layout, or a line that it lies along.</source>
+            <translation>{how}: dé el lugar de la disposición, o una línea por la que se extienda.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>Areas with a speed limit</source>
+            <translation>Zonas con límite de velocidad</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>Export navigation map</source>
+            <translation>Exportar mapa de navegación</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>FORMATS has {format}, which needs {name}: give it, or leave {format} out.</source>
+            <translation>FORMATS tiene {format}, que necesita {name}: délo, o quite {format}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>FORMATS is {formats}: choose of {known}.</source>
+            <translation>FORMATS es {formats}: elija entre {known}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>File of format {name}</source>
+            <translation>Archivo de formato {name}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>Files</source>
+            <translation>Archivos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>Folder</source>
+            <translation>Carpeta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>Formats</source>
+            <translation>Formatos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>Inside of obstacles in the occupancy grid</source>
+            <translation>Interior de los obstáculos en la rejilla de ocupación</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>Keepout areas</source>
+            <translation>Zonas prohibidas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>Making {format}</source>
+            <translation>Haciendo {format}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>NAME {name!r} is no file's name: leave out folders and leading dots.</source>
+            <translation>NAME {name!r} no es un nombre de archivo: quite las carpetas y los puntos iniciales.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>Name of the files (default: the robot map's)</source>
+            <translation>Nombre de los archivos (por defecto: el del mapa de robots)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>Robots drive over what is lower than [m]</source>
+            <translation>Los robots pasan por encima de lo que es más bajo que [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>Side of a cell of grid and masks [m]</source>
+            <translation>Lado de una celda de la rejilla y las máscaras [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>Speed limit of each area [m/s]</source>
+            <translation>Límite de velocidad de cada zona [m/s]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>The coordinates of the keepout and speed layers are taken as the map's own metres.</source>
+            <translation>Las coordenadas de las capas de zonas prohibidas y de velocidad se toman como metros del propio mapa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>The folder {folder} cannot be made: {reason}. Choose another OUTPUT.</source>
+            <translation>No se puede crear la carpeta {folder}: {reason}. Elija otro OUTPUT.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>Writes a robot map as Nav2 occupancy grid and masks, GeoJSON, GeoPackage, SVG or PNG.</source>
+            <translation>Escribe un mapa de robots como rejilla de ocupación y máscaras de Nav2, GeoJSON, GeoPackage, SVG o PNG.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>above 0, such as 0.05</source>
+            <translation>superior a 0, como 0.05</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>of 0 or more</source>
+            <translation>de 0 o más</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>{name} is {value}: give a number of metres {wanted}.</source>
+            <translation>{name} es {value}: dé un número de metros {wanted}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>{parameter} {layer} cannot be opened: check the file and the layer's name.</source>
+            <translation>{parameter} {layer} no se puede abrir: compruebe el archivo y el nombre de la capa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>{target} is the robot map itself: choose another NAME or OUTPUT.</source>
+            <translation>{target} es el propio mapa de robots: elija otro NAME u OUTPUT.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>{target}: {content} bytes</source>
+            <translation>{target}: {content} bytes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_plan.py" />
+            <source>DEFAULT_HEIGHT is {height}: give a number of metres of 0 or more.</source>
+            <translation>DEFAULT_HEIGHT es {height}: dé un número de metros de 0 o más.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_plan.py" />
+            <source>OUTPUT {target} is the file of the layer {layer}: choose another one.</source>
+            <translation>OUTPUT {target} es el archivo de la capa {layer}: elija otro.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_plan.py" />
+            <source>SITE_CRS {crs} is no CRS that QGIS knows: write a code such as EPSG:32633.</source>
+            <translation>SITE_CRS {crs} no es un SRC que QGIS conozca: escriba un código como EPSG:32633.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_plan.py" />
+            <source>The layer {layer} is no vector layer: leave it out.</source>
+            <translation>La capa {layer} no es vectorial: omítala.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_plan.py" />
+            <source>The obstacle layer {layer} cannot be opened: check the file, and the layer's name after '|layername='.</source>
+            <translation>La capa de obstáculos {layer} no se puede abrir: compruebe el archivo y el nombre de la capa después de '|layername='.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map.py" />
+            <source>Compactness [bytes/m²]</source>
+            <translation>Compacidad [bytes/m²]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map.py" />
+            <source>Export robot map</source>
+            <translation>Exportar mapa de robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map.py" />
+            <source>Height of each feature [m] (default: its field height)</source>
+            <translation>Altura de cada objeto [m] (por defecto: su campo height)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map.py" />
+            <source>Height where none is known, marked as estimated [m]</source>
+            <translation>Altura donde no se conoce, marcada como estimada [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map.py" />
+            <source>Label of each feature (default: the layer's name)</source>
+            <translation>Etiqueta de cada objeto (por defecto: el nombre de la capa)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map.py" />
+            <source>Obstacle layers</source>
+            <translation>Capas de obstáculos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map.py" />
+            <source>Obstacles</source>
+            <translation>Obstáculos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map.py" />
+            <source>Robot map</source>
+            <translation>Mapa de robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map.py" />
+            <source>Robot map, text (*.txt);;Robot map, binary (*.rmap)</source>
+            <translation>Mapa de robots, texto (*.txt);;Mapa de robots, binario (*.rmap)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map.py" />
+            <source>Segments</source>
+            <translation>Segmentos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map.py" />
+            <source>Size of the file [bytes]</source>
+            <translation>Tamaño del archivo [bytes]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map.py" />
+            <source>Such as "clearance" of arches, or 2.2 for signs; the height of a feature counts from there. The upper height of the robot's plane leaves out what begins above it.</source>
+            <translation>Como "clearance" de los arcos, o 2.2 para las señales; la altura de un objeto se cuenta desde ahí. La altura superior del plano del robot omite lo que empieza por encima.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map.py" />
+            <source>There is no obstacle in the window: check its place and the site CRS.</source>
+            <translation>No hay ningún obstáculo en la ventana: compruebe su lugar y el SRC del recinto.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map.py" />
+            <source>Where each feature begins above the ground [m] (default: on it)</source>
+            <translation>Dónde empieza cada objeto sobre el suelo [m] (por defecto: en él)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map.py" />
+            <source>Whether each feature is outdoors (default: true)</source>
+            <translation>Si cada objeto está en el exterior (por defecto: cierto)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map.py" />
+            <source>Window {width:g} m x {height:g} m = {area:.0f} m², from ({x_min:.2f}, {y_min:.2f}) to ({x_max:.2f}, {y_max:.2f}) in the site frame</source>
+            <translation>Ventana {width:g} m x {height:g} m = {area:.0f} m², de ({x_min:.2f}, {y_min:.2f}) a ({x_max:.2f}, {y_max:.2f}) en el marco del recinto</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map.py" />
+            <source>Writes the obstacles of line and polygon layers inside a window as a map that robots read.</source>
+            <translation>Escribe los obstáculos de capas de líneas y polígonos dentro de una ventana como mapa que leen los robots.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map.py" />
+            <source>{obstacles} obstacles, {segment_count} segments</source>
+            <translation>{obstacles} obstáculos, {segment_count} segmentos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map.py" />
+            <source>{size} bytes in binary, {ratio:.2f} bytes/m²</source>
+            <translation>{size} bytes en binario, {ratio:.2f} bytes/m²</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map.py" />
+            <source>{size} bytes of text, {ratio:.2f} bytes/m² (paper 1: about 3 bytes/m² as text)</source>
+            <translation>{size} bytes de texto, {ratio:.2f} bytes/m² (artículo 1: unos 3 bytes/m² como texto)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map_tiles.py" />
+            <source>Export robot map tiles</source>
+            <translation>Exportar teselas del mapa de robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map_tiles.py" />
+            <source>Extent of a grid (or choose a route)</source>
+            <translation>Extensión de una rejilla (o elija una ruta)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map_tiles.py" />
+            <source>Folder of the tiles</source>
+            <translation>Carpeta de las teselas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map_tiles.py" />
+            <source>Height of a tile, along y [m]</source>
+            <translation>Altura de una tesela, en y [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map_tiles.py" />
+            <source>Index of the tiles</source>
+            <translation>Índice de las teselas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map_tiles.py" />
+            <source>Leave out tiles without obstacles</source>
+            <translation>Omitir las teselas sin obstáculos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map_tiles.py" />
+            <source>Obstacles in all tiles</source>
+            <translation>Obstáculos en todas las teselas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map_tiles.py" />
+            <source>Route, instead of a grid</source>
+            <translation>Ruta, en lugar de una rejilla</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map_tiles.py" />
+            <source>Segments in all tiles</source>
+            <translation>Segmentos en todas las teselas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map_tiles.py" />
+            <source>Size of all tiles [bytes]</source>
+            <translation>Tamaño de todas las teselas [bytes]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map_tiles.py" />
+            <source>There is no obstacle in any tile: check their place and the site CRS.</source>
+            <translation>No hay ningún obstáculo en ninguna tesela: compruebe su lugar y el SRC del recinto.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map_tiles.py" />
+            <source>Tiles</source>
+            <translation>Teselas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map_tiles.py" />
+            <source>What neighbouring tiles share [m]</source>
+            <translation>Lo que comparten teselas vecinas [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map_tiles.py" />
+            <source>Width of a tile, along x [m]</source>
+            <translation>Anchura de una tesela, en x [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map_tiles.py" />
+            <source>Writes many robot maps, in a grid or along a route, and a layer that tells which is where.</source>
+            <translation>Escribe muchos mapas de robots, en rejilla o a lo largo de una ruta, y una capa que dice dónde está cada uno.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map_tiles.py" />
+            <source>{rows} tiles, {segments} segments, {size} bytes</source>
+            <translation>{rows} teselas, {segments} segmentos, {size} bytes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>Corners tighter than the robot turns</source>
+            <translation>Esquinas más cerradas que el giro del robot</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>Engine</source>
+            <translation>Motor</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>Engine that was used</source>
+            <translation>Motor utilizado</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>Finds the shortest or fastest way along road centrelines, and the path that a robot drives.</source>
+            <translation>Encuentra el recorrido más corto o más rápido por los ejes de vía, y el camino que hace un robot.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>Goal</source>
+            <translation>Final</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>Length of the route [m]</source>
+            <translation>Longitud de la ruta [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>Path</source>
+            <translation>Camino</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>Points of the path</source>
+            <translation>Puntos del camino</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>Points of the path at most this far apart [m]</source>
+            <translation>Puntos del camino separados como máximo [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>Roads at least this wide [m]</source>
+            <translation>Vías al menos así de anchas [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>Route</source>
+            <translation>Ruta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>Start</source>
+            <translation>Inicio</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>Start and goal at most this far from a road [m]</source>
+            <translation>Inicio y final como máximo a esta distancia de una vía [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>Surfaces that may be used (default: all)</source>
+            <translation>Superficies que se pueden usar (por defecto: todas)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>The corner at ({x:.2f}, {y:.2f}) is tighter than the robot turns.</source>
+            <translation>La esquina en ({x:.2f}, {y:.2f}) es más cerrada que el giro del robot.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>Time on the route [s]</source>
+            <translation>Tiempo de la ruta [s]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>Turning radius of the robot [m]</source>
+            <translation>Radio de giro del robot [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>Way</source>
+            <translation>Recorrido</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>Width of the robot [m]</source>
+            <translation>Anchura del robot [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>{closed} edges lead through areas to be avoided, and are closed</source>
+            <translation>{closed} aristas pasan por zonas que hay que evitar, y se cierran</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>{metres:.1f} m, {seconds:.1f} s, {points} points, found by {engine}; start {off_start:.2f} m and goal {off_goal:.2f} m from the road</source>
+            <translation>{metres:.1f} m, {seconds:.1f} s, {points} puntos, encontrada por {engine}; inicio a {off_start:.2f} m y final a {off_goal:.2f} m de la vía</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/fleet_algorithm.py" />
+            <source>Robot maps</source>
+            <translation>Mapas de robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>Both FILE and INPUT are</source>
+            <translation>Se han dado FILE e INPUT a la vez</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>CSV file</source>
+            <translation>Archivo CSV</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>Column of colours</source>
+            <translation>Columna de los colores</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>Column of headings, clockwise from the y axis [degrees]</source>
+            <translation>Columna de los rumbos, desde el eje y en sentido horario [grados]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>Column of ids</source>
+            <translation>Columna de los ids</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>Column of roles</source>
+            <translation>Columna de los papeles</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>Column of the order of placing</source>
+            <translation>Columna del orden de colocación</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>Column of x [m]</source>
+            <translation>Columna de x [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>Column of y [m]</source>
+            <translation>Columna de y [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>Column that names the layout of each row</source>
+            <translation>Columna que nombra la disposición de cada fila</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>Feature {id} of {sourcename} is not one point with a place in the site's CRS: correct it or leave it out.</source>
+            <translation>El objeto {id} de {sourcename} no es un solo punto con lugar en el SRC del recinto: corríjalo u omítalo.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>Import cone layout</source>
+            <translation>Importar disposición de conos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>Layer, instead of a file</source>
+            <translation>Capa, en lugar de un archivo</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>Name (default: the layout's, else the file's)</source>
+            <translation>Nombre (por defecto: el de la disposición, si no el del archivo)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>Neither FILE nor INPUT is</source>
+            <translation>No se ha dado ni FILE ni INPUT</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>ORIGIN is not given: say where the table's 0,0 goes.</source>
+            <translation>No se ha dado ORIGIN: diga adónde va el 0,0 de la tabla.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>Places the cones of a CSV file or a layer, turned and moved to their place, and checks them.</source>
+            <translation>Coloca los conos de un archivo CSV o de una capa, girados y movidos a su lugar, y los comprueba.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>Rotation, counter-clockwise [degrees]</source>
+            <translation>Rotación, en sentido antihorario [grados]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>The one layout to take, by that column</source>
+            <translation>La única disposición que se toma, según esa columna</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>Where the table's 0,0 goes</source>
+            <translation>Adónde va el 0,0 de la tabla</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>{how} given: give a CSV file, or a layer.</source>
+            <translation>{how}: dé un archivo CSV o una capa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_source.py" />
+            <source>Cones that a robot carries (default of field capacity)</source>
+            <translation>Conos que lleva un robot (por defecto del campo capacity)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_source.py" />
+            <source>Field of the stage: cones of lower ones come first</source>
+            <translation>Campo de la etapa: los conos de etapas más bajas van primero</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_source.py" />
+            <source>Metres that a robot's battery lasts, 0 for any (default of field range_m)</source>
+            <translation>Metros que dura la batería de un robot, 0 para cualquiera (por defecto del campo range_m)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_source.py" />
+            <source>Robots, where they are</source>
+            <translation>Robots, donde están</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_source.py" />
+            <source>Seconds of a visit to a store (default of its field service_s)</source>
+            <translation>Segundos de una visita a un almacén (por defecto de su campo service_s)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_source.py" />
+            <source>Seconds to place or collect a cone (default of field service_s)</source>
+            <translation>Segundos para colocar o recoger un cono (por defecto del campo service_s)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_source.py" />
+            <source>Speed of a robot [m/s] (default of field speed)</source>
+            <translation>Velocidad de un robot [m/s] (por defecto del campo speed)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_source.py" />
+            <source>Stores of cones</source>
+            <translation>Almacenes de conos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_source.py" />
+            <source>What is done with cones (default of field task)</source>
+            <translation>Qué se hace con los conos (por defecto del campo task)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_source.py" />
+            <source>Where robots go at the end</source>
+            <translation>Adónde van los robots al final</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_source.py" />
+            <source>{layer} is not one point with a place in {authid}: correct it.</source>
+            <translation>{layer} no es un solo punto con lugar en {authid}: corríjalo.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_source.py" />
+            <source>{layer}: {field} is {value!r}, which is no number; correct it.</source>
+            <translation>{layer}: {field} es {value!r}, que no es un número; corríjalo.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_source.py" />
+            <source>{layer}: {field} is {value:g}; give a whole number.</source>
+            <translation>{layer}: {field} es {value:g}; dé un número entero.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_source.py" />
+            <source>{name} {given} cannot be opened: check the file and the layer's name.</source>
+            <translation>{name} {given} no se puede abrir: compruebe el archivo y el nombre de la capa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_source.py" />
+            <source>{sourcename}, feature {id}</source>
+            <translation>{sourcename}, objeto espacial {id}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_travel.py" />
+            <source>Areas that no road leads through</source>
+            <translation>Zonas por las que no pasa ninguna vía</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_travel.py" />
+            <source>Cones, robots and stores at most this far from a road [m]</source>
+            <translation>Conos, robots y almacenes como máximo a esta distancia de una vía [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_travel.py" />
+            <source>No roads are given: distances and paths are straight lines.</source>
+            <translation>No se dan vías: distancias y caminos son líneas rectas.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_travel.py" />
+            <source>Points of the paths at most this far apart [m]</source>
+            <translation>Puntos de los caminos separados como máximo [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_travel.py" />
+            <source>Road centrelines (default: straight lines)</source>
+            <translation>Ejes de vía (por defecto: líneas rectas)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_travel.py" />
+            <source>SITE_CRS {given} is no CRS that QGIS knows: write a code such as EPSG:32633.</source>
+            <translation>SITE_CRS {given} no es un SRC que QGIS conozca: escriba un código como EPSG:32633.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_travel.py" />
+            <source>The CRS of the cones is not known: give SITE_CRS, such as EPSG:32633.</source>
+            <translation>El SRC de los conos no se conoce: dé SITE_CRS, como EPSG:32633.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_travel.py" />
+            <source>Turning radius of the robots [m]</source>
+            <translation>Radio de giro de los robots [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_travel.py" />
+            <source>Width of the robots [m]</source>
+            <translation>Anchura de los robots [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_travel.py" />
+            <source>{closed} edges lead through keepouts and are not used</source>
+            <translation>{closed} aristas pasan por zonas prohibidas y no se usan</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/keepout_areas.py" />
+            <source>Areas that must not be driven through</source>
+            <translation>Zonas que no se deben atravesar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/load_robot_map.py" />
+            <source>Border of the map</source>
+            <translation>Límite del mapa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/load_robot_map.py" />
+            <source>Load robot map</source>
+            <translation>Cargar mapa de robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/load_robot_map.py" />
+            <source>Obstacles that are areas</source>
+            <translation>Obstáculos que son áreas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/load_robot_map.py" />
+            <source>Obstacles that are lines</source>
+            <translation>Obstáculos que son líneas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/load_robot_map.py" />
+            <source>Turns a robot map, text or binary, into layers with all that the map says.</source>
+            <translation>Convierte un mapa de robots, texto o binario, en capas con todo lo que dice el mapa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_file.py" />
+            <source>ORIGIN {origin} or ROTATION {rotation} is not finite: give numbers.</source>
+            <translation>ORIGIN {origin} o ROTATION {rotation} no es finito: dé números.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_file.py" />
+            <source>Origin of the site frame in it (default: as the map says, else 0,0)</source>
+            <translation>Origen del marco del recinto en él (por defecto: el que dice el mapa, si no 0,0)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_file.py" />
+            <source>Robot map, text or binary</source>
+            <translation>Mapa de robots, texto o binario</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_file.py" />
+            <source>Robot maps (*.txt *.map *.rmap *.bin);;All files (*)</source>
+            <translation>Mapas de robots (*.txt *.map *.rmap *.bin);;Todos los archivos (*)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_file.py" />
+            <source>Rotation of the site frame, counter-clockwise [degrees] (default: as the map says, else 0)</source>
+            <translation>Rotación del marco del recinto, en sentido antihorario [grados] (por defecto: la que dice el mapa, si no 0)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_file.py" />
+            <source>Site CRS (default: as the map says)</source>
+            <translation>SRC del recinto (por defecto: el que dice el mapa)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_file.py" />
+            <source>The file {path} has {size} bytes, and a robot map at most {largest_text}: choose a map.</source>
+            <translation>El archivo {path} tiene {size} bytes, y un mapa de robots como máximo {largest_text}: elija un mapa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_file.py" />
+            <source>The file {path} is no robot map: it is neither UTF-8 (byte {start}) nor in the binary format, which begins with {decode}. Choose another file.</source>
+            <translation>El archivo {path} no es un mapa de robots: ni es UTF-8 (byte {start}) ni está en el formato binario, que empieza por {decode}. Elija otro archivo.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_file.py" />
+            <source>The leading line '%{key} {meta}' of the map should hold {wanted}: correct it there, or give {upper}.</source>
+            <translation>La línea inicial '%{key} {meta}' del mapa debería contener {wanted}: corríjala allí, o dé {upper}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_file.py" />
+            <source>The map's place is not known, because {why}: its layers are in local metres. Give SITE_CRS, ORIGIN and ROTATION to place it.</source>
+            <translation>El lugar del mapa no se conoce, porque {why}: sus capas están en metros locales. Dé SITE_CRS, ORIGIN y ROTATION para situarlo.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_file.py" />
+            <source>The robot map {path} cannot be read: {error}</source>
+            <translation>El mapa de robots {path} no se puede leer: {error}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_file.py" />
+            <source>The robot map {path} cannot be read: {reason}. Check its rights.</source>
+            <translation>El mapa de robots {path} no se puede leer: {reason}. Compruebe sus permisos.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_file.py" />
+            <source>There is no file {file}: choose a robot map (MAP).</source>
+            <translation>No hay ningún archivo {file}: elija un mapa de robots (MAP).</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_file.py" />
+            <source>a number</source>
+            <translation>un número</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_file.py" />
+            <source>it names no CRS</source>
+            <translation>no nombra ningún SRC</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_file.py" />
+            <source>the CRS {stated!r} that the map names is not known to QGIS</source>
+            <translation>QGIS no conoce el SRC {stated!r} que el mapa nombra</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_file.py" />
+            <source>two numbers 'x,y'</source>
+            <translation>dos números 'x,y'</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_format.py" />
+            <source>Format (compact: binary in columns, about a third of binary)</source>
+            <translation>Formato (compact: binario en columnas, un tercio del binario)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_format.py" />
+            <source>Only what the paper's Fig. 2 has: no leading lines, no extras</source>
+            <translation>Solo lo que tiene la fig. 2 del artículo: sin líneas iniciales ni extras</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_format.py" />
+            <source>text: lines that people and scripts read. binary: that text compressed, with a check sum. compact: the same map in columns of centimetres, also with a check sum (codec 2).</source>
+            <translation>text: líneas que leen personas y scripts. binary: ese texto comprimido, con suma de verificación. compact: el mismo mapa en columnas de centímetros, también con suma de verificación (códec 2).</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_place.py" />
+            <source>GeoJSON needs longitudes and latitudes, and the map's place is not known: give SITE_CRS, ORIGIN and ROTATION, or choose geopackage, which keeps the site's metres.</source>
+            <translation>GeoJSON necesita longitudes y latitudes, y el lugar del mapa no se conoce: dé SITE_CRS, ORIGIN y ROTATION, o elija geopackage, que conserva los metros del recinto.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_place.py" />
+            <source>The map's positions cannot be transformed from {authid} to longitudes and latitudes ({error}): check the map's lines crs, origin and rotation.</source>
+            <translation>Las posiciones del mapa no se pueden transformar de {authid} a longitudes y latitudes ({error}): compruebe las líneas crs, origin y rotation del mapa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_profile.py" />
+            <source>Map profile ({kinds});;All files (*)</source>
+            <translation>Perfil de mapa ({kinds});;Todos los archivos (*)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_profile.py" />
+            <source>Map profile: what the layers are, by their names (default: as each layer keeps it)</source>
+            <translation>Perfil de mapa: qué son las capas, por su nombre (por defecto: como lo guarda cada capa)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_shaping.py" />
+            <source>0 is off. An outline that would cross itself stays as it is. Needs the Python package shapely 2.</source>
+            <translation>0: desactivado. Un contorno que se cruzaría a sí mismo se queda como está. Necesita el paquete de Python shapely 2.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_shaping.py" />
+            <source>0 is off. Ends of lines stay and rings keep three corners. Needs the Python package shapely 2.</source>
+            <translation>0: desactivado. Los extremos de las líneas se quedan y los anillos conservan tres esquinas. Necesita el paquete de Python shapely 2.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_shaping.py" />
+            <source>0 is off. Half a metre makes a compact map smaller still, and no obstacle lower than it is.</source>
+            <translation>0: desactivado. Medio metro hace aún más pequeño un mapa compacto, y ningún obstáculo más bajo de lo que es.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_shaping.py" />
+            <source>DISSOLVE, TOLERANCE and SHORTEST need the Python package shapely 2, and {version} is installed here: install a newer one (python3 -m pip install 'shapely&gt;=2'), or leave them off.</source>
+            <translation>DISSOLVE, TOLERANCE y SHORTEST necesitan el paquete de Python shapely 2, y aquí hay {version}: instale uno más nuevo (python3 -m pip install 'shapely&gt;=2'), o déjelos desactivados.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_shaping.py" />
+            <source>Fewer corners: how far an outline may then be from the drawn one [m]</source>
+            <translation>Menos esquinas: a qué distancia puede quedar un contorno del dibujado [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_shaping.py" />
+            <source>Heights are rounded up to a multiple of this [m]</source>
+            <translation>Las alturas se redondean hacia arriba a un múltiplo de [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_shaping.py" />
+            <source>Join lines that meet end to end into one obstacle</source>
+            <translation>Unir líneas que se encuentran por los extremos en un solo obstáculo</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_shaping.py" />
+            <source>Leave out walls between buildings that touch and lines inside or along buildings</source>
+            <translation>Omitir muros entre edificios que se tocan y líneas dentro o a lo largo de edificios</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_shaping.py" />
+            <source>No robot outside can meet them. What stays keeps its height and its source. Needs the Python package shapely 2.</source>
+            <translation>Ningún robot de fuera puede encontrarlos. Lo que queda conserva su altura y su fuente. Necesita el paquete de Python shapely 2.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_shaping.py" />
+            <source>Only lines that are alike in height, label and all else. The source of a joined line is that of its first part and how many others are in it, such as walls:3+7.</source>
+            <translation>Solo líneas iguales en altura, etiqueta y todo lo demás. La fuente de una línea unida es la de su primera parte y cuántas más hay, como walls:3+7.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_shaping.py" />
+            <source>PLANE_LOW is {low:g} and PLANE_HIGH {high:g}: give the lower and the upper height in metres.</source>
+            <translation>PLANE_LOW es {low:g} y PLANE_HIGH {high:g}: dé la altura inferior y la superior en metros.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_shaping.py" />
+            <source>Robot's plane: from this height above the ground [m]</source>
+            <translation>Plano del robot: desde esta altura sobre el suelo [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_shaping.py" />
+            <source>Robot's plane: up to this height above the ground [m]</source>
+            <translation>Plano del robot: hasta esta altura sobre el suelo [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_shaping.py" />
+            <source>Shortest segment: corners nearer than this to the one before are left out [m]</source>
+            <translation>Segmento más corto: se omiten las esquinas más cercanas a la anterior [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_shaping.py" />
+            <source>What begins at this height or above it is left out: the robot drives under it. Where things begin is said by the layers or by the parameter BASE_EXPRESSION.</source>
+            <translation>Lo que empieza a esta altura o por encima se omite: el robot pasa por debajo. Dónde empiezan las cosas lo dicen las capas o el parámetro BASE_EXPRESSION.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_shaping.py" />
+            <source>What is not higher than this is left out: the robot drives over it. Stairs and ramps stay. Give the lower and the upper height together, or neither.</source>
+            <translation>Lo que no es más alto se omite: el robot pasa por encima. Escaleras y rampas se quedan. Dé la altura inferior y la superior juntas, o ninguna.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_shaping.py" />
+            <source>{name} is {value:g}: give a number of metres of 0 or more.</source>
+            <translation>{name} es {value:g}: dé un número de metros de 0 o más.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_shaping.py" />
+            <source>{other} is given and {missing} is not: give both heights in metres, or none.</source>
+            <translation>Se ha dado {other} y no {missing}: dé las dos alturas en metros, o ninguna.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_window.py" />
+            <source>Both CENTER and EXTENT are given: give one of them, the window cannot be both.</source>
+            <translation>Se han dado CENTER y EXTENT a la vez: dé uno, la ventana no puede ser ambos.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_window.py" />
+            <source>Centre of the window (or choose an extent)</source>
+            <translation>Centro de la ventana (o elija una extensión)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_window.py" />
+            <source>EXTENT {extent} is no extent: write 'xmin,xmax,ymin,ymax'.</source>
+            <translation>EXTENT {extent} no es una extensión: escriba 'xmin,xmax,ymin,ymax'.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_window.py" />
+            <source>Extent (instead of centre, width and height)</source>
+            <translation>Extensión (en lugar de centro, anchura y altura)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_window.py" />
+            <source>Height of the window, along y [m]</source>
+            <translation>Altura de la ventana, en y [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_window.py" />
+            <source>Layers without a CRS are already in the site frame's metres</source>
+            <translation>Las capas sin SRC ya están en metros del marco del recinto</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_window.py" />
+            <source>Neither CENTER nor EXTENT is given: give the centre of the window with WIDTH and HEIGHT in metres, or an extent.</source>
+            <translation>No se ha dado ni CENTER ni EXTENT: dé el centro de la ventana con WIDTH y HEIGHT en metros, o una extensión.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_window.py" />
+            <source>ORIGIN {origin} or ROTATION {degrees} is not finite: give numbers.</source>
+            <translation>ORIGIN {origin} o ROTATION {degrees} no es finito: dé números.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_window.py" />
+            <source>Origin of the site frame (default: as the project has it, else 0,0)</source>
+            <translation>Origen del marco del recinto (por defecto: el del proyecto, si no 0,0)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_window.py" />
+            <source>Rotation of the site frame, counter-clockwise from the CRS's x axis [degrees]</source>
+            <translation>Rotación del marco del recinto, en sentido antihorario desde el eje x del SRC [grados]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_window.py" />
+            <source>Site CRS, in metres (default: the project's, else the layers')</source>
+            <translation>SRC del recinto, en metros (por defecto: el del proyecto, si no el de las capas)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_window.py" />
+            <source>Width of the window, along x [m]</source>
+            <translation>Anchura de la ventana, en x [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_window.py" />
+            <source>{side} is {length}: give a finite number of metres.</source>
+            <translation>{side} es {length}: dé un número finito de metros.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/mask_areas.py" />
+            <source>Layer {sourcename}, feature {id}</source>
+            <translation>Capa {sourcename}, objeto espacial {id}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/mask_areas.py" />
+            <source>SPEED {text!r} is no expression ({reason}): write a field's name or a number.</source>
+            <translation>SPEED {text!r} no es una expresión ({reason}): escriba el nombre de un campo o un número.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/mask_areas.py" />
+            <source>cannot be transformed into the site's CRS ({error}); it is left out</source>
+            <translation>no se puede transformar al SRC del recinto ({error}); se omite</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/mask_areas.py" />
+            <source>has no geometry; it is left out</source>
+            <translation>no tiene geometría; se omite</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/mask_areas.py" />
+            <source>{name}: it has no speed above 0 m/s, so it sets no limit; it is left out</source>
+            <translation>{name}: no tiene velocidad superior a 0 m/s, así que no limita; se omite</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/obstacle_outlines.py" />
+            <source>Reducing obstacles</source>
+            <translation>Reduciendo obstáculos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/obstacle_outlines.py" />
+            <source>{obstacles} obstacles with {segments} segments became {obstacles_left} with {segments_left}</source>
+            <translation>{obstacles} obstáculos con {segments} segmentos se convirtieron en {obstacles_left} con {segments_left}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/plan_rows.py" />
+            <source>Metres of all robots</source>
+            <translation>Metros de todos los robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/plan_rows.py" />
+            <source>Robots that drive</source>
+            <translation>Robots que circulan</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/plan_rows.py" />
+            <source>Seconds until the last cone is done</source>
+            <translation>Segundos hasta que está hecho el último cono</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/plan_rows.py" />
+            <source>Seconds until the last robot has finished</source>
+            <translation>Segundos hasta que termina el último robot</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/plan_rows.py" />
+            <source>Trips</source>
+            <translation>Viajes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_plan.py" />
+            <source>BOUNDS {bounds} is no extent: write 'xmin,xmax,ymin,ymax'.</source>
+            <translation>BOUNDS {bounds} no es una extensión: escriba 'xmin,xmax,ymin,ymax'.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_plan.py" />
+            <source>SITE_ID is empty and the project has no variable {site_variable}: give the site an id of letters, digits, '_', '.' and '-', such as north_yard.</source>
+            <translation>SITE_ID está vacío y el proyecto no tiene la variable {site_variable}: dé al recinto un id de letras, dígitos, '_', '.' y '-', como north_yard.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_plan.py" />
+            <source>The layer {layer} is no vector layer: take its role away.</source>
+            <translation>La capa {layer} no es vectorial: quítele el papel.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_plan.py" />
+            <source>The site's CRS is not known, and</source>
+            <translation>El SRC del recinto no se conoce, y</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_plan.py" />
+            <source>The site's CRS, {crs_name},</source>
+            <translation>El SRC del recinto, {crs_name},</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_plan.py" />
+            <source>There is nothing to publish: no layer is given and no layer of the project has a role. Give roles (Fleet Supervisor &gt; Layer roles), a PROFILE, or layers.</source>
+            <translation>No hay nada que publicar: no se da ninguna capa y ninguna capa del proyecto tiene papel. Dé papeles (Fleet Supervisor &gt; Papeles de las capas), un PROFILE, o capas.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_plan.py" />
+            <source>{named} has no code that a gateway knows it by: choose SITE_CRS such as EPSG:32633. Layers in local metres can be published with ORIGIN and LOCAL=true.</source>
+            <translation>{named} no tiene código por el que lo conozca una pasarela: elija SITE_CRS, como EPSG:32633. Las capas en metros locales se pueden publicar con ORIGIN y LOCAL=true.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_plan.py" />
+            <source>{name} is {value}: give a number of metres above 0.</source>
+            <translation>{name} es {value}: dé un número de metros superior a 0.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_plan.py" />
+            <source>{name}: the layer {layer} cannot be opened: check the file, and the layer's name after '|layername='.</source>
+            <translation>{name}: la capa {layer} no se puede abrir: compruebe el archivo y el nombre de la capa después de '|layername='.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_plan.py" />
+            <source>{place} = {text} is no number: correct it there.</source>
+            <translation>{place} = {text} no es un número: corríjalo allí.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>A robot is lost without a message for [s]</source>
+            <translation>Un robot está perdido sin mensaje durante [s]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>A robot is stale without a message for [s]</source>
+            <translation>Un robot está desactualizado sin mensaje durante [s]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>A target is reached within [m]</source>
+            <translation>Un objetivo se alcanza a menos de [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>Folder of the published site</source>
+            <translation>Carpeta del recinto publicado</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>Height where none is known [m]</source>
+            <translation>Altura donde no se conoce [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>Id of the site</source>
+            <translation>Id del recinto</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>Keepout layers (default: the project's with that role)</source>
+            <translation>Capas de zonas prohibidas (por defecto: las del proyecto con ese papel)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>Keepouts</source>
+            <translation>Zonas prohibidas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>Obstacle layers, stairs, ramps and furniture (default: the project's with such a role)</source>
+            <translation>Capas de obstáculos, escaleras, rampas y mobiliario (por defecto: las del proyecto con ese papel)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>Obstacle outlines</source>
+            <translation>Contornos de obstáculos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>Publish site</source>
+            <translation>Publicar recinto</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>Replace the publication of another site</source>
+            <translation>Sustituir la publicación de otro recinto</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>Road centreline layers (default: the project's with that role)</source>
+            <translation>Capas de ejes de vía (por defecto: las del proyecto con ese papel)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>Road centrelines</source>
+            <translation>Ejes de vía</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>Road surface layers (default: the project's with that role)</source>
+            <translation>Capas de superficies de vía (por defecto: las del proyecto con ese papel)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>Site id (default: the project's)</source>
+            <translation>Id del recinto (por defecto: el del proyecto)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>Site name (default: the project's title)</source>
+            <translation>Nombre del recinto (por defecto: el título del proyecto)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>Site {id} version {version} is published in {folder}: {outlines} obstacle outlines, {centrelines} centrelines, {surfaces} road surfaces, {keepouts} keepouts; bounds {bounds} m</source>
+            <translation>El recinto {id} versión {version} se publicó en {folder}: {outlines} contornos de obstáculos, {centrelines} ejes, {surfaces} superficies de vía, {keepouts} zonas prohibidas; límites {bounds} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>Sites</source>
+            <translation>Recintos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>There is nothing to publish: the layers hold nothing that can be read. See the warnings, or give BOUNDS to publish an empty site.</source>
+            <translation>No hay nada que publicar: las capas no contienen nada legible. Vea los avisos, o dé BOUNDS para publicar un recinto vacío.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>Version of the site</source>
+            <translation>Versión del recinto</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>Where robots may be sent (default: all that is published)</source>
+            <translation>Adónde se pueden enviar robots (por defecto: todo lo publicado)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>Width of a road where none is known [m]</source>
+            <translation>Anchura de una vía donde no se conoce [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>Writes the layers of a site, by their roles, into the folder that a gateway serves.</source>
+            <translation>Escribe las capas de un recinto, según sus papeles, en la carpeta que sirve una pasarela.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>{title} (default: as published, at first {default:g})</source>
+            <translation>{title} (por defecto: como se publicó, al principio {default:g})</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_source.py" />
+            <source>CRS in metres (default: the layer's, or the project's)</source>
+            <translation>SRC en metros (por defecto: el de la capa o el del proyecto)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_source.py" />
+            <source>Direction: yes along the line, -1 against it, no both (default: a field oneway, ...)</source>
+            <translation>Sentido: yes a lo largo de la línea, -1 en contra, no ambos (por defecto: un campo oneway, ...)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_source.py" />
+            <source>Ends this near to a road were meant to meet it [m]</source>
+            <translation>Los extremos así de cerca de una vía debían encontrarse con ella [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_source.py" />
+            <source>Layer {name}, feature {id}: {note}</source>
+            <translation>Capa {name}, objeto espacial {id}: {note}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_source.py" />
+            <source>Layer {name}: the width of {unknown} roads is not known; {width:g} m is used</source>
+            <translation>Capa {name}: la anchura de {unknown} vías no se conoce; se usa {width:g} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_source.py" />
+            <source>Level of each road, 0 on the ground (default: fields level, layer, bridge, tunnel)</source>
+            <translation>Nivel de cada vía, 0 en el suelo (por defecto: campos level, layer, bridge, tunnel)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_source.py" />
+            <source>ROADS {roads} cannot be opened: check the file and the layer's name.</source>
+            <translation>ROADS {roads} no se puede abrir: compruebe el archivo y el nombre de la capa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_source.py" />
+            <source>Repair: close gaps, cut overshoots, leave out what is drawn twice</source>
+            <translation>Reparar: cerrar huecos, cortar sobrepasos, omitir lo dibujado dos veces</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_source.py" />
+            <source>Repaired: {kind} of feature {feature} at {where}: {text}</source>
+            <translation>Reparado: {kind} del objeto {feature} en {where}: {text}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_source.py" />
+            <source>Speed on each road [m/s] (default: a field speed_ms, or maxspeed in km/h)</source>
+            <translation>Velocidad en cada vía [m/s] (por defecto: un campo speed_ms, o maxspeed en km/h)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_source.py" />
+            <source>Speed on roads of which it is not known [m/s]</source>
+            <translation>Velocidad en las vías de las que no se conoce [m/s]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_source.py" />
+            <source>Surface of each road (default: the layer's role, else a field surface)</source>
+            <translation>Superficie de cada vía (por defecto: el papel de la capa, si no un campo surface)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_source.py" />
+            <source>Whether each road is closed (default: a field closed)</source>
+            <translation>Si cada vía está cerrada (por defecto: un campo closed)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_source.py" />
+            <source>Width of each road [m] (default: the layer's role, else a field width_m or width)</source>
+            <translation>Anchura de cada vía [m] (por defecto: el papel de la capa, si no un campo width_m o width)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_source.py" />
+            <source>Width of roads of which it is not known [m]</source>
+            <translation>Anchura de las vías de las que no se conoce [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_source.py" />
+            <source>cannot be transformed into the CRS in metres ({error}); it is left out</source>
+            <translation>no se puede transformar al SRC en metros ({error}); se omite</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/sinks.py" />
+            <source>A layer cannot be written ({reason}): choose another place or format for it, and check the free space.</source>
+            <translation>No se puede escribir una capa ({reason}): elija otro lugar o formato, y compruebe el espacio libre.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/surface_at_point.py" />
+            <source>Adds to points, in any CRS, the class of the road surface that they are on.</source>
+            <translation>Añade a puntos, en cualquier SRC, la clase de la superficie de vía donde están.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/surface_at_point.py" />
+            <source>Feature {id} has points on several surfaces; none is given for it</source>
+            <translation>El objeto {id} tiene puntos sobre varias superficies; no se da ninguna</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/surface_at_point.py" />
+            <source>No road surfaces are given, and no layer of the project has the role road surface: give SURFACES, or set the role in Plugins &gt; Fleet Supervisor &gt; Layer roles.</source>
+            <translation>No se dan superficies de vía, y ninguna capa del proyecto tiene el papel superficie de vía: dé SURFACES, o ponga el papel en Complementos &gt; Fleet Supervisor &gt; Papeles de las capas.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/surface_at_point.py" />
+            <source>Points</source>
+            <translation>Puntos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/surface_at_point.py" />
+            <source>Points on a surface</source>
+            <translation>Puntos sobre una superficie</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/surface_at_point.py" />
+            <source>Points on none</source>
+            <translation>Puntos sobre ninguna</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/surface_at_point.py" />
+            <source>Points with surface</source>
+            <translation>Puntos con superficie</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/surface_at_point.py" />
+            <source>Road surfaces (default: the project's layers with that role)</source>
+            <translation>Superficies de vía (por defecto: las capas del proyecto con ese papel)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/surface_at_point.py" />
+            <source>Surface at point</source>
+            <translation>Superficie en el punto</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/surface_at_point.py" />
+            <source>{counts} points are on a surface, {counts2} on none.</source>
+            <translation>{counts} puntos están sobre una superficie, {counts2} sobre ninguna.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/svg_picture.py" />
+            <source>Qt cannot draw the picture of this map: choose svg and open that in a browser.</source>
+            <translation>Qt no puede dibujar la imagen de este mapa: elija svg y ábralo en un navegador.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/tile_folder.py" />
+            <source>The tiles cannot be written to {folder}: {reason}. Choose a folder that may be written to, and check the free space.</source>
+            <translation>Las teselas no se pueden escribir en {folder}: {reason}. Elija una carpeta donde se pueda escribir, y compruebe el espacio libre.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/tile_folder.py" />
+            <source>{path} is a folder: choose another folder for the tiles.</source>
+            <translation>{path} es una carpeta: elija otra carpeta para las teselas.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/tile_plan.py" />
+            <source>Both EXTENT and ROUTE are given: give one of them, for a grid or for tiles along a route.</source>
+            <translation>Se han dado EXTENT y ROUTE a la vez: dé uno, para una rejilla o para teselas a lo largo de una ruta.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/tile_plan.py" />
+            <source>Neither EXTENT nor ROUTE is given: give an extent for a grid, or a layer of lines to follow.</source>
+            <translation>No se ha dado ni EXTENT ni ROUTE: dé una extensión para una rejilla, o una capa de líneas que seguir.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/tile_plan.py" />
+            <source>OUTPUT {folder} is a file: choose a folder for the tiles.</source>
+            <translation>OUTPUT {folder} es un archivo: elija una carpeta para las teselas.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/tile_plan.py" />
+            <source>ROUTE {route} cannot be opened: choose a layer of lines.</source>
+            <translation>ROUTE {route} no se puede abrir: elija una capa de líneas.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/tile_plan.py" />
+            <source>ROUTE: feature {id} of {layer}: {doubts}. Correct the filter of the layer.</source>
+            <translation>ROUTE: objeto {id} de {layer}: {doubts}. Corrija el filtro de la capa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/tile_plan.py" />
+            <source>ROUTE: feature {id} of {sourcename} has no place in the site's CRS ({error}): correct its geometry or the CRS.</source>
+            <translation>ROUTE: el objeto {id} de {sourcename} no tiene lugar en el SRC del recinto ({error}): corrija su geometría o el SRC.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/tile_windows.py" />
+            <source>OVERLAP is {overlap} m: give 0 or more, and at most nine tenths of a tile's side.</source>
+            <translation>OVERLAP es {overlap} m: dé 0 o más, y como máximo nueve décimas del lado de una tesela.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/tile_windows.py" />
+            <source>ROUTE holds no line: choose a layer with the route to export along.</source>
+            <translation>ROUTE no tiene ninguna línea: elija una capa con la ruta a lo largo de la cual exportar.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/tile_windows.py" />
+            <source>That would be {count} tiles, and {most_tiles} are the most: choose larger tiles, less overlap or a smaller area.</source>
+            <translation>Serían {count} teselas, y {most_tiles} son el máximo: elija teselas más grandes, menos solape o una zona más pequeña.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/tile_windows.py" />
+            <source>The {name} of a tile is {value} m: give at least 1 m, such as 100.</source>
+            <translation>El tamaño ({name}) de una tesela es {value} m: dé al menos 1 m, como 100.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/whole_file.py" />
+            <source>The robot map</source>
+            <translation>El mapa de robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/whole_file.py" />
+            <source>{what} cannot be written to {target}: {reason}. Choose a file in a folder that exists and may be written to.</source>
+            <translation>{what} no se puede escribir en {target}: {reason}. Elija un archivo en una carpeta que exista y donde se pueda escribir.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/live_preview.py" />
+            <source>Reading {sources} layers …</source>
+            <translation>Leyendo {sources} capas …</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/measure.py" />
+            <source> of {counted}</source>
+            <translation> de {counted}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/measure.py" />
+            <source>{counted} refused</source>
+            <translation>{counted} rechazadas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/picture.py" />
+            <source>{metres:g} m</source>
+            <translation>{metres:g} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/preview_task.py" />
+            <source>Preview of the site</source>
+            <translation>Vista previa del recinto</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/roles_action.py" />
+            <source>Layer roles…</source>
+            <translation>Papeles de las capas…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/roles_action.py" />
+            <source>Say what each layer of the project is to robots</source>
+            <translation>Diga qué es cada capa del proyecto para los robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/roles_dialog.py" />
+            <source>Apply profile</source>
+            <translation>Aplicar perfil</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/roles_dialog.py" />
+            <source>Layer roles</source>
+            <translation>Papeles de las capas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/roles_dialog.py" />
+            <source>Map profile</source>
+            <translation>Perfil de mapa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/roles_dialog.py" />
+            <source>Map profile ({kinds})</source>
+            <translation>Perfil de mapa ({kinds})</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/roles_dialog.py" />
+            <source>Map profile:</source>
+            <translation>Perfil de mapa:</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/roles_dialog.py" />
+            <source>Profile from file…</source>
+            <translation>Perfil de un archivo…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/roles_dialog.py" />
+            <source>{name} knows none of these layers by name and fields.</source>
+            <translation>{name} no conoce ninguna de estas capas por nombre y campos.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/roles_dialog.py" />
+            <source>{name}: {known} of {setups} layers set up.</source>
+            <translation>{name}: {known} de {setups} capas configuradas.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Comes to</source>
+            <translation>Resultado</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Estimate [m]</source>
+            <translation>Estimación [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Expression for metres above the ground where it begins, as of an arch; empty: 0</source>
+            <translation>Expresión para los metros sobre el suelo donde empieza, como un arco; vacía: 0</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Expression for metres from the foot up; empty: the field height or height_m</source>
+            <translation>Expresión para los metros desde el pie hacia arriba; vacía: el campo height o height_m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Expression for the degrees clockwise that the template is turned; empty: 0</source>
+            <translation>Expresión para los grados que se gira la plantilla en sentido horario; vacía: 0</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Expression for the height where it is not known, such as 3 * "levels"; marked as estimated</source>
+            <translation>Expresión para la altura donde no se conoce, como 3 * "levels"; marcada como estimada</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Expression for the label, such as 'building,' || "name"; of a road its surface</source>
+            <translation>Expresión para la etiqueta, como 'building,' || "name"; de una vía, su superficie</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Expression for the metres across, of a road or of furniture that is points</source>
+            <translation>Expresión para los metros de ancho, de una vía o de mobiliario que son puntos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Expression for the shape that a point of furniture stands for: {shapes}, 'circle 0.6', 'square 1' or 'rectangle 2 0.5'; empty: an octagon of its width</source>
+            <translation>Expresión para la forma que representa un punto de mobiliario: {shapes}, 'circle 0.6', 'square 1' o 'rectangle 2 0.5'; vacía: un octágono de su anchura</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Expression for true or false; empty: true</source>
+            <translation>Expresión para cierto o falso; vacía: cierto</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Expression that is true of the features that count, such as "amenity" = 'bench'; empty: all</source>
+            <translation>Expresión cierta para los objetos que cuentan, como "amenity" = 'bench'; vacía: todos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Filter</source>
+            <translation>Filtro</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Foot [m]</source>
+            <translation>Pie [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Height [m]</source>
+            <translation>Altura [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Label</source>
+            <translation>Etiqueta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Layer</source>
+            <translation>Capa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Layers of the project that can have a role</source>
+            <translation>Capas del proyecto que pueden tener un papel</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Outdoors</source>
+            <translation>Exterior</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Role</source>
+            <translation>Papel</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Template</source>
+            <translation>Plantilla</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Turned [°]</source>
+            <translation>Girado [°]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>What is published of the layer</source>
+            <translation>Qué se publica de la capa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>What the layer is to robots and operators</source>
+            <translation>Qué es la capa para los robots y los operadores</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Width [m]</source>
+            <translation>Anchura [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>road centreline</source>
+            <translation>eje de vía</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>road surface</source>
+            <translation>superficie de vía</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/obstacle_source.py" />
+            <source>The layer {name} cannot be opened ({source}): repair its data source or leave it out.</source>
+            <translation>La capa {name} no se puede abrir ({source}): repare su origen de datos u omítala.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/obstacle_source.py" />
+            <source>The layer {name} holds {held}, and only lines and polygons are obstacles: leave it out, give it an extent first (for example with Buffer), or the role furniture.</source>
+            <translation>La capa {name} contiene {held}, y solo las líneas y los polígonos son obstáculos: omítala, déle antes extensión (por ejemplo con Buffer), o el papel mobiliario.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/obstacle_source.py" />
+            <source>no geometry</source>
+            <translation>ninguna geometría</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/obstacle_source.py" />
+            <source>points</source>
+            <translation>puntos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/placing.py" />
+            <source>The layer {name} has no CRS, so its place on the site is not known: set the layer's CRS (Layer &gt; Set CRS of Layer), or {tick}.</source>
+            <translation>La capa {name} no tiene SRC, así que su lugar en el recinto no se conoce: defina el SRC de la capa (Capa &gt; Establecer SRC de la capa), o {tick}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/placing.py" />
+            <source>The layer {name} is in the CRS {crs}, which has no known relation to the site CRS {site_crs}: choose the layer's CRS as the site CRS, or {tick}.</source>
+            <translation>La capa {name} está en el SRC {crs}, que no tiene relación conocida con el SRC del recinto {site_crs}: elija el SRC de la capa como SRC del recinto, o {tick}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/placing.py" />
+            <source>tick 'Layers without a CRS are already in the site frame's metres' (LOCAL=true)</source>
+            <translation>marque «Las capas sin SRC ya están en metros del marco del recinto» (LOCAL=true)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/profile_file.py" />
+            <source>The profile {file} cannot be read: {error}.</source>
+            <translation>El perfil {file} no se puede leer: {error}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/profile_file.py" />
+            <source>The profile {file} is not there: give the path of a file, or one of {shipped}.</source>
+            <translation>El perfil {file} no está: dé la ruta de un archivo, o uno de {shipped}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/profile_file.py" />
+            <source>{file} cannot be read: this QGIS runs Python older than 3.11, which reads no TOML. Save the profile with the same keys as JSON and choose that file.</source>
+            <translation>{file} no se puede leer: este QGIS usa un Python anterior a 3.11, que no lee TOML. Guarde el perfil con las mismas claves como JSON y elija ese archivo.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/profile_file.py" />
+            <source>{file} is no profile: write an object with name and layers.</source>
+            <translation>{file} no es un perfil: escriba un objeto con name y layers.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/profile_file.py" />
+            <source>{file} is not valid {kind}: {error}. Correct that place.</source>
+            <translation>{file} no es {kind} válido: {error}. Corrija ese lugar.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/profile_file.py" />
+            <source>{file}: layers is missing or empty: write one table [[layers]] or more.</source>
+            <translation>{file}: layers falta o está vacío: escriba una o más tablas [[layers]].</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/profile_file.py" />
+            <source>{file}: {key} fits no layer: write names = ["*building*"] or fields = ["building"].</source>
+            <translation>{file}: {key} no encaja con ninguna capa: escriba names = ["*building*"] o fields = ["building"].</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/profile_file.py" />
+            <source>{file}: {key} is {content!r}: write a table [[layers]].</source>
+            <translation>{file}: {key} es {content!r}: escriba una tabla [[layers]].</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/profile_file.py" />
+            <source>{file}: {key}.geometry is {geometry!r}: write one of {geometries}.</source>
+            <translation>{file}: {key}.geometry es {geometry!r}: escriba uno de {geometries}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/profile_file.py" />
+            <source>{file}: {key}.role is {role!r}: write one of {roles}.</source>
+            <translation>{file}: {key}.role es {role!r}: escriba uno de {roles}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/profile_file.py" />
+            <source>{file}: {key}.{name} is no QGIS expression: {error}. Correct it.</source>
+            <translation>{file}: {key}.{name} no es una expresión de QGIS: {error}. Corríjala.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/profile_file.py" />
+            <source>{file}: {key}.{name} is {value!r}: write a list of texts, such as ["walls"].</source>
+            <translation>{file}: {key}.{name} es {value!r}: escriba una lista de textos, como ["walls"].</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/profile_file.py" />
+            <source>{file}: {prefix}{name} is no key of a profile: known are {known}. Remove it or correct its name.</source>
+            <translation>{file}: {prefix}{name} no es una clave de perfil: las conocidas son {known}. Quítela o corrija su nombre.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/profile_file.py" />
+            <source>{file}: {prefix}{name} is {value!r}: write text in quotes.</source>
+            <translation>{file}: {prefix}{name} es {value!r}: escriba texto entre comillas.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/publication.py" />
+            <source>{file} is there and is no part of a published site: choose another folder, or say that it may be replaced (REPLACE=true).</source>
+            <translation>{file} está ahí y no forma parte de un recinto publicado: elija otra carpeta, o diga que se puede sustituir (REPLACE=true).</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/publication.py" />
+            <source>{folder} holds version {version} of another site, {other}: choose another folder for {site}, or say that the other site may be replaced (REPLACE=true).</source>
+            <translation>{folder} contiene la versión {version} de otro recinto, {other}: elija otra carpeta para {site}, o diga que el otro recinto se puede sustituir (REPLACE=true).</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/publication_lock.py" />
+            <source>Another publication into {folder} is under way, by {who}: wait until it has ended, or choose another folder. If it ended on another computer without a word, remove {file}.</source>
+            <translation>Otra publicación en {folder} está en curso, de {who}: espere a que acabe, o elija otra carpeta. Si acabó en otro ordenador sin decir nada, borre {file}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/publication_lock.py" />
+            <source>The site cannot be published in {folder}: {reason}. Check the folder's rights and the free space.</source>
+            <translation>El recinto no se puede publicar en {folder}: {reason}. Compruebe los permisos de la carpeta y el espacio libre.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/publication_lock.py" />
+            <source>another process</source>
+            <translation>otro proceso</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/publication_lock.py" />
+            <source>no file {lock_file} can be made in it</source>
+            <translation>no se puede crear en ella ningún archivo {lock_file}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/publication_lock.py" />
+            <source>process {process} on {host}</source>
+            <translation>el proceso {process} en {host}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/site_crs.py" />
+            <source> (EPSG:326xx north, EPSG:327xx south of the equator)</source>
+            <translation> (EPSG:326xx al norte, EPSG:327xx al sur del ecuador)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/site_crs.py" />
+            <source>The CRS {crs} cannot carry a site</source>
+            <translation>El SRC {crs} no puede llevar un recinto</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/site_crs.py" />
+            <source>without a name</source>
+            <translation>sin nombre</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/site_crs.py" />
+            <source>{named}: its coordinates are not metres on a plane. Choose a projected CRS such as the local UTM zone{suggestion}.</source>
+            <translation>{named}: sus coordenadas no son metros en un plano. Elija un SRC proyectado como la zona UTM local{suggestion}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/site_crs.py" />
+            <source>{named}: its metres are not metres; 1 m on the ground is 1.56 m there at latitude 50°. Choose the local UTM zone, such as EPSG:32633 for 12°E to 18°E.</source>
+            <translation>{named}: sus metros no son metros; 1 m en el terreno son allí 1.56 m a 50° de latitud. Elija la zona UTM local, como EPSG:32633 de 12°E a 18°E.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/site_crs.py" />
+            <source>{named}: its unit is {unit}, and robots speak metres. Choose a CRS in metres such as the local UTM zone{suggestion}.</source>
+            <translation>{named}: su unidad es {unit}, y los robots hablan en metros. Elija un SRC en metros como la zona UTM local{suggestion}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/site_file.py" />
+            <source>GDAL does not say why</source>
+            <translation>GDAL no dice por qué</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/site_file.py" />
+            <source>The Python bindings of GDAL (osgeo) are missing in this QGIS, which write site.gpkg: install the distribution's package, such as python3-gdal.</source>
+            <translation>En este QGIS faltan los enlaces de Python de GDAL (osgeo), que escriben site.gpkg: instale el paquete de la distribución, como python3-gdal.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/site_file.py" />
+            <source>{file} cannot be written in {folder}: {error}. Check the folder's rights and the free space.</source>
+            <translation>{file} no se puede escribir en {folder}: {error}. Compruebe los permisos de la carpeta y el espacio libre.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/surface_store.py" />
+            <source>Reading road surfaces</source>
+            <translation>Leyendo superficies de vía</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/websocket_library.py" />
+            <source>The Python package websockets is missing, which the connection to the gateway needs. Install the plugin from its release zip, which contains it, or run 'python3 -m pip install websockets' with the Python that QGIS uses, and restart QGIS.</source>
+            <translation>Falta el paquete de Python websockets, que necesita la conexión con la pasarela. Instale el complemento desde el zip publicado, que lo contiene, o ejecute 'python3 -m pip install websockets' con el Python de QGIS, y reinicie QGIS.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/websocket_library.py" />
+            <source>The Python package websockets {version} in {path} is too old for the connection to the gateway. Install the plugin from its release zip, which contains a newer one, or run 'python3 -m pip install "websockets&gt;={oldest}"' with the Python that QGIS uses, and restart QGIS.</source>
+            <translation>El paquete de Python websockets {version} en {path} es demasiado antiguo para la conexión con la pasarela. Instale el complemento desde el zip publicado, que contiene uno más nuevo, o ejecute 'python3 -m pip install "websockets&gt;={oldest}"' con el Python de QGIS, y reinicie QGIS.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/addresses.py" />
+            <source>Over {url} everybody on the way could read the token. Write wss:// instead of ws://; a gateway that other computers can reach has TLS.</source>
+            <translation>Por {url} cualquiera en el camino podría leer el testigo. Escriba wss:// en lugar de ws://; una pasarela accesible desde otros ordenadores tiene TLS.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/addresses.py" />
+            <source>The CA file {file} cannot be used: {reason}. Choose the ca.pem that whoever runs the site gave you.</source>
+            <translation>El archivo de CA {file} no se puede usar: {reason}. Elija el ca.pem que le dio quien lleva el recinto.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/addresses.py" />
+            <source>The gateway's URL is empty. {example}</source>
+            <translation>La URL de la pasarela está vacía. {example}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/addresses.py" />
+            <source>The gateway's URL {url} begins with {scheme}; a gateway is reached over ws:// (or wss:// with TLS). {example}</source>
+            <translation>La URL de la pasarela {url} empieza por {scheme}; se llega a ella por ws:// (o wss:// con TLS). {example}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/addresses.py" />
+            <source>The gateway's URL {url} cannot be read: {error}. {example}</source>
+            <translation>La URL de la pasarela {url} no se puede leer: {error}. {example}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/addresses.py" />
+            <source>The gateway's URL {url} has port 0, where nothing can listen. {example}</source>
+            <translation>La URL de la pasarela {url} tiene el puerto 0, donde nada puede escuchar. {example}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/addresses.py" />
+            <source>The gateway's URL {url} names no host. {example}</source>
+            <translation>La URL de la pasarela {url} no nombra ningún servidor. {example}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/addresses.py" />
+            <source>The token cannot be right: it is one word. Paste it again, whole and alone.</source>
+            <translation>El testigo no puede ser correcto: es una sola palabra. Péguelo otra vez, entero y solo.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/addresses.py" />
+            <source>Write it like {default_url}.</source>
+            <translation>Escríbala como {default_url}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/addresses.py" />
+            <source>no scheme</source>
+            <translation>ningún esquema</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/client.py" />
+            <source>The gateway at {url} closed the link. It is tried again.</source>
+            <translation>La pasarela en {url} cerró el enlace. Se vuelve a intentar.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/client.py" />
+            <source>What answers at {url} opens a WebSocket but did not answer the desk's greeting within {answer_within:g} s. Check that the URL leads to a Fleet Supervisor gateway.</source>
+            <translation>Lo que responde en {url} abre un WebSocket pero no contestó al saludo de la consola en {answer_within:g} s. Compruebe que la URL lleva a una pasarela de Fleet Supervisor.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>No secure link to {place}: {reason}. If the gateway has no TLS, write ws:// instead of wss://.</source>
+            <translation>No hay enlace seguro con {place}: {reason}. Si la pasarela no tiene TLS, escriba ws:// en lugar de wss://.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>Nothing listens at {place}. Start the gateway (robot-bridge serve --site ...) or correct the URL.</source>
+            <translation>Nada escucha en {place}. Arranque la pasarela (robot-bridge serve --site ...) o corrija la URL.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>The certificate of {place} cannot be trusted: {reason}.</source>
+            <translation>No se puede confiar en el certificado de {place}: {reason}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>The certificate of {place} has expired. Whoever runs the site renews it with 'robot-bridge tls renew'; if it was renewed, check this computer's clock.</source>
+            <translation>El certificado de {place} ha caducado. Quien lleva el recinto lo renueva con 'robot-bridge tls renew'; si ya se renovó, compruebe el reloj de este ordenador.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>The certificate of {place} holds only later: check this computer's clock.</source>
+            <translation>El certificado de {place} solo vale más tarde: compruebe el reloj de este ordenador.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>The certificate of {place} is for another name: {reason} Use the name that the gateway's certificate was made for, or have one made for this name.</source>
+            <translation>El certificado de {place} es para otro nombre: {reason} Use el nombre para el que se hizo el certificado de la pasarela, o haga hacer uno para este nombre.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>The certificate of {place} is from an authority that this desk does not trust. Choose the site's ca.pem as CA file under Access; whoever runs the site has it.</source>
+            <translation>El certificado de {place} es de una autoridad en la que esta consola no confía. Elija el ca.pem del recinto como archivo de CA en Acceso; lo tiene quien lleva el recinto.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>The gateway at {place} closed the link (code {code}{why}). It is tried again by itself.</source>
+            <translation>La pasarela en {place} cerró el enlace (código {code}{why}). Se vuelve a intentar solo.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>The gateway at {place} ended the link{why}. Ask whoever runs the site for a new token and enter it under Access.</source>
+            <translation>La pasarela en {place} terminó el enlace{why}. Pida un testigo nuevo a quien lleva el recinto e introdúzcalo en Acceso.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>The gateway at {place} ended your session{why}. Connect brings it back.</source>
+            <translation>La pasarela en {place} terminó su sesión{why}. Conectar la recupera.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>The gateway's URL {url} cannot be used. Write it like {default_url}.</source>
+            <translation>La URL de la pasarela {url} no se puede usar. Escríbala como {default_url}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>The host of {place} is not known to this network. Correct the URL.</source>
+            <translation>Esta red no conoce el servidor de {place}. Corrija la URL.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>The link to the gateway at {place} broke off. It is tried again by itself; if it does not come back, check the gateway and the network.</source>
+            <translation>El enlace con la pasarela en {place} se rompió. Se vuelve a intentar solo; si no vuelve, compruebe la pasarela y la red.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>There is no desk at {url} (HTTP 404). A gateway's desk has the path /desk, as in {default_url}; or another program answers there.</source>
+            <translation>No hay ninguna consola en {url} (HTTP 404). La de una pasarela tiene la ruta /desk, como en {default_url}; o allí responde otro programa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>What answers at {place} does not speak WebSocket. Check host and port, and ws:// or wss://: a gateway prints its URL when it starts.</source>
+            <translation>Lo que responde en {place} no habla WebSocket. Compruebe servidor y puerto, y ws:// o wss://: una pasarela escribe su URL al arrancar.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>it wants a token.</source>
+            <translation>quiere un testigo.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>no reason given.</source>
+            <translation>sin dar motivo.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>{place} broke off while the secure link was made. If the gateway has no TLS, write ws:// instead of wss://.</source>
+            <translation>{place} cortó mientras se hacía el enlace seguro. Si la pasarela no tiene TLS, escriba ws:// en lugar de wss://.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>{place} cannot be reached: {reason}. Check network and URL.</source>
+            <translation>No se llega a {place}: {reason}. Compruebe la red y la URL.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>{place} did not answer in time. Check that the gateway runs, and the network and firewall.</source>
+            <translation>{place} no respondió a tiempo. Compruebe que la pasarela funciona, la red y el cortafuegos.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>{url} answered HTTP {status} instead of opening a WebSocket. Check that a gateway runs there and what its log says.</source>
+            <translation>{url} respondió HTTP {status} en lugar de abrir un WebSocket. Compruebe que allí funciona una pasarela y qué dice su registro.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>{url} refuses this desk: {said}</source>
+            <translation>{url} rechaza esta consola: {said}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>{url} refuses this desk: {said} Enter the operator's token under Access.</source>
+            <translation>{url} rechaza esta consola: {said} Introduzca el testigo del operador en Acceso.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>{url} takes no desk now: {said} It is tried again by itself.</source>
+            <translation>{url} no admite ahora ninguna consola: {said} Se vuelve a intentar solo.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/protocol.py" />
+            <source>The gateway at {url} refused a message: {error}</source>
+            <translation>La pasarela en {url} rechazó un mensaje: {error}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/protocol.py" />
+            <source>The gateway at {url} sends no positions: {error}</source>
+            <translation>La pasarela en {url} no envía posiciones: {error}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/protocol.py" />
+            <source>The gateway at {url} speaks protocol {theirs}, this plugin protocol {ours}. Update whichever of the two is older, then press Connect.</source>
+            <translation>La pasarela en {url} habla el protocolo {theirs}, este complemento el protocolo {ours}. Actualice el más antiguo de los dos y pulse Conectar.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/protocol.py" />
+            <source>The gateway at {url} turned the desk away: {error}</source>
+            <translation>La pasarela en {url} rechazó la consola: {error}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/protocol.py" />
+            <source>The link was closed before the gateway answered: whether it arrived is not known. Connect again and look in the command log.</source>
+            <translation>El enlace se cerró antes de que la pasarela respondiera: no se sabe si llegó. Vuelva a conectar y mire el registro de órdenes.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/protocol.py" />
+            <source>The link was lost before the gateway answered, and {age:.0f} s later it was not repeated: a robot shall not drive off on an old order. Look in the command log and send it again if it is not there.</source>
+            <translation>El enlace se perdió antes de que la pasarela respondiera, y {age:.0f} s después no se repitió: un robot no debe arrancar por una orden antigua. Mire el registro de órdenes y vuelva a enviarla si no está.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/protocol.py" />
+            <source>What answers at {url} sent something that is not the desk's protocol: {text} ({kind}: {error}). Check that the URL leads to a Fleet Supervisor gateway of this version.</source>
+            <translation>Lo que responde en {url} envió algo que no es el protocolo de la consola: {text} ({kind}: {error}). Compruebe que la URL lleva a una pasarela de Fleet Supervisor de esta versión.</translation>
+        </message>
+    </context>
+</TS>

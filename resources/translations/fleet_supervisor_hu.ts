@@ -1,0 +1,5587 @@
+<?xml version="1.0" encoding="utf-8"?>
+<!DOCTYPE TS>
+<TS version="2.1" language="hu" sourcelanguage="en">
+    <context>
+        <name>FleetSupervisor</name>
+        <message>
+            <location filename="../../plugin/connection.py" />
+            <source>The connection stopped on an internal fault ({name}: {error}). Press Connect to try again and report this text.</source>
+            <translation>A kapcsolat belső hiba miatt leállt ({name}: {error}). Nyomja meg a Kapcsolódás gombot az újrapróbáláshoz, és jelentse ezt a szöveget.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/connection.py" />
+            <source>The desk is not connected to a gateway. Press Connect first.</source>
+            <translation>A kezelőpult nincs átjáróhoz kapcsolva. Előbb nyomja meg a Kapcsolódás gombot.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/access_fields.py" />
+            <source>&amp;Keep in QGIS</source>
+            <translation>&amp;Őrzés a QGIS-ben</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/access_fields.py" />
+            <source>CA &amp;file</source>
+            <translation>CA-&amp;fájl</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/access_fields.py" />
+            <source>Certificates (*.pem *.crt *.cer);;All files (*)</source>
+            <translation>Tanúsítványok (*.pem *.crt *.cer);;Minden fájl (*)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/access_fields.py" />
+            <source>Encrypted, under the master password of the QGIS authentication manager</source>
+            <translation>Titkosítva, a QGIS hitelesítéskezelőjének mesterjelszava alatt</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/access_fields.py" />
+            <source>The site's ca.pem</source>
+            <translation>A telephely ca.pem fájlja</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/access_fields.py" />
+            <source>fleet_op_…, as it was printed when the account was made</source>
+            <translation>fleet_op_…, ahogy a fiók létrehozásakor kiíródott</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/access_fields.py" />
+            <source>kept by QGIS; enter another one to replace it</source>
+            <translation>a QGIS őrzi; írjon be másikat a cseréjéhez</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/access_fields.py" />
+            <source>of the connection's authentication; enter another one for this time</source>
+            <translation>a kapcsolat hitelesítéséé; most írhat be másikat</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/access_fields.py" />
+            <source>the site's ca.pem; empty for public authorities</source>
+            <translation>a telephely ca.pem fájlja; üres: nyilvános kiállítók</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>ABORT ALL</source>
+            <translation>MIND MEGSZAKÍTÁSA</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Abort robot</source>
+            <translation>Robot megszakítása</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Add to queue</source>
+            <translation>Várólistára</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Cancel</source>
+            <translation>Mégse</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Clear emergency stop …</source>
+            <translation>Vészleállítás feloldása …</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Close a road for every robot by a click on it, or open a closed one again</source>
+            <translation>Út lezárása minden robot elől egy kattintással, vagy egy lezárt megnyitása</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Close road</source>
+            <translation>Út lezárása</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Cone target</source>
+            <translation>Bójacél</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Connect</source>
+            <translation>Kapcsolódás</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Connect to the gateway, or disconnect</source>
+            <translation>Kapcsolódás az átjáróhoz, vagy bontás</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Coordinates …</source>
+            <translation>Koordináták …</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Draw a route for the selected robot: click its points, drag points or lines to change it, Backspace takes the last one back, Enter or Send sends, Esc cancels</source>
+            <translation>Útvonal rajzolása a kijelölt robotnak: kattintson a pontjaira, pontok vagy vonalak húzásával módosítsa, a Backspace visszaveszi az utolsót, az Enter vagy a Küldés elküldi, az Esc elveti</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Draw route</source>
+            <translation>Útvonal rajzolása</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>EMERGENCY STOP</source>
+            <translation>VÉSZLEÁLLÍTÁS</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Every robot gives up its task, at once and without a question</source>
+            <translation>Minden robot feladja a feladatát, azonnal és kérdés nélkül</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Every robot stops now, and none can be sent anywhere until a supervisor clears it ({emergency_keys})</source>
+            <translation>Minden robot most megáll, és egyik sem küldhető sehová, amíg egy felügyelő fel nem oldja ({emergency_keys})</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Every selected robot gives up its task at once</source>
+            <translation>Minden kijelölt robot azonnal feladja a feladatát</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Fleet panel</source>
+            <translation>Flottapanel</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Follow</source>
+            <translation>Követés</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Keep all in view</source>
+            <translation>Mind látszódjon</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Keep every robot in view</source>
+            <translation>Minden robot látszódjon</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Keep the selected robots in view</source>
+            <translation>A kijelölt robotok látszódjanak</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Let a draft be sent in spite of what the checks found; asks why</source>
+            <translation>A vázlat küldhető annak ellenére, amit az ellenőrzés talált; megkérdezi, miért</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Let robots be sent again; takes a supervisor, and asks first</source>
+            <translation>A robotok újra küldhetők; felügyelő kell hozzá, és előbb kérdez</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Let the route begin at its end (R over the map)</source>
+            <translation>Az útvonal a végén kezdődjön (R a térkép felett)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Make the change again that was taken back (Ctrl+Shift+Z over the map)</source>
+            <translation>A visszavont változás megismétlése (Ctrl+Shift+Z a térkép felett)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Make the draft of what is selected in the active layer: a point, a line, or many points</source>
+            <translation>Vázlat az aktív réteg kijelöléséből: pont, vonal vagy sok pont</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Override …</source>
+            <translation>Felülbírálás …</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Put what is drawn at the end of its robot's queue, instead of sending it</source>
+            <translation>A rajz a robot várólistájának végére kerül elküldés helyett</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Redo</source>
+            <translation>Újra</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Route along the roads for the selected robot: the way to the mouse is shown, a click takes it; Backspace takes the last leg back, Enter or Send sends, Esc cancels</source>
+            <translation>Útvonal az utakon a kijelölt robotnak: az egérig vezető út látszik, kattintás elfogadja; a Backspace visszaveszi az utolsó szakaszt, az Enter vagy a Küldés elküldi, az Esc elveti</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Route on roads</source>
+            <translation>Útvonal utakon</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Select robot</source>
+            <translation>Robot kijelölése</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Select robots on the map: click one or drag a rectangle, with Shift to add, with Ctrl to take away; double click goes there</source>
+            <translation>Robotok kijelölése a térképen: kattintson egyre vagy húzzon téglalapot, Shift hozzáad, Ctrl elvesz; dupla kattintásra oda ugrik</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Send</source>
+            <translation>Küldés</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Send map</source>
+            <translation>Térkép küldése</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Send the selected robots the map of the whole site now</source>
+            <translation>Az egész telephely térképének küldése most a kijelölt robotoknak</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Send what is drawn on the map to its robot</source>
+            <translation>A térképre rajzoltak elküldése a robotnak</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Set a cone target for the selected robot: click, then Enter or Send; Esc cancels</source>
+            <translation>Bójacél a kijelölt robotnak: kattintás, majd Enter vagy Küldés; az Esc elveti</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Show or hide the fleet panel</source>
+            <translation>A flottapanel mutatása vagy elrejtése</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Start position</source>
+            <translation>Kiinduló helyzet</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Take from layer</source>
+            <translation>Rétegből</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Take the last change of the draft back (Ctrl+Z over the map)</source>
+            <translation>A vázlat utolsó változásának visszavonása (Ctrl+Z a térkép felett)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Take what is drawn off the map; nothing is sent</source>
+            <translation>A rajz levétele a térképről; semmi sem lesz elküldve</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Tell the selected robot where it stands: click, or drag to where it points; then Enter or Send</source>
+            <translation>Megmondja a kijelölt robotnak, hol áll: kattintson, vagy húzza arra, amerre néz; majd Enter vagy Küldés</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Turn route round</source>
+            <translation>Útvonal megfordítása</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Type or paste coordinates in any CRS in place of a click</source>
+            <translation>Koordináták beírása vagy beillesztése bármely vetületben kattintás helyett</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Undo</source>
+            <translation>Visszavonás</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/desk/alarms/alarm_bar.py" />
+            <source>%n alarms</source>
+            <translation>
+                <numerusform>%n riasztás</numerusform>
+            </translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_bar.py" />
+            <source>; and {number} more</source>
+            <translation>; és még {number}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_bar.py" />
+            <source>Acknowledge all</source>
+            <translation>Mind nyugtázása</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_bar.py" />
+            <source>Show</source>
+            <translation>Mutat</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_model.py" />
+            <source>Alarm</source>
+            <translation>Riasztás</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_model.py" />
+            <source>Since</source>
+            <translation>Ettől</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_model.py" />
+            <source>State</source>
+            <translation>Állapot</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_model.py" />
+            <source>acknowledged {time} by {operator}</source>
+            <translation>nyugtázta {time}: {operator}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_model.py" />
+            <source>it began {times} times</source>
+            <translation>{times} alkalommal kezdődött</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_model.py" />
+            <source>over since {time}, not acknowledged yet</source>
+            <translation>{time} óta vége, még nincs nyugtázva</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_model.py" />
+            <source>since {time}</source>
+            <translation>{time} óta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_panel.py" />
+            <source>&amp;Acknowledge</source>
+            <translation>&amp;Nyugtázás</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_panel.py" />
+            <source>&amp;Log…</source>
+            <translation>Na&amp;pló…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_panel.py" />
+            <source>&amp;Settings…</source>
+            <translation>&amp;Beállítások…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_panel.py" />
+            <source>Acknowledge a&amp;ll</source>
+            <translation>M&amp;ind nyugtázása</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_panel.py" />
+            <source>Every alarm of this session, and who acknowledged it when</source>
+            <translation>A munkamenet minden riasztása, és hogy ki mikor nyugtázta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_panel.py" />
+            <source>Say that you have seen every alarm</source>
+            <translation>Annak jelzése, hogy minden riasztást látott</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_panel.py" />
+            <source>Say that you have seen the chosen alarms</source>
+            <translation>Annak jelzése, hogy látta a kiválasztott riasztásokat</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_panel.py" />
+            <source>What is an alarm, and from where on</source>
+            <translation>Mi a riasztás, és mettől</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_panel.py" />
+            <source>over</source>
+            <translation>vége</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/log_dialog.py" />
+            <source>By</source>
+            <translation>Ki</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/log_dialog.py" />
+            <source>CSV (*.csv)</source>
+            <translation>CSV (*.csv)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/log_dialog.py" />
+            <source>Export CSV…</source>
+            <translation>CSV exportálása…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/log_dialog.py" />
+            <source>Export the log of alarms</source>
+            <translation>A riasztások naplójának exportálása</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/log_dialog.py" />
+            <source>Kind</source>
+            <translation>Fajta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/log_dialog.py" />
+            <source>Log of alarms</source>
+            <translation>Riasztások naplója</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/log_dialog.py" />
+            <source>Robot</source>
+            <translation>Robot</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/log_dialog.py" />
+            <source>Time</source>
+            <translation>Idő</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/log_dialog.py" />
+            <source>What</source>
+            <translation>Mi</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/log_dialog.py" />
+            <source>{count} lines written to {path}</source>
+            <translation>{count} sor kiírva ide: {path}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/road_ground.py" />
+            <source>layers of road surfaces cannot be read: {why}</source>
+            <translation>az útfelületek rétegei nem olvashatók: {why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/road_ground.py" />
+            <source>layers of road surfaces hold no areas ({names})</source>
+            <translation>az útfelületek rétegeiben nincs terület ({names})</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/road_ground.py" />
+            <source>no layer of the project has the role road surface</source>
+            <translation>a projekt egyik rétegének sem útfelület a szerepe</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/road_ground.py" />
+            <source>reading was cancelled</source>
+            <translation>az olvasást megszakították</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/road_ground.py" />
+            <source>the road surfaces are being read</source>
+            <translation>az útfelületek olvasása folyik</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/thresholds_dialog.py" />
+            <source>Alarm settings</source>
+            <translation>Riasztási beállítások</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/thresholds_form.py" />
+            <source>begins after standing with a task for</source>
+            <translation>ennyi feladattal állás után kezdődik</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/thresholds_form.py" />
+            <source>begins below</source>
+            <translation>ez alatt kezdődik</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/thresholds_form.py" />
+            <source>begins so far beside the road</source>
+            <translation>ennyivel az út mellett kezdődik</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/thresholds_form.py" />
+            <source>begins so far outside</source>
+            <translation>ennyivel kint kezdődik</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/thresholds_form.py" />
+            <source>begins when two are nearer than</source>
+            <translation>kezdődik, ha kettő közelebb van, mint</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/thresholds_form.py" />
+            <source>ends so much above that</source>
+            <translation>ennyivel felette ér véget</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/thresholds_form.py" />
+            <source>ends so much further apart</source>
+            <translation>ennyivel távolabb ér véget</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/thresholds_form.py" />
+            <source>the site's settings say after how long (see the robots' state)</source>
+            <translation>a telephely beállításai mondják meg, mennyi idő után (lásd a robotok állapotát)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/watch.py" />
+            <source>Nothing is watched: the desk is not connected.</source>
+            <translation>Semmi sincs figyelve: a kezelőpult nincs kapcsolódva.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/watch.py" />
+            <source>Off the road is not watched: {why}.</source>
+            <translation>Az útról letérés nincs figyelve: {why}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/watch.py" />
+            <source>Switched off: {kinds}.</source>
+            <translation>Kikapcsolva: {kinds}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/watch.py" />
+            <source>and {number} more alarms: see the log of alarms in the Fleet panel</source>
+            <translation>és még {number} riasztás: lásd a riasztások naplóját a flottapanelen</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/watch.py" />
+            <source>this desk</source>
+            <translation>ez a kezelőpult</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source> at {x:.1f}, {y:.1f} m</source>
+            <translation> itt: {x:.1f}, {y:.1f} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>; last{where}</source>
+            <translation>; utoljára{where}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>acknowledged</source>
+            <translation>nyugtázva</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>began</source>
+            <translation>kezdődött</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>ended</source>
+            <translation>véget ért</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>lost</source>
+            <translation>elveszett</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>low battery</source>
+            <translation>merülő akkumulátor</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>new</source>
+            <translation>új</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>off the road</source>
+            <translation>az úton kívül</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>outside the site</source>
+            <translation>a telephelyen kívül</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>seen</source>
+            <translation>látta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>stopped unasked</source>
+            <translation>kérés nélkül megállt</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>too close</source>
+            <translation>túl közel</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>{robot} and {other}</source>
+            <translation>{robot} és {other}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>{robot} and {other} are {apart:.1f} m apart{where}</source>
+            <translation>{robot} és {other} {apart:.1f} m-re vannak egymástól{where}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>{robot} has a task and stands{where}</source>
+            <translation>{robot} feladattal áll{where}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>{robot} has {part:.0%} of its battery left</source>
+            <translation>{robot} akkumulátora: {part:.0%} maradt</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>{robot} is lost: nothing is heard of it{last}</source>
+            <translation>{robot} elveszett: semmi hír róla{last}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>{robot} is off the road{where}</source>
+            <translation>{robot} letért az útról{where}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/words.py" />
+            <source>{robot} is outside the site{where}</source>
+            <translation>{robot} a telephelyen kívül van{where}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/checks.py" />
+            <source>({points:.2f}, {points2:.2f}) m</source>
+            <translation>({points:.2f}, {points2:.2f}) m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/checks.py" />
+            <source>({x:.2f}, {y:.2f}) m is</source>
+            <translation>({x:.2f}, {y:.2f}) m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/checks.py" />
+            <source>The route</source>
+            <translation>Az útvonal</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/checks.py" />
+            <source>{layer} (feature {id})</source>
+            <translation>{layer} ({id}. elem)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/checks.py" />
+            <source>{off} of {points} points are</source>
+            <translation>{points} pontból {off}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/checks.py" />
+            <source>{spot} enters the keepout {name}. Choose a place or way outside it.</source>
+            <translation>{spot} a(z) {name} tiltott területre ér. Válasszon helyet vagy utat rajta kívül.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/checks.py" />
+            <source>{where} m is outside the site {name}, which reaches from ({x_min:g}, {y_min:g}) to ({x_max:g}, {y_max:g}) m. Click inside it.</source>
+            <translation>{where} m a(z) {name} telephelyen kívül van, amely ettől: ({x_min:g}, {y_min:g}), eddig terjed: ({x_max:g}, {y_max:g}) m. Kattintson belülre.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/checks.py" />
+            <source>{where} not on a road surface.</source>
+            <translation>{where} nincs útfelületen.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/clear_dialog.py" />
+            <source>Clear emergency stop</source>
+            <translation>Vészleállítás feloldása</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/clear_dialog.py" />
+            <source>Clear the emergency stop?</source>
+            <translation>Feloldja a vészleállítást?</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/clear_dialog.py" />
+            <source>Cleared, robots can be sent again. None sets off by itself: what they were doing was aborted.</source>
+            <translation>Feloldás után a robotok újra küldhetők. Egyik sem indul el magától: amit csináltak, megszakadt.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/clear_dialog.py" />
+            <source>Keep it in force</source>
+            <translation>Maradjon érvényben</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/clear_dialog.py" />
+            <source>Why robots may drive again, for the log</source>
+            <translation>Miért indulhatnak újra a robotok, a naplóba</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/closure_dialog.py" />
+            <source>Closed</source>
+            <translation>Lezárva</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/closure_dialog.py" />
+            <source>Reason</source>
+            <translation>Ok</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/closure_dialog.py" />
+            <source>The road is closed for every robot from this junction to the next. Robots whose way leads along it get another way; one that has no other way is stopped, unless the site's settings say otherwise.</source>
+            <translation>Az út minden robot elől le lesz zárva ettől a kereszteződéstől a következőig. Azok a robotok, amelyek útja erre vezet, más utat kapnak; amelyiknek nincs más, megáll, hacsak a telephely beállításai mást nem mondanak.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/closure_dialog.py" />
+            <source>for 1 day</source>
+            <translation>1 napra</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/closure_dialog.py" />
+            <source>for 1 hour</source>
+            <translation>1 órára</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/closure_dialog.py" />
+            <source>for 15 minutes</source>
+            <translation>15 percre</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/closure_dialog.py" />
+            <source>for 4 hours</source>
+            <translation>4 órára</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/closure_dialog.py" />
+            <source>such as: tree on the road</source>
+            <translation>például: fa az úton</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/closure_dialog.py" />
+            <source>until it is opened</source>
+            <translation>amíg meg nem nyitják</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/closure_tool.py" />
+            <source>Open it again for every robot?</source>
+            <translation>Megnyitja újra minden robotnak?</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/closure_tool.py" />
+            <source>Open road</source>
+            <translation>Út megnyitása</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/closure_tool.py" />
+            <source>{by} closed this road at {time}{because}</source>
+            <translation>{by} zárta le ezt az utat {time}-kor{because}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_book.py" />
+            <source>abort</source>
+            <translation>megszakítás</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_book.py" />
+            <source>cone at {x}, {y}</source>
+            <translation>bója itt: {x}, {y}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_book.py" />
+            <source>route of {number} points</source>
+            <translation>{number} pontos útvonal</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_book.py" />
+            <source>target at {x}, {y}</source>
+            <translation>cél itt: {x}, {y}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/entries.py" />
+            <source>None open</source>
+            <translation>Nincs nyitott</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/entries.py" />
+            <source>by {by}</source>
+            <translation>{by}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/entries.py" />
+            <source>{metres:.2f} m off</source>
+            <translation>{metres:.2f} m eltérés</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/entries.py" />
+            <source>{number} open: {counts}</source>
+            <translation>{number} nyitott: {counts}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/log_model.py" />
+            <source>Command</source>
+            <translation>Parancs</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/log_model.py" />
+            <source>Details</source>
+            <translation>Részletek</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/log_panel.py" />
+            <source>All commands</source>
+            <translation>Minden parancs</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/log_panel.py" />
+            <source>All robots</source>
+            <translation>Minden robot</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/log_panel.py" />
+            <source>Ask the gateway for older commands</source>
+            <translation>Régebbi parancsok kérése az átjárótól</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/log_panel.py" />
+            <source>Export commands</source>
+            <translation>Parancsok exportálása</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/log_panel.py" />
+            <source>Export…</source>
+            <translation>Exportálás…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/log_panel.py" />
+            <source>Failed, aborted, expired</source>
+            <translation>Sikertelen, megszakított, lejárt</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/log_panel.py" />
+            <source>Go there</source>
+            <translation>Ugrás oda</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/log_panel.py" />
+            <source>Older</source>
+            <translation>Régebbiek</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/log_panel.py" />
+            <source>Older commands: {why}</source>
+            <translation>Régebbi parancsok: {why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/log_panel.py" />
+            <source>Open</source>
+            <translation>Nyitott</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/log_panel.py" />
+            <source>Selected robots</source>
+            <translation>Kijelölt robotok</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/log_panel.py" />
+            <source>Show where the chosen command leads to (double click)</source>
+            <translation>Megmutatja, hová vezet a kiválasztott parancs (dupla kattintás)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/log_panel.py" />
+            <source>Which commands are listed</source>
+            <translation>Mely parancsok vannak a listán</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/log_panel.py" />
+            <source>Whose commands are listed</source>
+            <translation>Kinek a parancsai vannak a listán</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/log_panel.py" />
+            <source>Write what is listed, every step of it, as CSV</source>
+            <translation>A lista kiírása minden lépésével CSV-ként</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/log_panel.py" />
+            <source>{commands} commands with {steps} steps written to {path}</source>
+            <translation>{commands} parancs {steps} lépéssel kiírva ide: {path}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/log_panel.py" />
+            <source>{what} of {robot} leads to no place.</source>
+            <translation>{what} ({robot}) nem vezet sehová.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/coordinates_dialog.py" />
+            <source>C&amp;RS</source>
+            <translation>&amp;Vetület</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/coordinates_dialog.py" />
+            <source>Coordinates</source>
+            <translation>Koordináták</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/coordinates_dialog.py" />
+            <source>Set on the map</source>
+            <translation>Térképre</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/coordinates_dialog.py" />
+            <source>Write {order} in {authid}.
+{path}</source>
+            <translation>Írja be: {order} itt: {authid}.
+{path}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/coordinates_dialog.py" />
+            <source>latitude, longitude</source>
+            <translation>szélesség, hosszúság</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/coordinates_dialog.py" />
+            <source>x, y</source>
+            <translation>x, y</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/coordinates_dialog.py" />
+            <source>{place:.2f}, {place2:.2f} m on the site</source>
+            <translation>{place:.2f}, {place2:.2f} m a telephelyen</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/coordinates_dialog.py" />
+            <source>{site}; {east:.2f}, {north:.2f} in {authid}.
+{path}</source>
+            <translation>{site}; {east:.2f}, {north:.2f} itt: {authid}.
+{path}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/draft_commands.py" />
+            <source>Map for {robot}</source>
+            <translation>Térkép ennek: {robot}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/draft_commands.py" />
+            <source>No robot is selected, so none was sent the map. Select it first.</source>
+            <translation>Nincs kijelölt robot, így egyik sem kapott térképet. Előbb jelölje ki.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/draft_commands.py" />
+            <source>The draft has changed since it was looked at, so nothing was overridden. Press Override again.</source>
+            <translation>A vázlat megváltozott, mióta megnézte, így nem lett felülbírálva. Nyomja meg újra a Felülbírálást.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/draft_commands.py" />
+            <source>The gateway has not answered yet what was asked of the queue of {robot} before. Try again in a moment.</source>
+            <translation>Az átjáró még nem válaszolt arra, amit {robot} várólistájától előbb kért. Próbálja újra egy pillanat múlva.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/draft_commands.py" />
+            <source>There is no draft on the map. Select a robot, then set a cone target or draw a route.</source>
+            <translation>Nincs vázlat a térképen. Jelöljön ki robotot, majd tegyen bójacélt vagy rajzoljon útvonalat a térképre.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/draft_commands.py" />
+            <source>{in_words} is still on the map. Send it (Enter) or cancel it (Esc) first.</source>
+            <translation>{in_words} még a térképen van. Előbb küldje el (Enter) vagy vesse el (Esc).</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/draft_commands.py" />
+            <source>{in_words} was not put into the queue: {fault}</source>
+            <translation>{in_words} nem került a várólistára: {fault}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/draft_commands.py" />
+            <source>{in_words}, into the queue</source>
+            <translation>{in_words}, a várólistára</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/draft_commands.py" />
+            <source>{in_words}: there is nothing here that an override would help.</source>
+            <translation>{in_words}: itt nincs semmi, amin a felülbírálás segítene.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/layer_drafts.py" />
+            <source>A coordinate of what is selected is no number. Correct it, or leave it out.</source>
+            <translation>A kijelöltek egyik koordinátája nem szám. Javítsa ki, vagy hagyja ki.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/layer_drafts.py" />
+            <source>A route is one line, and {features} of the layer {layer} are meant: select one.</source>
+            <translation>Az útvonal egyetlen vonal, és a(z) {layer} rétegből {features} van megadva: jelöljön ki egyet.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/layer_drafts.py" />
+            <source>Feature {id} of {layer} has no place in the site's CRS ({error}). Leave it out, or correct the layer's CRS.</source>
+            <translation>A(z) {layer} {id}. elemének nincs helye a telephely vetületében ({error}). Hagyja ki, vagy javítsa ki a réteg vetületét.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/layer_drafts.py" />
+            <source>No layer of points or lines is active. Click one in the Layers panel, then try again.</source>
+            <translation>Nincs aktív pont- vagy vonalréteg. Kattintson egyre a Rétegek panelen, és próbálja újra.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/layer_drafts.py" />
+            <source>No robot is selected. Select the one that the draft is for, then try again.</source>
+            <translation>Nincs kijelölt robot. Jelölje ki, amelyiknek a vázlat szól, és próbálja újra.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/layer_drafts.py" />
+            <source>The layer {layer} has no CRS, so nobody knows where its points are. Set it in the layer's properties.</source>
+            <translation>A(z) {layer} rétegnek nincs vetülete, így senki sem tudja, hol vannak a pontjai. Állítsa be a réteg tulajdonságaiban.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/layer_drafts.py" />
+            <source>The layer {layer} has no feature with a place to go to.</source>
+            <translation>A(z) {layer} rétegben nincs olyan elem, amelyhez menni lehetne.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/layer_drafts.py" />
+            <source>The layer {layer} has {featurecount} features and a queue takes {longest_queue}: select those that are meant.</source>
+            <translation>A(z) {layer} rétegnek {featurecount} eleme van, és egy várólista {longest_queue} darabot fogad: jelölje ki, amelyekről szó van.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/layer_drafts.py" />
+            <source>The layer {layer} has {places} points selected and a queue takes {longest_queue}: select fewer.</source>
+            <translation>A(z) {layer} rétegen {places} pont van kijelölve, és egy várólista {longest_queue} darabot fogad: jelöljön ki kevesebbet.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/layer_drafts.py" />
+            <source>The layer {layer} holds polygons: take a layer of points (targets) or lines (a route).</source>
+            <translation>A(z) {layer} réteg poligonokat tartalmaz: válasszon pontréteget (célok) vagy vonalréteget (útvonal).</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/layer_drafts.py" />
+            <source>The line has {places} vertices; a route takes 2 to {longest_path}: simplify it first.</source>
+            <translation>A vonalnak {places} töréspontja van; egy útvonal 2 és {longest_path} közt fogad: előbb egyszerűsítse.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/layer_drafts.py" />
+            <source>The line that is selected in {layer} has {partcount} parts, and a robot cannot leap from one to the next: make it one line.</source>
+            <translation>A(z) {layer} rétegen kijelölt vonal {partcount} részből áll, és egy robot nem ugorhat egyikről a másikra: legyen egy vonal.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/override_dialog.py" />
+            <source>Override</source>
+            <translation>Felülbírálás</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/override_dialog.py" />
+            <source>Override the checks</source>
+            <translation>Az ellenőrzések felülbírálása</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/override_dialog.py" />
+            <source>Why it is right all the same</source>
+            <translation>Miért helyes mégis</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/override_dialog.py" />
+            <source>Your name, what was found and why go into the gateway's log. Nothing is sent yet.</source>
+            <translation>Az Ön neve, amit az ellenőrzés talált és az ok az átjáró naplójába kerül. Még semmi sincs elküldve.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/override_dialog.py" />
+            <source>because: {strip}</source>
+            <translation>mert: {strip}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/cone_store.py" />
+            <source>Cones</source>
+            <translation>Bóják</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/cone_store.py" />
+            <source>The layer {layer} takes no cones: make it writable, or remove it.</source>
+            <translation>A(z) {layer} réteg nem fogad bójákat: tegye írhatóvá, vagy távolítsa el.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/cone_store.py" />
+            <source>The project has no CRS: choose one in metres, at the bottom right in QGIS.</source>
+            <translation>A projektnek nincs vetülete: válasszon egy métereset, a QGIS jobb alsó sarkában.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/conflict_panel.py" />
+            <source>and {more} more: see the layer Conflicts</source>
+            <translation>és még {more}: lásd az Ütközések réteget</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/conflict_panel.py" />
+            <source>at {x:.0f}, {y:.0f} m</source>
+            <translation>itt: {x:.0f}, {y:.0f} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/conflict_panel.py" />
+            <source>{robot} gives way</source>
+            <translation>{robot} elsőbbséget ad</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/conflict_panel.py" />
+            <source>{robot} waits for {other} or takes another way, whichever gets it there sooner</source>
+            <translation>{robot} megvárja ezt: {other}, vagy más utat választ, amelyikkel előbb ér oda</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/conflict_panel.py" />
+            <source>{robot} waits for {other}, until {time_of_day} at the earliest</source>
+            <translation>{robot} vár erre: {other}, legkorábban {time_of_day}-ig</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/connection_menu.py" />
+            <source>&amp;Keep under a name…</source>
+            <translation>&amp;Őrzés néven…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/connection_menu.py" />
+            <source>&amp;Manage connections…</source>
+            <translation>Kapcsolatok &amp;kezelése…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/connection_menu.py" />
+            <source>Connection: {name}</source>
+            <translation>Kapcsolat: {name}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/connection_menu.py" />
+            <source>Connections that are kept under a name</source>
+            <translation>Néven őrzött kapcsolatok</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/connection_panel.py" />
+            <source>Connected</source>
+            <translation>Kapcsolódva</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/connection_panel.py" />
+            <source>Connecting</source>
+            <translation>Kapcsolódás</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/connection_panel.py" />
+            <source>Failed</source>
+            <translation>Sikertelen</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/connection_panel.py" />
+            <source>Not connected</source>
+            <translation>Nincs kapcsolat</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/connection_panel.py" />
+            <source>Retrying</source>
+            <translation>Újrapróbálás</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/connection_panel.py" />
+            <source>Retrying in {wait:.0f} s</source>
+            <translation>Újrapróbálás {wait:.0f} s múlva</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/connection_panel.py" />
+            <source>Token and CA file, for a gateway with accounts and TLS</source>
+            <translation>Token és CA-fájl fiókokkal és TLS-sel működő átjáróhoz</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/connection_panel.py" />
+            <source>Who you are: it stands beside every command in every log</source>
+            <translation>Ön: minden naplóban minden parancs mellett áll</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/csv_files.py" />
+            <source>{file} was not written ({why}). Choose another folder, or close the file where it is open.</source>
+            <translation>{file} nem lett kiírva ({why}). Válasszon másik mappát, vagy zárja be a fájlt, ahol nyitva van.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/desk.py" />
+            <source>EMERGENCY STOP is NOT sent yet: the link is down. It is sent as soon as that is back; use the robots' own emergency stops now.</source>
+            <translation>A VÉSZLEÁLLÍTÁS MÉG NINCS elküldve: a kapcsolat megszakadt. Elmegy, amint visszatér; most használja a robotok saját vészleállítóit.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/desk.py" />
+            <source>No robot is selected, so none was aborted. Select it in the table or on the map.</source>
+            <translation>Nincs kijelölt robot, így egyik sem lett megszakítva. Jelölje ki a táblázatban vagy a térképen.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/desk.py" />
+            <source>The operator's name is empty. Write who you are: it stands in every log.</source>
+            <translation>A kezelő neve üres. Írja be, ki Ön: minden naplóban ott áll.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/desk.py" />
+            <source>The site is not known yet. Connect to a gateway first.</source>
+            <translation>A telephely még nem ismert. Előbb kapcsolódjon egy átjáróhoz.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/desk.py" />
+            <source>There is nothing to send. Select a robot, then set a cone target or draw a route on the map.</source>
+            <translation>Nincs mit küldeni. Jelöljön ki robotot, majd tegyen bójacélt vagy rajzoljon útvonalat a térképre.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/desk.py" />
+            <source>the desk is not connected to a gateway. Connect first; to stop a robot now use the robot's own emergency stop.</source>
+            <translation>a kezelőpult nincs átjáróhoz kapcsolva. Előbb kapcsolódjon; robotot most a saját vészleállítójával állíthat meg.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/desk.py" />
+            <source>{in_words} was not sent: {error}</source>
+            <translation>{in_words} nem lett elküldve: {error}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/dock.py" />
+            <source>Commands</source>
+            <translation>Parancsok</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/dock.py" />
+            <source>Queue</source>
+            <translation>Várólista</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/draft_panel.py" />
+            <source> Override… sends it all the same, where your role may.</source>
+            <translation> A Felülbírálás… mégis elküldi, ha a szerepe engedi.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/draft_panel.py" />
+            <source>Select a robot, choose Cone target or Draw route, and click on the map.</source>
+            <translation>Jelöljön ki robotot, válassza a Bójacél vagy az Útvonal rajzolása eszközt, és kattintson a térképre.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/draft_panel.py" />
+            <source>{in_words}. Not to be sent: {found}{hint}</source>
+            <translation>{in_words}. Nem küldhető: {found}{hint}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/draft_panel.py" />
+            <source>{in_words}. OVERRIDDEN: {override}. Enter or Send sends it.</source>
+            <translation>{in_words}. FELÜLBÍRÁLVA: {override}. Az Enter vagy a Küldés elküldi.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/draft_panel.py" />
+            <source>{in_words}.{warnings} Add to queue lets them be placed one after the other.</source>
+            <translation>{in_words}.{warnings} A Várólistára egymás után helyezteti ki őket.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/draft_panel.py" />
+            <source>{in_words}.{warnings} Enter or Send sends it.</source>
+            <translation>{in_words}.{warnings} Az Enter vagy a Küldés elküldi.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/draft_tool.py" />
+            <source>No robot is selected, so there is nobody to send there. Select one in the table or on the map.</source>
+            <translation>Nincs kijelölt robot, így nincs, akit oda küldjön. Jelöljön ki egyet a táblázatban vagy a térképen.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/draft_tool.py" />
+            <source>Select a robot first, in the table or on the map.</source>
+            <translation>Előbb jelöljön ki egy robotot a táblázatban vagy a térképen.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/draft_tool.py" />
+            <source>There is nothing to do again.</source>
+            <translation>Nincs mit megismételni.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/draft_tool.py" />
+            <source>There is nothing to take back.</source>
+            <translation>Nincs mit visszavonni.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/datum_path.py" />
+            <source>A way accurate to {accuracy:g} m needs the grid {grids}, which is not installed.</source>
+            <translation>Egy {accuracy:g} m pontosságú úthoz a(z) {grids} rács kell, amely nincs telepítve.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/datum_path.py" />
+            <source>By {name} ({exact}).{value}</source>
+            <translation>Művelet: {name} ({exact}).{value}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/datum_path.py" />
+            <source>PROJ knows no exact way between these two: the place may be off by metres.</source>
+            <translation>A PROJ nem ismer pontos utat e kettő között: a hely méterekkel eltérhet.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/datum_path.py" />
+            <source>accuracy not known</source>
+            <translation>pontossága nem ismert</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/datum_path.py" />
+            <source>accurate to {accuracy:g} m</source>
+            <translation>pontossága {accuracy:g} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/datum_path.py" />
+            <source>no change: it is the site's CRS</source>
+            <translation>nincs változás: ez a telephely vetülete</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/datum_path.py" />
+            <source>the default operation of PROJ</source>
+            <translation>a PROJ alapértelmezett művelete</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/obstacle_check.py" />
+            <source>({point:.2f}, {point2:.2f}) m</source>
+            <translation>({point:.2f}, {point2:.2f}) m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/obstacle_check.py" />
+            <source>The layer {layer} cannot be placed on the site ({error}), so obstacles in it are not seen. Correct its CRS, or take its role away.</source>
+            <translation>A(z) {layer} réteg nem helyezhető a telephelyre ({error}), így az akadályai nem látszanak. Javítsa ki a vetületét, vagy vegye el a szerepét.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/obstacle_check.py" />
+            <source>The way to {to}</source>
+            <translation>Az út ide: {to}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/obstacle_check.py" />
+            <source>is on</source>
+            <translation>rajta van:</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/obstacle_check.py" />
+            <source>is {away:.2f} m from</source>
+            <translation>{away:.2f} m-re van ettől:</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/obstacle_check.py" />
+            <source>{spot} {where} {name}. Choose a place or way beside it.</source>
+            <translation>{spot} {where} {name}. Válasszon helyet vagy utat mellette.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/place_text.py" />
+            <source>latitude, longitude, as in 48.2083, 16.3725</source>
+            <translation>szélesség, hosszúság, mint 48.2083, 16.3725</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/place_text.py" />
+            <source>x, y, as in 488070.50, 5190055.20</source>
+            <translation>x, y, mint 488070.50, 5190055.20</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/place_text.py" />
+            <source>{shown!r} is no place: write {right}.</source>
+            <translation>{shown!r} nem hely: írja így: {right}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/place_text.py" />
+            <source>{strip!r}: latitude {lat:g} and longitude {lon:g} are not on the earth; write latitude first, or choose the CRS that the numbers are in.</source>
+            <translation>{strip!r}: a {lat:g} szélesség és {lon:g} hosszúság nincs a Földön; a szélességet írja előbb, vagy válassza a számok vetületét.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/route_editing.py" />
+            <source>A part of this route follows the roads, and the way back may be another: it is not turned round. Draw it from the other end with Route on roads.</source>
+            <translation>Az útvonal egy része az utakat követi, és visszafelé más lehet: nem lesz megfordítva. Rajzolja a másik végéről az Útvonal utakon eszközzel.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/route_editing.py" />
+            <source>This part of the route follows the roads and is not changed by hand. Take it back with Backspace, or draw this part with Draw route.</source>
+            <translation>Az útvonalnak ez a része az utakat követi, és kézzel nem módosítható. Vegye vissza Backspace-szel, vagy rajzolja ezt a részt az Útvonal rajzolása eszközzel.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/target_check.py" />
+            <source>({x:.2f}, {y:.2f}) m is {away:.2f} m from {what} of {robot} at {other_x:.2f}, {other_y:.2f}: keep {clear_m:g} m between targets.</source>
+            <translation>({x:.2f}, {y:.2f}) m {away:.2f} m-re van ettől: {what}, {robot}, itt: {other_x:.2f}, {other_y:.2f}; tartson {clear_m:g} m-t a célok között.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/target_check.py" />
+            <source>a task</source>
+            <translation>egy feladat</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/target_check.py" />
+            <source>the end of the route</source>
+            <translation>az útvonal vége</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/target_check.py" />
+            <source>the target</source>
+            <translation>a cél</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/tasks.py" />
+            <source>A start position is no task: Send tells the robot at once.</source>
+            <translation>A kiinduló helyzet nem feladat: a Küldés azonnal közli a robottal.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafts.py" />
+            <source>, theta {degrees:.0f}°</source>
+            <translation>, theta {degrees:.0f}°</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafts.py" />
+            <source>; along the roads {note}</source>
+            <translation>; az utak mentén {note}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafts.py" />
+            <source>And {more} more.</source>
+            <translation>És még {more}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafts.py" />
+            <source>Cone for {robot} at {place}</source>
+            <translation>Bója ennek: {robot}, itt: {place}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafts.py" />
+            <source>Route for {robot}: {points} points, {length:.1f} m{told}</source>
+            <translation>Útvonal ennek: {robot}: {points} pont, {length:.1f} m{told}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafts.py" />
+            <source>Start position of {robot} at {place}{turned}</source>
+            <translation>{robot} kiinduló helyzete: {place}{turned}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafts.py" />
+            <source>a route needs at least two points: click the next one</source>
+            <translation>egy útvonalhoz legalább két pont kell: kattintson a következőre</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafts.py" />
+            <source>{point:.2f}, {point2:.2f} m</source>
+            <translation>{point:.2f}, {point2:.2f} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafts.py" />
+            <source>{points} cones for {robot}</source>
+            <translation>{points} bója ennek: {robot}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/emergency_banner.py" />
+            <source> and {more} more</source>
+            <translation> és még {more}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/emergency_banner.py" />
+            <source> since {time}</source>
+            <translation> {time} óta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/emergency_banner.py" />
+            <source>EMERGENCY STOP asked for. The gateway has not confirmed it yet: watch the robots, and use their own emergency stops.</source>
+            <translation>VÉSZLEÁLLÍTÁS kérve. Az átjáró még nem erősítette meg: figyelje a robotokat, és használja saját vészleállítóikat.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/emergency_banner.py" />
+            <source>EMERGENCY STOP in force{since}, by {by}{reason}</source>
+            <translation>VÉSZLEÁLLÍTÁS érvényben{since}, kérte: {by}{reason}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/emergency_banner.py" />
+            <source>No answer from {names}</source>
+            <translation>Nem válaszol: {names}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/emergency_banner.py" />
+            <source>Not stored yet: the gateway cannot write its database, so robots on SQL are not told.</source>
+            <translation>Még nincs tárolva: az átjáró nem tudja írni az adatbázisát, így az SQL-robotok nem értesülnek.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/emergency_banner.py" />
+            <source>REFUSED by {names}</source>
+            <translation>ELUTASÍTOTTA: {names}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/emergency_banner.py" />
+            <source>The link to the gateway is down: this is what it said last.</source>
+            <translation>Nincs kapcsolat az átjáróval: ez az, amit utoljára mondott.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/emergency_banner.py" />
+            <source>{acknowledged} of {robots} robots acknowledged, {standing} seen to stand</source>
+            <translation>{robots} robotból {acknowledged} nyugtázta, {standing} láthatóan áll</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/layout_action.py" />
+            <source>Cone layout</source>
+            <translation>Bójaelrendezés</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/layout_action.py" />
+            <source>Place a cone layout: it is shown under the cursor, the wheel turns it (Shift: finely), a click places it, Esc ends; nothing is sent to robots</source>
+            <translation>Bójaelrendezés elhelyezése: a kurzor alatt látszik, a görgő forgatja (Shift: finoman), kattintás elhelyezi, az Esc befejezi; a robotok nem kapnak semmit</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/layout_action.py" />
+            <source>Place cone layout</source>
+            <translation>Bójaelrendezés elhelyezése</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/layout_tool.py" />
+            <source>{cones} cones are in the layer {layer}.</source>
+            <translation>{cones} bója van a(z) {layer} rétegben.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/layout_tool.py" />
+            <source>{wrong} of {cones} cones should not stand there: {text} All are in the layer {layer}.</source>
+            <translation>{cones} bójából {wrong} nem állhat ott: {text} Mind a(z) {layer} rétegben van.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/hover_card.py" />
+            <source>, {remaining:.1f} m to go</source>
+            <translation>, még {remaining:.1f} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/hover_card.py" />
+            <source>it says</source>
+            <translation>ezt mondja</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/hover_card.py" />
+            <source>last message</source>
+            <translation>utolsó üzenet</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/hover_card.py" />
+            <source>{age_in_words} ago, {escape}</source>
+            <translation>{age_in_words}, {escape}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/hover_card.py" />
+            <source>{v:.2f} m/s</source>
+            <translation>{v:.2f} m/s</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/hover_card.py" />
+            <source>{x:.2f}, {y:.2f} m in the site</source>
+            <translation>{x:.2f}, {y:.2f} m a telephelyen</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/hover_card.py" />
+            <source>± {accuracy:.2f} m</source>
+            <translation>± {accuracy:.2f} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/labels.py" />
+            <source>{days:.0f} d</source>
+            <translation>{days:.0f} nap</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/labels.py" />
+            <source>{hours:.0f} h</source>
+            <translation>{hours:.0f} óra</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/labels.py" />
+            <source>{minutes:.0f} min</source>
+            <translation>{minutes:.0f} perc</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/labels.py" />
+            <source>{seconds:.0f} s</source>
+            <translation>{seconds:.0f} s</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/names_painting.py" />
+            <source>· offline</source>
+            <translation>· offline</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/plans_painting.py" />
+            <source>{km:.0f} km</source>
+            <translation>{km:.0f} km</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/plans_painting.py" />
+            <source>{metres:.0f} m</source>
+            <translation>{metres:.0f} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/robot_features.py" />
+            <source>Robots (live)</source>
+            <translation>Robotok (élő)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/placement.py" />
+            <source>A position in {crs} has no place in {target} ({error}). Choose the site's CRS as the project's CRS (bottom right in the QGIS window).</source>
+            <translation>Egy {crs} helyzetnek nincs helye itt: {target} ({error}). Válassza a telephely vetületét a projekt vetületének (a QGIS ablak jobb alsó sarkában).</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/placement.py" />
+            <source>The site {name} is in the CRS {crs}, which this QGIS does not know: its robots cannot be placed on the map. Correct crs in the site's site.toml, or update QGIS.</source>
+            <translation>A(z) {name} telephely vetülete {crs}, amelyet ez a QGIS nem ismer: robotjai nem helyezhetők a térképre. Javítsa ki a crs értékét a telephely site.toml fájljában, vagy frissítse a QGIS-t.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/placement.py" />
+            <source>not a finite place</source>
+            <translation>nem véges hely</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed.py" />
+            <source> of {expected}</source>
+            <translation> / {expected}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed.py" />
+            <source>, {collected} collected again</source>
+            <translation>, {collected} újra begyűjtve</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed.py" />
+            <source>No cone was put down yet.</source>
+            <translation>Még nincs bója letéve.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed.py" />
+            <source>off by {mean:.3f} m on average, at most {largest:.3f} m</source>
+            <translation>átlagos eltérés {mean:.3f} m, legfeljebb {largest:.3f} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed.py" />
+            <source>{cones}{of} cones placed{gone}; {off}</source>
+            <translation>{cones}{of} bója kihelyezve{gone}; {off}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed_page.py" />
+            <source>As-placed report</source>
+            <translation>Kihelyezési jelentés</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed_page.py" />
+            <source>Collected</source>
+            <translation>Begyűjtve</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed_page.py" />
+            <source>Cone</source>
+            <translation>Bója</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed_page.py" />
+            <source>Off [m]</source>
+            <translation>Eltérés [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed_page.py" />
+            <source>Placed</source>
+            <translation>Kihelyezve</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed_page.py" />
+            <source>Plan collecting</source>
+            <translation>Begyűjtés tervezése</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed_page.py" />
+            <source>Planned x, y</source>
+            <translation>Tervezett x, y</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed_page.py" />
+            <source>Refresh</source>
+            <translation>Frissítés</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed_page.py" />
+            <source>Save as CSV…</source>
+            <translation>Mentés CSV-ként…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed_page.py" />
+            <source>Stands at x, y</source>
+            <translation>Itt áll: x, y</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed_page.py" />
+            <source>The report could not be written as {path}: {error}. Choose another place.</source>
+            <translation>A jelentés nem írható ide: {path}: {error}. Válasszon másik helyet.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed_page.py" />
+            <source>layout {name}</source>
+            <translation>{name} elrendezés</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed_page.py" />
+            <source>the plan that is driven</source>
+            <translation>a végrehajtás alatt lévő terv</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/collecting.py" />
+            <source>; {queued} are in queues already</source>
+            <translation>; {queued} már várólistán van</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/collecting.py" />
+            <source>Collecting cannot be planned: {error}</source>
+            <translation>A begyűjtés nem tervezhető: {error}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/collecting.py" />
+            <source>No cone stands {what} that could be collected{also}.</source>
+            <translation>Nincs begyűjthető bója {what}{also}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/collecting.py" />
+            <source>What is to be collected</source>
+            <translation>Mit kell begyűjteni</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/collecting.py" />
+            <source>of layout {layout}</source>
+            <translation>({layout} elrendezés)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/cone_source.py" />
+            <source>Choose another, or none.</source>
+            <translation>Válasszon másikat, vagy egyiket se.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/cone_source.py" />
+            <source>Choose one, or place a cone layout first.</source>
+            <translation>Válasszon egyet, vagy előbb helyezzen el bójaelrendezést.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/cone_source.py" />
+            <source>No layer of {what} is chosen. {help_text}</source>
+            <translation>Nincs kiválasztott réteg ehhez: {what}. {help_text}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/cone_source.py" />
+            <source>The layer {layer} has {which}: there is nothing to be placed.</source>
+            <translation>A(z) {layer} rétegben {which}: nincs mit kihelyezni.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/cone_source.py" />
+            <source>no features</source>
+            <translation>nincs eleme</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/cone_source.py" />
+            <source>no selected features</source>
+            <translation>nincs kijelölt eleme</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/cone_source.py" />
+            <source>{layer}, feature {id}</source>
+            <translation>{layer}, {id}. elem</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/cone_source.py" />
+            <source>{where} is not one point with a place on the site: correct or delete it.</source>
+            <translation>{where} nem egyetlen pont, amelynek helye van a telephelyen: javítsa ki vagy törölje.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/cone_source.py" />
+            <source>{where}: {field} is {value!r}, which is no number; correct it.</source>
+            <translation>{where}: {field} értéke {value!r}, ami nem szám; javítsa ki.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/draft_plan.py" />
+            <source>A plan is being made. Wait for it, or press Cancel.</source>
+            <translation>Tervkészítés folyik. Várja meg, vagy nyomja meg a Mégse gombot.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/draft_plan.py" />
+            <source>Change of the cone plan</source>
+            <translation>A bójaterv módosítása</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/draft_plan.py" />
+            <source>Cone plan</source>
+            <translation>Bójaterv</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/draft_plan.py" />
+            <source>No robot that is there is chosen: tick robots in the table, or connect some.</source>
+            <translation>Nincs kiválasztva jelen lévő robot: jelöljön be robotokat a táblázatban, vagy kapcsoljon be néhányat.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/draft_plan.py" />
+            <source>Preview of the cone plan</source>
+            <translation>A bójaterv előnézete</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driven_plan.py" />
+            <source>A new plan is sent by itself, as you switched on: {why}</source>
+            <translation>Új terv megy ki magától, ahogy bekapcsolta: {why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driven_plan.py" />
+            <source>An emergency stop is in force. It has to be cleared first.</source>
+            <translation>Vészleállítás van érvényben. Előbb fel kell oldani.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driven_plan.py" />
+            <source>Cone {cones} was given up since this plan was made: plan what is left again.</source>
+            <translation>A(z) {cones} bójáról lemondtak a terv készítése óta: tervezze meg újra a maradékot.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driven_plan.py" />
+            <source>No plan is being driven, or something is still being sent.</source>
+            <translation>Nincs végrehajtás alatt terv, vagy még küldés folyik.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driven_plan.py" />
+            <source>No robot is left to take over: connect one, and plan anew.</source>
+            <translation>Nem maradt robot, amely átvenné: kapcsoljon be egyet, és tervezzen újra.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driven_plan.py" />
+            <source>Placed cones of the plan</source>
+            <translation>A terv kihelyezett bójái</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driven_plan.py" />
+            <source>Plan of what is left</source>
+            <translation>A maradék terve</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driven_plan.py" />
+            <source>The cone plan cannot go on as it is: {why}. Plan what is left.</source>
+            <translation>A bójaterv így nem folytatható: {why}. Tervezze meg a maradékot.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driven_plan.py" />
+            <source>The cone plan is in the robots' queues.</source>
+            <translation>A bójaterv a robotok várólistáin van.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driven_plan.py" />
+            <source>The cone plan was not sent as a whole. {why}</source>
+            <translation>A bójaterv nem ment el egészben. {why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driven_plan.py" />
+            <source>The plan cannot be sent: {error}</source>
+            <translation>A terv nem küldhető el: {error}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driven_plan.py" />
+            <source>There is no new plan to confirm.</source>
+            <translation>Nincs megerősíthető új terv.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driven_plan.py" />
+            <source>There is no plan to send. Make one with Preview or Solve first.</source>
+            <translation>Nincs elküldhető terv. Készítsen egyet előbb az Előnézet vagy a Megoldás gombbal.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driven_plan.py" />
+            <source>its robot is lost</source>
+            <translation>a robotja elveszett</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driven_plan.py" />
+            <source>plan of what is left</source>
+            <translation>a maradék terve</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driven_plan.py" />
+            <source>plan of what is left: {in_words}</source>
+            <translation>a maradék terve: {in_words}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>Being sent …</source>
+            <translation>Küldés folyik …</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>Clear</source>
+            <translation>Törlés</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>Confirm new plan</source>
+            <translation>Új terv megerősítése</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>Done: {done} of {all_of_them} cones</source>
+            <translation>Kész: {all_of_them} bójából {done}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>Go on as before</source>
+            <translation>Folytatás, mint eddig</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>Hold the robots once they have finished what they are doing, and plan what is left; nothing else is sent before you confirm</source>
+            <translation>Visszatartja a robotokat, ha befejezték, amit csinálnak, és megtervezi a maradékot; a megerősítésig semmi más nem megy ki</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>New plan, not sent yet: {summary}</source>
+            <translation>Új terv, még nincs elküldve: {summary}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>No plan. Choose cones and robots, then Preview or Solve.</source>
+            <translation>Nincs terv. Válasszon bójákat és robotokat, majd Előnézet vagy Megoldás.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>Not sent yet: {summary}</source>
+            <translation>Még nincs elküldve: {summary}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>Plan what is left</source>
+            <translation>A maradék tervezése</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>Send new plans without asking</source>
+            <translation>Új tervek küldése kérdés nélkül</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>Send…</source>
+            <translation>Küldés…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>Under way: {done} of {all_of_them} cones</source>
+            <translation>Folyamatban: {all_of_them} bójából {done}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>When a robot is lost or a cone fails, plan what is left and send it by itself</source>
+            <translation>Ha egy robot elveszik vagy egy bója nem sikerül, megtervezi a maradékot, és magától elküldi</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>and {more} more</source>
+            <translation>és még {more}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>try failed cones again</source>
+            <translation>sikertelen bóják újra</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/near_meetings.py" />
+            <source>{robot} and {other} come within {metres:.1f} m at {x:.0f}, {y:.0f} m after {minutes}:{seconds:02d}</source>
+            <translation>{robot} és {other} {metres:.1f} m-re közelítik meg egymást itt: {x:.0f}, {y:.0f} m, {minutes}:{seconds:02d} után</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_dock.py" />
+            <source>A good plan, within the time that is given</source>
+            <translation>Jó terv a megadott időn belül</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_dock.py" />
+            <source>A plan is being driven. Plan what is left, or press Clear to watch it no more; robots go on with their queues then.</source>
+            <translation>Egy terv végrehajtás alatt van. Tervezze meg a maradékot, vagy a Törléssel ne figyelje tovább; a robotok akkor folytatják várólistáikat.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_dock.py" />
+            <source>A quick plan, to look at</source>
+            <translation>Gyors terv, megnézésre</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_dock.py" />
+            <source>As placed</source>
+            <translation>Kihelyezve</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_dock.py" />
+            <source>Do not send</source>
+            <translation>Ne küldje</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_dock.py" />
+            <source>Give up what is being planned</source>
+            <translation>A folyó tervezés feladása</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_dock.py" />
+            <source>Placed cones</source>
+            <translation>Kihelyezett bóják</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_dock.py" />
+            <source>Plan</source>
+            <translation>Terv</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_dock.py" />
+            <source>Preview</source>
+            <translation>Előnézet</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_dock.py" />
+            <source>Send the cone plan</source>
+            <translation>A bójaterv küldése</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_dock.py" />
+            <source>Solve</source>
+            <translation>Megoldás</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_layers.py" />
+            <source>Cone plan, stops</source>
+            <translation>Bójaterv, megállók</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_layers.py" />
+            <source>Cone plan, ways</source>
+            <translation>Bójaterv, utak</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_layers.py" />
+            <source>Cones as placed</source>
+            <translation>Kihelyezett bóják helye</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_rows.py" />
+            <source>in the queue</source>
+            <translation>a várólistán</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_rows.py" />
+            <source>taken out</source>
+            <translation>kivéve</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_rows.py" />
+            <source>under way</source>
+            <translation>folyamatban</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_rows.py" />
+            <source>{cones} cones, {robots} robots, {metres:.0f} m, done after {span} ({method}, along {travel})</source>
+            <translation>{cones} bója, {robots} robot, {metres:.0f} m, kész {span} után ({method}, {travel} mentén)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_rows.py" />
+            <source>{text}. Left out: {names}</source>
+            <translation>{text}. Kimaradt: {names}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_task.py" />
+            <source>The plan could not be made. Please report this:
+{format_exc}</source>
+            <translation>A tervet nem sikerült elkészíteni. Kérjük, jelentse ezt:
+{format_exc}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_tree.py" />
+            <source>Arrives</source>
+            <translation>Érkezik</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_tree.py" />
+            <source>Drag a cone to another place or robot; Alt+Up and Alt+Down move it, Del takes it out</source>
+            <translation>Húzza a bóját más helyre vagy robothoz; Alt+Fel és Alt+Le mozgatja, a Del kiveszi</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_tree.py" />
+            <source>Give to {name}</source>
+            <translation>Átadás ennek: {name}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_tree.py" />
+            <source>LOST, {text}</source>
+            <translation>ELVESZETT, {text}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_tree.py" />
+            <source>Robot, stop</source>
+            <translation>Robot, megálló</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_tree.py" />
+            <source>Take out</source>
+            <translation>Kivétel</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_tree.py" />
+            <source>end at </source>
+            <translation>vége itt: </translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_tree.py" />
+            <source>{cones} cones</source>
+            <translation>{cones} bója</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_tree.py" />
+            <source>{done} of {cones} cones</source>
+            <translation>{cones} bójából {done}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_ways.py" />
+            <source>{name}, straight within {nearby:g} m</source>
+            <translation>{name}, {nearby:g} m-en belül egyenesen</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plans_action.py" />
+            <source>Plan which robot places or collects which cone, send it, watch it; the as-placed report</source>
+            <translation>Megtervezi, melyik robot melyik bóját helyezi ki vagy gyűjti be, elküldi és figyeli; kihelyezési jelentés</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/progress.py" />
+            <source>cone {cone} failed{why}</source>
+            <translation>{cone} bója sikertelen{why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/progress.py" />
+            <source>{robot} is lost or offline</source>
+            <translation>{robot} elveszett vagy offline</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/robots_form.py" />
+            <source>Aboard</source>
+            <translation>Rajta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/robots_form.py" />
+            <source>Aboard: cones on the robot now. Range: metres of battery, 0 if it does not matter</source>
+            <translation>Rajta: a roboton most lévő bóják. Hatótáv: az akkumulátor méterei, 0, ha nem számít</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/robots_form.py" />
+            <source>Carries</source>
+            <translation>Elvisz</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/robots_form.py" />
+            <source>Range</source>
+            <translation>Hatótáv</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/robots_form.py" />
+            <source>m/s</source>
+            <translation>m/s</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/robots_form.py" />
+            <source>{heads} of {rows} is {text!r}: give {least:g} or more.</source>
+            <translation>{rows} {heads} értéke {text!r}: adjon meg legalább {least:g} értéket.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/robots_form.py" />
+            <source>{name} is away: it takes no part</source>
+            <translation>{name} nincs jelen: nem vesz részt</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/sending.py" />
+            <source>holding {robot}</source>
+            <translation>{robot} visszatartása</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/sending.py" />
+            <source>letting {robot} go on</source>
+            <translation>{robot} továbbengedése</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/sending.py" />
+            <source>taking over from {lost}</source>
+            <translation>átvétel ettől: {lost}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/sending.py" />
+            <source>the queue of {robot}</source>
+            <translation>{robot} várólistája</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/sending.py" />
+            <source>{why} Done before: {done}.</source>
+            <translation>{why} Előtte megtörtént: {done}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/sending.py" />
+            <source>{why} Not done therefore: {left}.</source>
+            <translation>{why} Ezért nem történt meg: {left}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/sending_check.py" />
+            <source>Mind:</source>
+            <translation>Figyelem:</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/sending_check.py" />
+            <source>The queue of {robot} stays paused ({reason}): its cones wait until it is resumed.</source>
+            <translation>{robot} várólistája szünetel ({reason}): bójái várnak, amíg nem folytatódik.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/sending_check.py" />
+            <source>The robots set off at once.</source>
+            <translation>A robotok azonnal elindulnak.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/sending_check.py" />
+            <source>it is not known where {id} is</source>
+            <translation>nem ismert, hol van {id}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/sending_check.py" />
+            <source>no reason</source>
+            <translation>nincs ok</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/sending_check.py" />
+            <source>the queue of {id} is paused ({reason}): it is resumed</source>
+            <translation>{id} várólistája szünetel ({reason}): folytatódni fog</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/sending_check.py" />
+            <source>{id} finishes first what it is doing</source>
+            <translation>{id} előbb befejezi, amit csinál</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/sending_check.py" />
+            <source>{id} is {away:.1f} m from where the plan begins: better plan anew</source>
+            <translation>{id} {away:.1f} m-re van onnan, ahol a terv kezdődik: jobb újratervezni</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/sending_check.py" />
+            <source>{id} is {state}: it gets its queue when it is heard of again</source>
+            <translation>{id} állapota {state}: a várólistáját akkor kapja meg, ha újra hallani róla</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/sending_check.py" />
+            <source>{id}: {sum} cones</source>
+            <translation>{id}: {sum} bója</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/sending_check.py" />
+            <source>{waiting} tasks that wait in the queue of {id} are replaced</source>
+            <translation>{id} várólistáján {waiting} várakozó feladat lesz lecserélve</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>A cone takes</source>
+            <translation>Egy bója ideje</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>At the end</source>
+            <translation>A végén</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>How it is planned</source>
+            <translation>Hogyan készül a terv</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>Least</source>
+            <translation>Legkevesebb</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>Off cones by</source>
+            <translation>Bójáktól ennyire</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>Off robots by</source>
+            <translation>Robotoktól ennyire</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>Only the features of the layer that are selected</source>
+            <translation>Csak a réteg kijelölt elemei</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>Robots that come nearer to one another by the plan are named</source>
+            <translation>A terv szerint ennél közelebb kerülő robotok meg lesznek nevezve</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>Solve for at most</source>
+            <translation>Megoldás legfeljebb</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>Stores</source>
+            <translation>Raktárak</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>Straight within</source>
+            <translation>Egyenesen ezen belül</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>The layers of the project with the role road centreline</source>
+            <translation>A projekt úttengely szerepű rétegei</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>Ways are led round cones by so much</source>
+            <translation>Az utak ennyivel kerülik a bójákat</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>along the roads of the project</source>
+            <translation>a projekt útjai mentén</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>choose a layer of points</source>
+            <translation>válasszon pontréteget</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>done as early as possible</source>
+            <translation>mielőbb kész legyen</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>drive back</source>
+            <translation>menjenek vissza</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>drive to a store</source>
+            <translation>menjenek raktárhoz</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>fewest metres</source>
+            <translation>legkevesebb méter</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>selected</source>
+            <translation>kijelölt</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>stay where they are</source>
+            <translation>maradjanak, ahol vannak</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/queue_panel.py" />
+            <source>Do now</source>
+            <translation>Most</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/queue_panel.py" />
+            <source>Let the robot do the selected task at once; what it is doing comes next (Ctrl+Enter)</source>
+            <translation>A robot a kijelölt feladatot azonnal végezze; amit csinál, az jön utána (Ctrl+Enter)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/queue_panel.py" />
+            <source>Let the robot go on with the task at the head of its queue</source>
+            <translation>A robot folytassa a várólistája élén lévő feladattal</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/queue_panel.py" />
+            <source>Move the selected task one down (Alt+Down)</source>
+            <translation>A kijelölt feladat eggyel lejjebb (Alt+Le)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/queue_panel.py" />
+            <source>Move the selected task one up (Alt+Up)</source>
+            <translation>A kijelölt feladat eggyel feljebb (Alt+Fel)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/queue_panel.py" />
+            <source>Pause</source>
+            <translation>Szünet</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/queue_panel.py" />
+            <source>Remove</source>
+            <translation>Eltávolítás</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/queue_panel.py" />
+            <source>Resume</source>
+            <translation>Folytatás</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/queue_panel.py" />
+            <source>Select a robot to see its queue. None has one yet.</source>
+            <translation>Jelöljön ki robotot a várólistájához. Még egyiknek sincs.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/queue_panel.py" />
+            <source>Select a robot to see its queue. {queues} have one, {paused} of them paused.</source>
+            <translation>Jelöljön ki robotot a várólistájához. {queues} robotnak van, ebből {paused} szünetel.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/queue_panel.py" />
+            <source>Send the robot no further task; what it is doing it finishes (abort stops it)</source>
+            <translation>A robot nem kap több feladatot; amit csinál, befejezi (a megszakítás leállítja)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/queue_panel.py" />
+            <source>Take the selected task out (Delete)</source>
+            <translation>A kijelölt feladat kivétele (Delete)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/queue_panel.py" />
+            <source>{selected} has no queue. Add a target or a route with Add to queue.</source>
+            <translation>{selected} robotnak nincs várólistája. Adjon hozzá célt vagy útvonalat a Várólistára gombbal.</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/desk/queues/task_words.py" />
+            <source>%n tasks</source>
+            <translation>
+                <numerusform>%n feladat</numerusform>
+            </translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/task_words.py" />
+            <source>, a path of {path_points} points</source>
+            <translation>, {path_points} pontos pálya</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/task_words.py" />
+            <source>, {deviation:.2f} m off</source>
+            <translation>, {deviation:.2f} m eltérés</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/task_words.py" />
+            <source>. The robot is {state}: it is sent nothing until it is heard again</source>
+            <translation>. A robot állapota {state}: semmit sem kap, amíg újra nem hallani róla</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/task_words.py" />
+            <source>Last: {task} {state} {time}{off}{why}</source>
+            <translation>Utolsó: {task} {state} {time}{off}{why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/task_words.py" />
+            <source>collect cone</source>
+            <translation>bója begyűjtése</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/task_words.py" />
+            <source>drive</source>
+            <translation>menet</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/task_words.py" />
+            <source>nothing to do</source>
+            <translation>nincs dolga</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/task_words.py" />
+            <source>now</source>
+            <translation>most</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/task_words.py" />
+            <source>place cone</source>
+            <translation>bója kihelyezése</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/task_words.py" />
+            <source>running</source>
+            <translation>fut</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/task_words.py" />
+            <source>{kind}{name} at {x:.2f}, {y:.2f}{way}</source>
+            <translation>{kind}{name} itt: {x:.2f}, {y:.2f}{way}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/task_words.py" />
+            <source>{robot}: {count}, PAUSED{when}{why}</source>
+            <translation>{robot}: {count}, SZÜNETEL{when}{why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/road_board.py" />
+            <source>Closing the road at {x:.1f}, {y:.1f} m</source>
+            <translation>Út lezárása itt: {x:.1f}, {y:.1f} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/road_board.py" />
+            <source>Opening the road</source>
+            <translation>Út megnyitása</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/road_board.py" />
+            <source>{robot} gives way to {other}</source>
+            <translation>{robot} elsőbbséget ad ennek: {other}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/road_layers.py" />
+            <source>Closed roads</source>
+            <translation>Lezárt utak</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/road_layers.py" />
+            <source>Conflicts</source>
+            <translation>Ütközések</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/road_layers.py" />
+            <source>closed</source>
+            <translation>lezárva</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/road_layers.py" />
+            <source>until</source>
+            <translation>eddig:</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>Age</source>
+            <translation>Kor</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>Batt.</source>
+            <translation>Akku</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>How far it is beside its path, or from the target that it reached last</source>
+            <translation>Mennyire van a pályája mellett, vagy az utoljára elért célja mellett</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>How far what is known of it can be trusted</source>
+            <translation>Mennyire megbízható, amit tudni róla</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>How full its battery is</source>
+            <translation>Mennyire van töltve az akkumulátora</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>How it is connected</source>
+            <translation>Hogyan kapcsolódik</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>How long ago anything was heard of it</source>
+            <translation>Mióta nem hallani róla</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>How long its link takes there and back</source>
+            <translation>Mennyi idő alatt ér oda-vissza a kapcsolata</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>Its speed, as it says</source>
+            <translation>A sebessége, ahogy mondja</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>Link</source>
+            <translation>Kapcs.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>Off</source>
+            <translation>Eltér</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>Ping</source>
+            <translation>Ping</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>Position</source>
+            <translation>Helyzet</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>Speed</source>
+            <translation>Sebesség</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>Task</source>
+            <translation>Feladat</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>The robot's name</source>
+            <translation>A robot neve</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>What it is doing, or what it says</source>
+            <translation>Mit csinál, vagy mit mond</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>Where it is, in the CRS chosen under Columns</source>
+            <translation>Hol van, az Oszlopok alatt választott vetületben</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>cone</source>
+            <translation>bója</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>on its route</source>
+            <translation>az útvonalán</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>route</source>
+            <translation>útvonal</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>stopped</source>
+            <translation>megállt</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>target</source>
+            <translation>cél</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>to its cone</source>
+            <translation>a bójához</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/columns.py" />
+            <source>to its target</source>
+            <translation>a céljához</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/detail_rows.py" />
+            <source>, {metres:.2f} m off</source>
+            <translation>, {metres:.2f} m eltérés</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/detail_rows.py" />
+            <source>It says</source>
+            <translation>Ezt mondja</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/detail_rows.py" />
+            <source>Off path or target</source>
+            <translation>Eltérés a pályától vagy a céltól</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/detail_rows.py" />
+            <source>Position, {crs}</source>
+            <translation>Helyzet, {crs}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/detail_rows.py" />
+            <source>and {number} more</source>
+            <translation>és még {number}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/detail_rows.py" />
+            <source>none</source>
+            <translation>nincs</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/detail_rows.py" />
+            <source>{state}, last heard {age:.1f} s ago over {link}</source>
+            <translation>{state}, utolsó hír {age:.1f} s óta, ezen: {link}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/detail_rows.py" />
+            <source>{told}, by {operator}</source>
+            <translation>{told}, kérte: {operator}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/last_image.py" />
+            <source>No image: {why}</source>
+            <translation>Nincs kép: {why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/last_image.py" />
+            <source>Reading a robot's image</source>
+            <translation>Egy robot képének olvasása</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/last_image.py" />
+            <source>The image that came cannot be read: it is none of a kind that QGIS knows.</source>
+            <translation>A megérkezett kép nem olvasható: nem a QGIS által ismert fajta.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/last_image.py" />
+            <source>looking for an image …</source>
+            <translation>kép keresése …</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/last_image.py" />
+            <source>the image is coming …</source>
+            <translation>jön a kép …</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/last_image.py" />
+            <source>{robot} has sent no image lately</source>
+            <translation>{robot} nem küldött képet mostanában</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/position_crs.py" />
+            <source>There is no way from {site} to {crs}. Choose another CRS under Columns.</source>
+            <translation>Nincs út innen: {site}, ide: {crs}. Válasszon másik vetületet az Oszlopok alatt.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/position_crs.py" />
+            <source>site frame</source>
+            <translation>telephelyi keret</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_details.py" />
+            <source>Alarms</source>
+            <translation>Riasztások</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_details.py" />
+            <source>Ask again</source>
+            <translation>Újra kérés</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_details.py" />
+            <source>Ask for the robot's last image and its commands again</source>
+            <translation>A robot utolsó képének és parancsainak újbóli kérése</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_details.py" />
+            <source>Diagnostics as received</source>
+            <translation>Diagnosztika, ahogy érkezett</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_details.py" />
+            <source>Now</source>
+            <translation>Most</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_details.py" />
+            <source>Select a robot in the table or on the map</source>
+            <translation>Jelöljön ki robotot a táblázatban vagy a térképen</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_details.py" />
+            <source>{robot}, selected last of several</source>
+            <translation>{robot}, a kijelöltek közül az utolsó</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_model.py" />
+            <source>at {x:.2f}, {y:.2f} m in the site frame</source>
+            <translation>itt: {x:.2f}, {y:.2f} m a telephelyi keretben</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_model.py" />
+            <source>it says: {text}</source>
+            <translation>ezt mondja: {text}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_model.py" />
+            <source>its link takes {ms:.1f} ms there and back</source>
+            <translation>a kapcsolata {ms:.1f} ms alatt ér oda-vissza</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_panel.py" />
+            <source>Another CRS…</source>
+            <translation>Másik vetület…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_panel.py" />
+            <source>CRS of the project ({crs})</source>
+            <translation>A projekt vetülete ({crs})</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_panel.py" />
+            <source>Columns</source>
+            <translation>Oszlopok</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_panel.py" />
+            <source>Latitude, longitude (WGS 84)</source>
+            <translation>Szélesség, hosszúság (WGS 84)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_panel.py" />
+            <source>Name, state, task or link; several words have to be there all</source>
+            <translation>Név, állapot, feladat vagy kapcsolat; több szónál mindnek szerepelnie kell</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_panel.py" />
+            <source>Positions in: {crs}</source>
+            <translation>Helyzetek itt: {crs}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_panel.py" />
+            <source>Search robots</source>
+            <translation>Robotok keresése</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_panel.py" />
+            <source>Site frame (metres)</source>
+            <translation>Telephelyi keret (méter)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_panel.py" />
+            <source>Which columns are shown, and in which CRS positions are</source>
+            <translation>Mely oszlopok látszanak, és milyen vetületben vannak a helyzetek</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_panel.py" />
+            <source>With a task</source>
+            <translation>Feladattal</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_panel.py" />
+            <source>With alarms, or not fresh</source>
+            <translation>Riasztással, vagy nem friss</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_panel.py" />
+            <source>Without a task</source>
+            <translation>Feladat nélkül</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_panel.py" />
+            <source>{listed} of {all}</source>
+            <translation>{listed} / {all}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_table.py" />
+            <source>no such place</source>
+            <translation>nincs ilyen hely</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/route_preview.py" />
+            <source>; {tight} corners tighter than the robot turns</source>
+            <translation>; {tight} sarok élesebb, mint ahogy a robot fordul</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/route_preview.py" />
+            <source>surface not known</source>
+            <translation>ismeretlen felület</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/route_preview.py" />
+            <source>the gateway's answer holds no way; it may be older than this plugin</source>
+            <translation>az átjáró válaszában nincs út; lehet, hogy régebbi ennél a modulnál</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/route_preview.py" />
+            <source>{metres:.0f} m {surface}</source>
+            <translation>{metres:.0f} m {surface}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/route_preview.py" />
+            <source>{metres:.1f} m</source>
+            <translation>{metres:.1f} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/route_preview.py" />
+            <source>{minutes} min {seconds} s</source>
+            <translation>{minutes} perc {seconds} s</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/route_preview.py" />
+            <source>{seconds} s</source>
+            <translation>{seconds} s</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/surface_action.py" />
+            <source>Road surface</source>
+            <translation>Útfelület</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/surface_action.py" />
+            <source>Tell the road surface under the cursor; a click says it with its coordinates, Esc ends</source>
+            <translation>A kurzor alatti útfelületet mutatja; kattintás a koordinátáival együtt mondja, az Esc befejezi</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/surface_action.py" />
+            <source>Which road surface is here?</source>
+            <translation>Milyen útfelület van itt?</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/surface_tool.py" />
+            <source>No layer of the project has the role road surface: set it in Plugins &gt; Fleet Supervisor &gt; Layer roles.</source>
+            <translation>A projekt egyik rétegének sem útfelület a szerepe: állítsa be a Modulok &gt; Fleet Supervisor &gt; Rétegszerepek ablakban.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/surface_tool.py" />
+            <source>No road surface</source>
+            <translation>Nincs útfelület</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/surface_tool.py" />
+            <source>no road surface</source>
+            <translation>nincs útfelület</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/surface_tool.py" />
+            <source>road surface without a class</source>
+            <translation>osztály nélküli útfelület</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/surface_tool.py" />
+            <source>{told} at {where}</source>
+            <translation>{told} itt: {where}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/practice_fleet.py" />
+            <source>The practice fleet ended: {why}. Start it again; if that fails, see what {program} says by hand.</source>
+            <translation>A gyakorlóflotta véget ért: {why}. Indítsa újra; ha nem sikerül, nézze meg, mit mond a {program} kézzel indítva.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/practice_fleet.py" />
+            <source>The practice fleet needs robot-bridge, which is not on this computer. In a terminal, in the project's folder: python3 -m venv gateway, then gateway/bin/pip install . and put gateway/bin on PATH; or make setup. Then restart QGIS. The tour can be read without it.</source>
+            <translation>A gyakorlóflottához a robot-bridge kell, amely nincs ezen a számítógépen. Terminálban, a projekt mappájában: python3 -m venv gateway, majd gateway/bin/pip install . és a gateway/bin kerüljön a PATH-ra; vagy make setup. Azután indítsa újra a QGIS-t. A bemutató enélkül is olvasható.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>A site is an ordinary QGIS project: an orthophoto, roads, obstacles, each layer with a role. Open the sample site; QGIS asks first if your own project is not saved.</source>
+            <translation>A telephely közönséges QGIS-projekt: ortofotó, utak, akadályok, minden rétegnek szerepe van. Nyissa meg a mintatelephelyet; a QGIS előbb kérdez, ha saját projektje nincs mentve.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>Abort robot: the selected robots give up their task. ABORT ALL: every robot does. EMERGENCY STOP (F10): every robot stops now, and none can be sent anywhere until a supervisor clears it.</source>
+            <translation>Robot megszakítása: a kijelölt robotok feladják feladatukat. MIND MEGSZAKÍTÁSA: mindegyik. VÉSZLEÁLLÍTÁS (F10): minden robot most megáll, és egyik sem küldhető sehová, amíg egy felügyelő fel nem oldja.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>An arrow shows where a robot heads, its colour and shape the state. Hold the mouse over one for its card; with Select robot a click selects, a rectangle selects several, a double click goes there.</source>
+            <translation>Nyíl mutatja, merre néz a robot, színe és alakja az állapotát. Tartsa fölé az egeret a kártyájához; a Robot kijelölése eszközzel kattintás kijelöl, téglalap többet, dupla kattintás oda ugrik.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>Click r1: it is selected on the map, too.</source>
+            <translation>Kattintson az r1-re: a térképen is kijelölt lesz.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>Closing it ends the practice fleet. What else the desk does is in the operator's guide, docs/operator.md; how real robots are connected in docs/integrator.md.</source>
+            <translation>Bezárása véget vet a gyakorlóflottának. Mi mást tud a kezelőpult: a kezelői kézikönyvben, docs/operator.md; valódi robotok csatlakoztatása: docs/integrator.md.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>Cone target, a click on the map, Enter: that sends the selected robot. Before that it is a draft, checked against the site; Esc takes it away, and nothing was sent.</source>
+            <translation>Bójacél, kattintás a térképen, Enter: ez elküldi a kijelölt robotot. Előtte csak vázlat, a telephellyel összevetve; az Esc elveszi, és semmi sem ment el.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>Each robot has a row: its state, its task, its battery, and how old its last message is. A robot that falls silent is stale, then lost; it stays on the map, marked.</source>
+            <translation>Minden robotnak sora van: állapota, feladata, akkumulátora, és hogy milyen régi az utolsó üzenete. Az elhallgató robot elavult, majd elveszett; megjelölve a térképen marad.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>Every command is here with each of its steps: queued, delivered, acknowledged, reached; or why it failed. A double click shows its place on the map.</source>
+            <translation>Minden parancs itt van minden lépésével: queued, delivered, acknowledged, reached; vagy hogy miért nem sikerült. Dupla kattintás megmutatja a helyét a térképen.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>Five minutes with a practice fleet</source>
+            <translation>Öt perc egy gyakorlóflottával</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>Here stand the gateway's address and your name, which every log shows. For a real fleet write them and press Connect. For the tour, start the practice fleet: it connects by itself.</source>
+            <translation>Itt áll az átjáró címe és az Ön neve, amelyet minden napló mutat. Valódi flottához írja be őket, és nyomja meg a Kapcsolódás gombot. A bemutatóhoz indítsa el a gyakorlóflottát: magától kapcsolódik.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>Open the sample site</source>
+            <translation>A mintatelephely megnyitása</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>Send a robot</source>
+            <translation>Robot küldése</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>Start the practice fleet</source>
+            <translation>Gyakorlóflotta indítása</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>Stop</source>
+            <translation>Megállítás</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>That was the tour</source>
+            <translation>Ez volt a bemutató</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>The link</source>
+            <translation>A kapcsolat</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>The map</source>
+            <translation>A térkép</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>The robots</source>
+            <translation>A robotok</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>The site</source>
+            <translation>A telephely</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>The tour needs no network: a gateway and three simulated robots run on this computer, and nothing real moves. Next and Back lead on, Esc closes. It is in the menu Plugins &gt; Fleet Supervisor &gt; Tour.</source>
+            <translation>A bemutatóhoz nem kell hálózat: egy átjáró és három szimulált robot fut ezen a számítógépen, és semmi valódi nem mozog. A Tovább és a Vissza vezet, az Esc bezárja. A Modulok &gt; Fleet Supervisor &gt; Bemutató menüben van.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>Try it: only practice robots stop. Then clear it in the red banner.</source>
+            <translation>Próbálja ki: csak gyakorlórobotok állnak meg. Azután oldja fel a piros sávban.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>Try it: press Cone target, click on the road near r1, then Enter.</source>
+            <translation>Próbálja ki: nyomja meg a Bójacél gombot, kattintson az útra r1 közelében, majd Enter.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/steps.py" />
+            <source>What became of it</source>
+            <translation>Mi lett belőle</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/tour_action.py" />
+            <source>Fleet Supervisor is new here. A tour of five minutes shows it with simulated robots.</source>
+            <translation>A Fleet Supervisor új itt. Egy ötperces bemutató szimulált robotokkal mutatja be.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/tour_action.py" />
+            <source>Start the tour</source>
+            <translation>Bemutató indítása</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/tour_action.py" />
+            <source>Starting …</source>
+            <translation>Indítás …</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/tour_action.py" />
+            <source>The desk is connected to another gateway. Disconnect first: the tour moves no real robots.</source>
+            <translation>A kezelőpult másik átjáróhoz van kapcsolva. Előbb bontsa: a bemutató nem mozgat valódi robotokat.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/tour_action.py" />
+            <source>The practice fleet runs, and the desk is connected to it.</source>
+            <translation>A gyakorlóflotta fut, és a kezelőpult hozzá van kapcsolva.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/tour_action.py" />
+            <source>The sample site is open.</source>
+            <translation>A mintatelephely nyitva van.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/tour_action.py" />
+            <source>The sample site was not opened: {path}.</source>
+            <translation>A mintatelephely nem nyílt meg: {path}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/tour_action.py" />
+            <source>Tour</source>
+            <translation>Bemutató</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/tour_panel.py" />
+            <source>&amp;Back</source>
+            <translation>&amp;Vissza</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/tour_panel.py" />
+            <source>&amp;Finish</source>
+            <translation>Be&amp;fejezés</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/tour_panel.py" />
+            <source>&amp;Next</source>
+            <translation>&amp;Tovább</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/tour/tour_panel.py" />
+            <source>C&amp;lose</source>
+            <translation>&amp;Bezárás</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/window_alarms.py" />
+            <source>Alarms ({number})</source>
+            <translation>Riasztások ({number})</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/assign_cones.py" />
+            <source>Assign cones to robots</source>
+            <translation>Bóják kiosztása robotoknak</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/assign_cones.py" />
+            <source>JSON (*.json)</source>
+            <translation>JSON (*.json)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/assign_cones.py" />
+            <source>Method</source>
+            <translation>Módszer</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/assign_cones.py" />
+            <source>Method that was used</source>
+            <translation>Használt módszer</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/assign_cones.py" />
+            <source>Objective</source>
+            <translation>Célfüggvény</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/assign_cones.py" />
+            <source>Paths</source>
+            <translation>Pályák</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/assign_cones.py" />
+            <source>Planned by {method} along {travel}: the last robot is done after {end_s:.0f} s, {metres:.0f} m in all</source>
+            <translation>Tervezés: {method}, ezek mentén: {travel}; az utolsó robot {end_s:.0f} s múlva végez, összesen {metres:.0f} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/assign_cones.py" />
+            <source>Plans which robot places or collects which cone, on which trip, along which roads, and when.</source>
+            <translation>Megtervezi, melyik robot melyik bóját helyezi ki vagy gyűjti be, melyik körben, mely utakon és mikor.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/assign_cones.py" />
+            <source>Robot {id}: {cones} cones on {trips} trips, {metres:.0f} m, done after {end_s:.0f} s</source>
+            <translation>{id} robot: {cones} bója {trips} körben, {metres:.0f} m, {end_s:.0f} s múlva végez</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/assign_cones.py" />
+            <source>Targets</source>
+            <translation>Célok</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/assign_cones.py" />
+            <source>The assignment was cancelled.</source>
+            <translation>A kiosztást megszakították.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/assign_cones.py" />
+            <source>The plan</source>
+            <translation>A terv</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/assign_cones.py" />
+            <source>The plan cannot be driven: {faults}. Please report this.</source>
+            <translation>A terv nem járható be: {faults}. Kérjük, jelentse ezt.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/assign_cones.py" />
+            <source>Time limit [s]</source>
+            <translation>Időkorlát [s]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/assign_cones.py" />
+            <source>What the ways follow</source>
+            <translation>Amit az utak követnek</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_network.py" />
+            <source>Build road network</source>
+            <translation>Úthálózat készítése</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_network.py" />
+            <source>Edges</source>
+            <translation>Élek</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_network.py" />
+            <source>Nodes</source>
+            <translation>Csomópontok</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_network.py" />
+            <source>Parts that are not connected</source>
+            <translation>Össze nem függő részek</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_network.py" />
+            <source>Repairs</source>
+            <translation>Javítások</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_network.py" />
+            <source>Roads</source>
+            <translation>Utak</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_network.py" />
+            <source>Splits road centrelines where they meet, passes over and under at bridges, and repairs on request.</source>
+            <translation>Az úttengelyeket találkozásaiknál felosztja, hidaknál alattuk és felettük átvezeti, és kérésre kijavítja.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_network.py" />
+            <source>Warnings</source>
+            <translation>Figyelmeztetések</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_network.py" />
+            <source>{edges} edges, {nodes} nodes, {parts} parts, {repairs} repairs</source>
+            <translation>{edges} él, {nodes} csomópont, {parts} rész, {repairs} javítás</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_surfaces.py" />
+            <source>Area [m²]</source>
+            <translation>Terület [m²]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_surfaces.py" />
+            <source>Build road surfaces</source>
+            <translation>Útfelületek készítése</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_surfaces.py" />
+            <source>Classes that keep their ground where several are, the first before the second</source>
+            <translation>Osztályok, amelyek átfedésnél megtartják helyüket, az első a második előtt</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_surfaces.py" />
+            <source>Generated ones</source>
+            <translation>Ebből előállított</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_surfaces.py" />
+            <source>Road surfaces</source>
+            <translation>Útfelületek</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_surfaces.py" />
+            <source>Roads without a width</source>
+            <translation>Szélesség nélküli utak</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_surfaces.py" />
+            <source>Surfaces</source>
+            <translation>Felületek</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_surfaces.py" />
+            <source>Surfaces drawn by hand, which keep their ground</source>
+            <translation>Kézzel rajzolt felületek, amelyek megtartják helyüket</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_surfaces.py" />
+            <source>The width of this road is not known; {width:g} m is used.</source>
+            <translation>Ennek az útnak a szélessége nem ismert; {width:g} m lesz használva.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_surfaces.py" />
+            <source>Widens centrelines to surfaces, one for each class; surfaces drawn by hand keep their ground.</source>
+            <translation>Az úttengelyeket felületekké szélesíti, osztályonként eggyé; a kézzel rajzolt felületek megtartják helyüket.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_surfaces.py" />
+            <source>{old} of the surfaces that are given as drawn say that they were generated (field origin); they are left out and made anew</source>
+            <translation>{old} rajzoltként megadott felület azt mondja magáról, hogy előállított (origin mező); ezek kimaradnak és újra elkészülnek</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_surfaces.py" />
+            <source>{value}: {own:.1f} m²</source>
+            <translation>{value}: {own:.1f} m²</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/check_road_network.py" />
+            <source>Check road network</source>
+            <translation>Úthálózat ellenőrzése</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/check_road_network.py" />
+            <source>Dead ends</source>
+            <translation>Zsákutcák</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/check_road_network.py" />
+            <source>Edges without a way back</source>
+            <translation>Élek visszaút nélkül</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/check_road_network.py" />
+            <source>Findings</source>
+            <translation>Találatok</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/check_road_network.py" />
+            <source>Finds gaps, overshoots, duplicates, dead ends, separate parts and one-way traps in road centrelines.</source>
+            <translation>Hézagokat, túlnyúlásokat, kettőzéseket, zsákutcákat, különálló részeket és egyirányú csapdákat keres az úttengelyekben.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/check_road_network.py" />
+            <source>Gaps</source>
+            <translation>Hézagok</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/check_road_network.py" />
+            <source>Nothing is odd in this network.</source>
+            <translation>Ebben a hálózatban semmi sem furcsa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/check_road_network.py" />
+            <source>Overshoots</source>
+            <translation>Túlnyúlások</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/check_road_network.py" />
+            <source>Parts of their own</source>
+            <translation>Különálló részek</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/check_road_network.py" />
+            <source>Roads drawn twice</source>
+            <translation>Kétszer rajzolt utak</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/check_robot_map.py" />
+            <source>Check robot map</source>
+            <translation>Robottérkép ellenőrzése</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/check_robot_map.py" />
+            <source>Errors</source>
+            <translation>Hibák</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/check_robot_map.py" />
+            <source>Finds turned outlines, gaps, slivers, repeats, overlaps and unreachable pockets in a robot map.</source>
+            <translation>Megfordított körvonalakat, hézagokat, szilánkokat, ismétléseket, átfedéseket és elérhetetlen zugokat keres egy robottérképen.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/check_robot_map.py" />
+            <source>Longest gap that was not meant [m]</source>
+            <translation>A leghosszabb nem szándékos hézag [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/check_robot_map.py" />
+            <source>Narrowest ring that is an obstacle [m]</source>
+            <translation>A legkeskenyebb gyűrű, amely akadály [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/check_robot_map.py" />
+            <source>Nothing is odd in this map.</source>
+            <translation>Ezen a térképen semmi sem furcsa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/check_robot_map.py" />
+            <source>Smallest unreachable pocket [m²]</source>
+            <translation>A legkisebb elérhetetlen zug [m²]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/check_robot_map.py" />
+            <source>Width of the robot, for unreachable pockets [m]</source>
+            <translation>A robot szélessége, az elérhetetlen zugokhoz [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/check_robot_map.py" />
+            <source>Worth knowing</source>
+            <translation>Jó tudni</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_ground.py" />
+            <source>Classes of surface that are allowed, such as asphalt (default: all)</source>
+            <translation>Megengedett felületosztályok, például asphalt (alapértelmezés: mind)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_ground.py" />
+            <source>Distance between cones [m]</source>
+            <translation>Távolság a bóják között [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_ground.py" />
+            <source>Distance to obstacles [m]</source>
+            <translation>Távolság az akadályoktól [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_ground.py" />
+            <source>Layer {name}: {note}</source>
+            <translation>{name} réteg: {note}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_ground.py" />
+            <source>No layer of surfaces is given: whether the cones stand on the road is not checked.</source>
+            <translation>Nincs megadva felületréteg: nincs ellenőrizve, hogy a bóják az úton állnak-e.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_ground.py" />
+            <source>No surface is of class {classes}: the layers have {classes_there}.</source>
+            <translation>Nincs {classes} osztályú felület: a rétegekben ez van: {classes_there}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_ground.py" />
+            <source>Nothing is wrong with the places of the cones.</source>
+            <translation>A bóják helyével nincs baj.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_ground.py" />
+            <source>Obstacles to keep away from</source>
+            <translation>Elkerülendő akadályok</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_ground.py" />
+            <source>Surfaces to stand on (default: not checked)</source>
+            <translation>Felületek, amelyeken állniuk kell (alapértelmezés: nincs ellenőrizve)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_ground.py" />
+            <source>cannot be transformed into the site's CRS ({error})</source>
+            <translation>nem számítható át a telephely vetületébe ({error})</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_ground.py" />
+            <source>{name}, feature {id}</source>
+            <translation>{name}, {id}. elem</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layer.py" />
+            <source>Site CRS, in metres (default: the project's, else the line's or the layer's)</source>
+            <translation>A telephely vetülete méterben (alapértelmezés: a projekté, különben a vonalé vagy a rétegé)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layer.py" />
+            <source>The CRS of the site is not known: give SITE_CRS, such as EPSG:32633.</source>
+            <translation>A telephely vetülete nem ismert: adja meg a SITE_CRS-t, például EPSG:32633.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
+            <source>Against the direction of the line</source>
+            <translation>A vonal irányával szemben</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
+            <source>Begin so far along the line [m]</source>
+            <translation>Kezdés a vonal mentén ennyire [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
+            <source>Both POINT and LINE are</source>
+            <translation>POINT és LINE is meg van adva</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
+            <source>DIMENSIONS has {part!r}, which is not name=value with a number: write such as spacing=15.</source>
+            <translation>A DIMENSIONS része {part!r}, ami nem név=érték számmal: írja így: spacing=15.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
+            <source>Dimensions other than the standard's, as name=value; ...</source>
+            <translation>A szabványostól eltérő méretek, név=érték; ... alakban</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
+            <source>Heading, clockwise from north [degrees]</source>
+            <translation>Irány, északtól az óramutató járásával [fok]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
+            <source>Id of the line's feature (default: the only one)</source>
+            <translation>A vonal elemének azonosítója (alapértelmezés: az egyetlen)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
+            <source>Ids begin with (default: the layout)</source>
+            <translation>Az azonosítók eleje (alapértelmezés: az elrendezés)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
+            <source>Layout</source>
+            <translation>Elrendezés</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
+            <source>Line to lie along, instead of a place</source>
+            <translation>Vonal, amely mentén fekszik, hely helyett</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
+            <source>Neither POINT nor LINE is</source>
+            <translation>Sem POINT, sem LINE nincs megadva</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
+            <source>POINT or HEADING is not finite: give numbers.</source>
+            <translation>A POINT vagy a HEADING nem véges: adjon meg számokat.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
+            <source>Place of the layout's origin</source>
+            <translation>Az elrendezés kezdőpontjának helye</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
+            <source>Places a standard cone layout at a point and heading or along a line, and checks every cone.</source>
+            <translation>Szabványos bójaelrendezést helyez egy pontra és irányba vagy egy vonal mentén, és minden bóját ellenőriz.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
+            <source>The feature {id} of {sourcename} has {lines} lines: split it, or choose one that has one.</source>
+            <translation>A(z) {sourcename} {id}. eleme {lines} vonalból áll: ossza fel, vagy válasszon olyat, amely egyből áll.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
+            <source>The layer {sourcename} has {found}: choose one line by LINE_ID, or select it and tick 'Selected features only'.</source>
+            <translation>A(z) {sourcename} réteg: {found}. Válasszon egy vonalat a LINE_ID-vel, vagy jelölje ki, és kapcsolja be: „Csak a kijelölt elemek”.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
+            <source>The line cannot be transformed into the site's CRS ({error}).</source>
+            <translation>A vonal nem számítható át a telephely vetületébe ({error}).</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
+            <source>no feature {wanted}</source>
+            <translation>nincs benne {wanted}. elem</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
+            <source>not exactly one feature</source>
+            <translation>nem pontosan egy elem van benne</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
+            <source>{how} given: give the place of the layout, or a line that it lies along.</source>
+            <translation>{how}: adja meg az elrendezés helyét, vagy egy vonalat, amely mentén fekszik.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>Areas with a speed limit</source>
+            <translation>Sebességkorlátozott területek</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>Export navigation map</source>
+            <translation>Navigációs térkép exportálása</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>FORMATS has {format}, which needs {name}: give it, or leave {format} out.</source>
+            <translation>A FORMATS-ban {format} szerepel, amelyhez {name} kell: adja meg, vagy hagyja el: {format}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>FORMATS is {formats}: choose of {known}.</source>
+            <translation>FORMATS értéke {formats}: válasszon ezekből: {known}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>File of format {name}</source>
+            <translation>{name} formátumú fájl</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>Files</source>
+            <translation>Fájlok</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>Folder</source>
+            <translation>Mappa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>Formats</source>
+            <translation>Formátumok</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>Inside of obstacles in the occupancy grid</source>
+            <translation>Az akadályok belseje a foglaltsági rácson</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>Keepout areas</source>
+            <translation>Tiltott területek</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>Making {format}</source>
+            <translation>{format} készítése</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>NAME {name!r} is no file's name: leave out folders and leading dots.</source>
+            <translation>A NAME értéke, {name!r}, nem fájlnév: hagyja el a mappákat és a kezdő pontokat.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>Name of the files (default: the robot map's)</source>
+            <translation>A fájlok neve (alapértelmezés: a robottérképé)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>Robots drive over what is lower than [m]</source>
+            <translation>A robotok áthajtanak azon, ami ennél alacsonyabb [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>Side of a cell of grid and masks [m]</source>
+            <translation>A rács és a maszkok cellájának oldala [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>Speed limit of each area [m/s]</source>
+            <translation>Az egyes területek sebességkorlátja [m/s]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>The coordinates of the keepout and speed layers are taken as the map's own metres.</source>
+            <translation>A tiltott és sebességkorlátozott rétegek koordinátái a térkép saját métereiként értendők.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>The folder {folder} cannot be made: {reason}. Choose another OUTPUT.</source>
+            <translation>A(z) {folder} mappa nem hozható létre: {reason}. Válasszon másik OUTPUT-ot.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>Writes a robot map as Nav2 occupancy grid and masks, GeoJSON, GeoPackage, SVG or PNG.</source>
+            <translation>Robottérképet ír ki Nav2 foglaltsági rácsként és maszkokként, GeoJSON, GeoPackage, SVG vagy PNG alakban.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>above 0, such as 0.05</source>
+            <translation>0-nál nagyobb, például 0.05</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>of 0 or more</source>
+            <translation>0 vagy nagyobb</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>{name} is {value}: give a number of metres {wanted}.</source>
+            <translation>{name} értéke {value}: adjon meg méterben egy számot, amely {wanted}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>{parameter} {layer} cannot be opened: check the file and the layer's name.</source>
+            <translation>{parameter}: {layer} nem nyitható meg: ellenőrizze a fájlt és a réteg nevét.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>{target} is the robot map itself: choose another NAME or OUTPUT.</source>
+            <translation>{target} maga a robottérkép: válasszon másik NAME vagy OUTPUT értéket.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>{target}: {content} bytes</source>
+            <translation>{target}: {content} bájt</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_plan.py" />
+            <source>DEFAULT_HEIGHT is {height}: give a number of metres of 0 or more.</source>
+            <translation>DEFAULT_HEIGHT értéke {height}: adjon meg 0 vagy több métert.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_plan.py" />
+            <source>OUTPUT {target} is the file of the layer {layer}: choose another one.</source>
+            <translation>OUTPUT {target} a(z) {layer} réteg fájlja: válasszon másikat.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_plan.py" />
+            <source>SITE_CRS {crs} is no CRS that QGIS knows: write a code such as EPSG:32633.</source>
+            <translation>SITE_CRS {crs} nem a QGIS által ismert vetület: írjon olyan kódot, mint EPSG:32633.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_plan.py" />
+            <source>The layer {layer} is no vector layer: leave it out.</source>
+            <translation>A(z) {layer} réteg nem vektorréteg: hagyja ki.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_plan.py" />
+            <source>The obstacle layer {layer} cannot be opened: check the file, and the layer's name after '|layername='.</source>
+            <translation>A(z) {layer} akadályréteg nem nyitható meg: ellenőrizze a fájlt és a réteg nevét a '|layername=' után.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map.py" />
+            <source>Compactness [bytes/m²]</source>
+            <translation>Tömörség [bájt/m²]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map.py" />
+            <source>Export robot map</source>
+            <translation>Robottérkép exportálása</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map.py" />
+            <source>Height of each feature [m] (default: its field height)</source>
+            <translation>Az egyes elemek magassága [m] (alapértelmezés: a height mező)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map.py" />
+            <source>Height where none is known, marked as estimated [m]</source>
+            <translation>Magasság, ahol nem ismert, becsültként jelölve [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map.py" />
+            <source>Label of each feature (default: the layer's name)</source>
+            <translation>Az egyes elemek címkéje (alapértelmezés: a réteg neve)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map.py" />
+            <source>Obstacle layers</source>
+            <translation>Akadályrétegek</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map.py" />
+            <source>Obstacles</source>
+            <translation>Akadályok</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map.py" />
+            <source>Robot map</source>
+            <translation>Robottérkép</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map.py" />
+            <source>Robot map, text (*.txt);;Robot map, binary (*.rmap)</source>
+            <translation>Robottérkép, szöveg (*.txt);;Robottérkép, bináris (*.rmap)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map.py" />
+            <source>Segments</source>
+            <translation>Szakaszok</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map.py" />
+            <source>Size of the file [bytes]</source>
+            <translation>A fájl mérete [bájt]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map.py" />
+            <source>Such as "clearance" of arches, or 2.2 for signs; the height of a feature counts from there. The upper height of the robot's plane leaves out what begins above it.</source>
+            <translation>Például ívek "clearance" mezője, vagy tábláknál 2.2; az elem magassága onnan számít. A robot síkjának felső magassága kihagyja, ami felette kezdődik.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map.py" />
+            <source>There is no obstacle in the window: check its place and the site CRS.</source>
+            <translation>Nincs akadály az ablakban: ellenőrizze a helyét és a telephely vetületét.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map.py" />
+            <source>Where each feature begins above the ground [m] (default: on it)</source>
+            <translation>Hol kezdődik az egyes elem a talaj felett [m] (alapértelmezés: a talajon)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map.py" />
+            <source>Whether each feature is outdoors (default: true)</source>
+            <translation>Szabadban van-e az egyes elem (alapértelmezés: igaz)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map.py" />
+            <source>Window {width:g} m x {height:g} m = {area:.0f} m², from ({x_min:.2f}, {y_min:.2f}) to ({x_max:.2f}, {y_max:.2f}) in the site frame</source>
+            <translation>Ablak {width:g} m x {height:g} m = {area:.0f} m², ettől: ({x_min:.2f}, {y_min:.2f}), eddig: ({x_max:.2f}, {y_max:.2f}) a telephelyi keretben</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map.py" />
+            <source>Writes the obstacles of line and polygon layers inside a window as a map that robots read.</source>
+            <translation>Vonal- és poligonrétegek akadályait írja ki egy ablakon belül robotok által olvasott térképként.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map.py" />
+            <source>{obstacles} obstacles, {segment_count} segments</source>
+            <translation>{obstacles} akadály, {segment_count} szakasz</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map.py" />
+            <source>{size} bytes in binary, {ratio:.2f} bytes/m²</source>
+            <translation>{size} bájt binárisan, {ratio:.2f} bájt/m²</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map.py" />
+            <source>{size} bytes of text, {ratio:.2f} bytes/m² (paper 1: about 3 bytes/m² as text)</source>
+            <translation>{size} bájt szöveg, {ratio:.2f} bájt/m² (1. cikk: szövegként mintegy 3 bájt/m²)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map_tiles.py" />
+            <source>Export robot map tiles</source>
+            <translation>Robottérkép-csempék exportálása</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map_tiles.py" />
+            <source>Extent of a grid (or choose a route)</source>
+            <translation>A rács kiterjedése (vagy válasszon útvonalat)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map_tiles.py" />
+            <source>Folder of the tiles</source>
+            <translation>A csempék mappája</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map_tiles.py" />
+            <source>Height of a tile, along y [m]</source>
+            <translation>Egy csempe magassága y mentén [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map_tiles.py" />
+            <source>Index of the tiles</source>
+            <translation>A csempék mutatója</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map_tiles.py" />
+            <source>Leave out tiles without obstacles</source>
+            <translation>Akadály nélküli csempék kihagyása</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map_tiles.py" />
+            <source>Obstacles in all tiles</source>
+            <translation>Akadályok az összes csempén</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map_tiles.py" />
+            <source>Route, instead of a grid</source>
+            <translation>Útvonal, rács helyett</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map_tiles.py" />
+            <source>Segments in all tiles</source>
+            <translation>Szakaszok az összes csempén</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map_tiles.py" />
+            <source>Size of all tiles [bytes]</source>
+            <translation>Az összes csempe mérete [bájt]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map_tiles.py" />
+            <source>There is no obstacle in any tile: check their place and the site CRS.</source>
+            <translation>Egyik csempén sincs akadály: ellenőrizze a helyüket és a telephely vetületét.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map_tiles.py" />
+            <source>Tiles</source>
+            <translation>Csempék</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map_tiles.py" />
+            <source>What neighbouring tiles share [m]</source>
+            <translation>A szomszédos csempék közös része [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map_tiles.py" />
+            <source>Width of a tile, along x [m]</source>
+            <translation>Egy csempe szélessége x mentén [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map_tiles.py" />
+            <source>Writes many robot maps, in a grid or along a route, and a layer that tells which is where.</source>
+            <translation>Sok robottérképet ír ki rácsban vagy útvonal mentén, és egy réteget, amely megmondja, melyik hol van.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map_tiles.py" />
+            <source>{rows} tiles, {segments} segments, {size} bytes</source>
+            <translation>{rows} csempe, {segments} szakasz, {size} bájt</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>Corners tighter than the robot turns</source>
+            <translation>A robot fordulásánál élesebb sarkok</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>Engine</source>
+            <translation>Motor</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>Engine that was used</source>
+            <translation>Használt motor</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>Finds the shortest or fastest way along road centrelines, and the path that a robot drives.</source>
+            <translation>Megkeresi a legrövidebb vagy leggyorsabb utat az úttengelyek mentén, és a pályát, amelyen a robot halad.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>Goal</source>
+            <translation>Végpont</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>Length of the route [m]</source>
+            <translation>Az útvonal hossza [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>Path</source>
+            <translation>Pálya</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>Points of the path</source>
+            <translation>A pálya pontjai</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>Points of the path at most this far apart [m]</source>
+            <translation>A pálya pontjai legfeljebb ilyen távol egymástól [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>Roads at least this wide [m]</source>
+            <translation>Legalább ilyen széles utak [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>Route</source>
+            <translation>Útvonal</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>Start</source>
+            <translation>Kiindulás</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>Start and goal at most this far from a road [m]</source>
+            <translation>A kiindulás és a végpont legfeljebb ilyen messze az úttól [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>Surfaces that may be used (default: all)</source>
+            <translation>Használható felületek (alapértelmezés: mind)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>The corner at ({x:.2f}, {y:.2f}) is tighter than the robot turns.</source>
+            <translation>A ({x:.2f}, {y:.2f}) ponton lévő sarok élesebb, mint ahogy a robot fordul.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>Time on the route [s]</source>
+            <translation>Idő az útvonalon [s]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>Turning radius of the robot [m]</source>
+            <translation>A robot fordulási sugara [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>Way</source>
+            <translation>Út</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>Width of the robot [m]</source>
+            <translation>A robot szélessége [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>{closed} edges lead through areas to be avoided, and are closed</source>
+            <translation>{closed} él elkerülendő területen vezet át, ezek le vannak zárva</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>{metres:.1f} m, {seconds:.1f} s, {points} points, found by {engine}; start {off_start:.2f} m and goal {off_goal:.2f} m from the road</source>
+            <translation>{metres:.1f} m, {seconds:.1f} s, {points} pont, megtalálta: {engine}; a kiindulás {off_start:.2f} m-re, a végpont {off_goal:.2f} m-re van az úttól</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/fleet_algorithm.py" />
+            <source>Robot maps</source>
+            <translation>Robottérképek</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>Both FILE and INPUT are</source>
+            <translation>FILE és INPUT is meg van adva</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>CSV file</source>
+            <translation>CSV-fájl</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>Column of colours</source>
+            <translation>A színek oszlopa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>Column of headings, clockwise from the y axis [degrees]</source>
+            <translation>Az irányok oszlopa, az y tengelytől az óramutató járásával [fok]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>Column of ids</source>
+            <translation>Az azonosítók oszlopa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>Column of roles</source>
+            <translation>A szerepek oszlopa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>Column of the order of placing</source>
+            <translation>A kihelyezési sorrend oszlopa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>Column of x [m]</source>
+            <translation>x oszlopa [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>Column of y [m]</source>
+            <translation>y oszlopa [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>Column that names the layout of each row</source>
+            <translation>Az egyes sorok elrendezését megnevező oszlop</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>Feature {id} of {sourcename} is not one point with a place in the site's CRS: correct it or leave it out.</source>
+            <translation>A(z) {sourcename} {id}. eleme nem egyetlen pont, amelynek helye van a telephely vetületében: javítsa ki, vagy hagyja ki.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>Import cone layout</source>
+            <translation>Bójaelrendezés importálása</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>Layer, instead of a file</source>
+            <translation>Réteg, fájl helyett</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>Name (default: the layout's, else the file's)</source>
+            <translation>Név (alapértelmezés: az elrendezésé, különben a fájlé)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>Neither FILE nor INPUT is</source>
+            <translation>Sem FILE, sem INPUT nincs megadva</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>ORIGIN is not given: say where the table's 0,0 goes.</source>
+            <translation>ORIGIN nincs megadva: mondja meg, hová kerül a táblázat 0,0 pontja.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>Places the cones of a CSV file or a layer, turned and moved to their place, and checks them.</source>
+            <translation>Egy CSV-fájl vagy réteg bójáit helyére forgatja és tolja, és ellenőrzi őket.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>Rotation, counter-clockwise [degrees]</source>
+            <translation>Elforgatás, az óramutató járásával ellentétesen [fok]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>The one layout to take, by that column</source>
+            <translation>Az egyetlen átveendő elrendezés, ezen oszlop szerint</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>Where the table's 0,0 goes</source>
+            <translation>Hová kerül a táblázat 0,0 pontja</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>{how} given: give a CSV file, or a layer.</source>
+            <translation>{how}: adjon meg egy CSV-fájlt vagy egy réteget.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_source.py" />
+            <source>Cones that a robot carries (default of field capacity)</source>
+            <translation>Bóják, amennyit egy robot visz (alapértelmezése a capacity mezőnek)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_source.py" />
+            <source>Field of the stage: cones of lower ones come first</source>
+            <translation>A szakasz mezője: az alacsonyabb bóják jönnek előbb</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_source.py" />
+            <source>Metres that a robot's battery lasts, 0 for any (default of field range_m)</source>
+            <translation>Ahány méterre elég a robot akkumulátora, 0: bármennyire (alapértelmezése a range_m mezőnek)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_source.py" />
+            <source>Robots, where they are</source>
+            <translation>Robotok, ahol vannak</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_source.py" />
+            <source>Seconds of a visit to a store (default of its field service_s)</source>
+            <translation>Egy raktári megállás másodpercei (alapértelmezése a service_s mezőnek)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_source.py" />
+            <source>Seconds to place or collect a cone (default of field service_s)</source>
+            <translation>Egy bója kihelyezésének vagy begyűjtésének másodpercei (alapértelmezése a service_s mezőnek)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_source.py" />
+            <source>Speed of a robot [m/s] (default of field speed)</source>
+            <translation>A robot sebessége [m/s] (alapértelmezése a speed mezőnek)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_source.py" />
+            <source>Stores of cones</source>
+            <translation>Bójaraktárak</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_source.py" />
+            <source>What is done with cones (default of field task)</source>
+            <translation>Mi történik a bójákkal (alapértelmezése a task mezőnek)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_source.py" />
+            <source>Where robots go at the end</source>
+            <translation>Hová mennek a robotok a végén</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_source.py" />
+            <source>{layer} is not one point with a place in {authid}: correct it.</source>
+            <translation>{layer} nem egyetlen pont, amelynek helye van itt: {authid}. Javítsa ki.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_source.py" />
+            <source>{layer}: {field} is {value!r}, which is no number; correct it.</source>
+            <translation>{layer}: {field} értéke {value!r}, ami nem szám; javítsa ki.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_source.py" />
+            <source>{layer}: {field} is {value:g}; give a whole number.</source>
+            <translation>{layer}: {field} értéke {value:g}; adjon meg egész számot.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_source.py" />
+            <source>{name} {given} cannot be opened: check the file and the layer's name.</source>
+            <translation>{name}: {given} nem nyitható meg: ellenőrizze a fájlt és a réteg nevét.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_source.py" />
+            <source>{sourcename}, feature {id}</source>
+            <translation>{sourcename}, {id}. elem</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_travel.py" />
+            <source>Areas that no road leads through</source>
+            <translation>Területek, amelyeken nem vezet át út</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_travel.py" />
+            <source>Cones, robots and stores at most this far from a road [m]</source>
+            <translation>Bóják, robotok és raktárak legfeljebb ilyen messze az úttól [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_travel.py" />
+            <source>No roads are given: distances and paths are straight lines.</source>
+            <translation>Nincsenek megadva utak: a távolságok és pályák egyenes vonalak.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_travel.py" />
+            <source>Points of the paths at most this far apart [m]</source>
+            <translation>A pályák pontjai legfeljebb ilyen távol egymástól [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_travel.py" />
+            <source>Road centrelines (default: straight lines)</source>
+            <translation>Úttengelyek (alapértelmezés: egyenes vonalak)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_travel.py" />
+            <source>SITE_CRS {given} is no CRS that QGIS knows: write a code such as EPSG:32633.</source>
+            <translation>SITE_CRS {given} nem a QGIS által ismert vetület: írjon olyan kódot, mint EPSG:32633.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_travel.py" />
+            <source>The CRS of the cones is not known: give SITE_CRS, such as EPSG:32633.</source>
+            <translation>A bóják vetülete nem ismert: adja meg a SITE_CRS-t, például EPSG:32633.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_travel.py" />
+            <source>Turning radius of the robots [m]</source>
+            <translation>A robotok fordulási sugara [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_travel.py" />
+            <source>Width of the robots [m]</source>
+            <translation>A robotok szélessége [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/job_travel.py" />
+            <source>{closed} edges lead through keepouts and are not used</source>
+            <translation>{closed} él tiltott területen vezet át, ezek nincsenek használva</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/keepout_areas.py" />
+            <source>Areas that must not be driven through</source>
+            <translation>Területek, amelyeken nem szabad áthajtani</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/load_robot_map.py" />
+            <source>Border of the map</source>
+            <translation>A térkép határa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/load_robot_map.py" />
+            <source>Load robot map</source>
+            <translation>Robottérkép betöltése</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/load_robot_map.py" />
+            <source>Obstacles that are areas</source>
+            <translation>Akadályok, amelyek területek</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/load_robot_map.py" />
+            <source>Obstacles that are lines</source>
+            <translation>Akadályok, amelyek vonalak</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/load_robot_map.py" />
+            <source>Turns a robot map, text or binary, into layers with all that the map says.</source>
+            <translation>Szöveges vagy bináris robottérképet alakít rétegekké mindazzal, amit a térkép mond.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_file.py" />
+            <source>ORIGIN {origin} or ROTATION {rotation} is not finite: give numbers.</source>
+            <translation>ORIGIN {origin} vagy ROTATION {rotation} nem véges: adjon meg számokat.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_file.py" />
+            <source>Origin of the site frame in it (default: as the map says, else 0,0)</source>
+            <translation>A telephelyi keret kezdőpontja benne (alapértelmezés: ahogy a térkép mondja, különben 0,0)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_file.py" />
+            <source>Robot map, text or binary</source>
+            <translation>Robottérkép, szöveg vagy bináris</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_file.py" />
+            <source>Robot maps (*.txt *.map *.rmap *.bin);;All files (*)</source>
+            <translation>Robottérképek (*.txt *.map *.rmap *.bin);;Minden fájl (*)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_file.py" />
+            <source>Rotation of the site frame, counter-clockwise [degrees] (default: as the map says, else 0)</source>
+            <translation>A telephelyi keret elforgatása, az óramutató járásával ellentétesen [fok] (alapértelmezés: ahogy a térkép mondja, különben 0)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_file.py" />
+            <source>Site CRS (default: as the map says)</source>
+            <translation>A telephely vetülete (alapértelmezés: ahogy a térkép mondja)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_file.py" />
+            <source>The file {path} has {size} bytes, and a robot map at most {largest_text}: choose a map.</source>
+            <translation>A(z) {path} fájl {size} bájtos, egy robottérkép legfeljebb {largest_text}: válasszon térképet.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_file.py" />
+            <source>The file {path} is no robot map: it is neither UTF-8 (byte {start}) nor in the binary format, which begins with {decode}. Choose another file.</source>
+            <translation>A(z) {path} fájl nem robottérkép: se nem UTF-8 ({start}. bájt), se nem az a bináris formátum, amely így kezdődik: {decode}. Válasszon másik fájlt.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_file.py" />
+            <source>The leading line '%{key} {meta}' of the map should hold {wanted}: correct it there, or give {upper}.</source>
+            <translation>A térkép '%{key} {meta}' bevezető sorában ennek kell állnia: {wanted}. Javítsa ki ott, vagy adja meg: {upper}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_file.py" />
+            <source>The map's place is not known, because {why}: its layers are in local metres. Give SITE_CRS, ORIGIN and ROTATION to place it.</source>
+            <translation>A térkép helye nem ismert, mert {why}: rétegei helyi méterben vannak. A helyéhez adja meg: SITE_CRS, ORIGIN és ROTATION.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_file.py" />
+            <source>The robot map {path} cannot be read: {error}</source>
+            <translation>A(z) {path} robottérkép nem olvasható: {error}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_file.py" />
+            <source>The robot map {path} cannot be read: {reason}. Check its rights.</source>
+            <translation>A(z) {path} robottérkép nem olvasható: {reason}. Ellenőrizze a jogait.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_file.py" />
+            <source>There is no file {file}: choose a robot map (MAP).</source>
+            <translation>Nincs ilyen fájl: {file}. Válasszon egy robottérképet (MAP).</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_file.py" />
+            <source>a number</source>
+            <translation>egy szám</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_file.py" />
+            <source>it names no CRS</source>
+            <translation>nem nevez meg vetületet</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_file.py" />
+            <source>the CRS {stated!r} that the map names is not known to QGIS</source>
+            <translation>a térkép által megnevezett {stated!r} vetületet a QGIS nem ismeri</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_file.py" />
+            <source>two numbers 'x,y'</source>
+            <translation>két szám, 'x,y'</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_format.py" />
+            <source>Format (compact: binary in columns, about a third of binary)</source>
+            <translation>Formátum (compact: bináris oszlopokban, a bináris mintegy harmada)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_format.py" />
+            <source>Only what the paper's Fig. 2 has: no leading lines, no extras</source>
+            <translation>Csak ami a cikk 2. ábráján van: bevezető sorok és kiegészítések nélkül</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_format.py" />
+            <source>text: lines that people and scripts read. binary: that text compressed, with a check sum. compact: the same map in columns of centimetres, also with a check sum (codec 2).</source>
+            <translation>text: sorok, amelyeket emberek és szkriptek olvasnak. binary: ez a szöveg tömörítve, ellenőrző összeggel. compact: ugyanaz a térkép centiméterek oszlopaiban, szintén ellenőrző összeggel (2. kodek).</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_place.py" />
+            <source>GeoJSON needs longitudes and latitudes, and the map's place is not known: give SITE_CRS, ORIGIN and ROTATION, or choose geopackage, which keeps the site's metres.</source>
+            <translation>A GeoJSON-hoz hosszúság és szélesség kell, és a térkép helye nem ismert: adja meg a SITE_CRS, ORIGIN és ROTATION értékét, vagy válassza a geopackage-et, amely a telephely métereit megtartja.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_place.py" />
+            <source>The map's positions cannot be transformed from {authid} to longitudes and latitudes ({error}): check the map's lines crs, origin and rotation.</source>
+            <translation>A térkép helyzetei nem számíthatók át innen: {authid}, hosszúságra és szélességre ({error}): ellenőrizze a térkép crs, origin és rotation sorát.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_profile.py" />
+            <source>Map profile ({kinds});;All files (*)</source>
+            <translation>Térképprofil ({kinds});;Minden fájl (*)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_profile.py" />
+            <source>Map profile: what the layers are, by their names (default: as each layer keeps it)</source>
+            <translation>Térképprofil: mik a rétegek a nevük szerint (alapértelmezés: ahogy az egyes rétegek tárolják)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_shaping.py" />
+            <source>0 is off. An outline that would cross itself stays as it is. Needs the Python package shapely 2.</source>
+            <translation>0: kikapcsolva. Amelyik körvonal önmagát metszené, az marad, ahogy van. A shapely 2 Python-csomag kell hozzá.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_shaping.py" />
+            <source>0 is off. Ends of lines stay and rings keep three corners. Needs the Python package shapely 2.</source>
+            <translation>0: kikapcsolva. A vonalak végei maradnak, és a gyűrűk három sarkot megtartanak. A shapely 2 Python-csomag kell hozzá.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_shaping.py" />
+            <source>0 is off. Half a metre makes a compact map smaller still, and no obstacle lower than it is.</source>
+            <translation>0: kikapcsolva. A fél méter tovább csökkenti a tömör térképet, és egyetlen akadályt sem tesz alacsonyabbá.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_shaping.py" />
+            <source>DISSOLVE, TOLERANCE and SHORTEST need the Python package shapely 2, and {version} is installed here: install a newer one (python3 -m pip install 'shapely&gt;=2'), or leave them off.</source>
+            <translation>A DISSOLVE, TOLERANCE és SHORTEST értékhez a shapely 2 Python-csomag kell, és itt {version} van telepítve: telepítsen újabbat (python3 -m pip install 'shapely&gt;=2'), vagy hagyja őket kikapcsolva.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_shaping.py" />
+            <source>Fewer corners: how far an outline may then be from the drawn one [m]</source>
+            <translation>Kevesebb sarok: milyen messze lehet így egy körvonal a rajzolttól [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_shaping.py" />
+            <source>Heights are rounded up to a multiple of this [m]</source>
+            <translation>A magasságok felkerekítése ennek többszörösére [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_shaping.py" />
+            <source>Join lines that meet end to end into one obstacle</source>
+            <translation>Végpontjaikon találkozó vonalak egyesítése egy akadállyá</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_shaping.py" />
+            <source>Leave out walls between buildings that touch and lines inside or along buildings</source>
+            <translation>Érintkező épületek közti falak, valamint épületekben vagy mentén lévő vonalak kihagyása</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_shaping.py" />
+            <source>No robot outside can meet them. What stays keeps its height and its source. Needs the Python package shapely 2.</source>
+            <translation>Kint lévő robot nem találkozhat velük. Ami marad, megtartja magasságát és forrását. A shapely 2 Python-csomag kell hozzá.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_shaping.py" />
+            <source>Only lines that are alike in height, label and all else. The source of a joined line is that of its first part and how many others are in it, such as walls:3+7.</source>
+            <translation>Csak olyan vonalak, amelyek magassága, címkéje és minden más azonos. Az egyesített vonal forrása az első részé és hogy hány másik van benne, például walls:3+7.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_shaping.py" />
+            <source>PLANE_LOW is {low:g} and PLANE_HIGH {high:g}: give the lower and the upper height in metres.</source>
+            <translation>PLANE_LOW értéke {low:g}, PLANE_HIGH értéke {high:g}: adja meg az alsó és a felső magasságot méterben.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_shaping.py" />
+            <source>Robot's plane: from this height above the ground [m]</source>
+            <translation>A robot síkja: ettől a talaj feletti magasságtól [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_shaping.py" />
+            <source>Robot's plane: up to this height above the ground [m]</source>
+            <translation>A robot síkja: eddig a talaj feletti magasságig [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_shaping.py" />
+            <source>Shortest segment: corners nearer than this to the one before are left out [m]</source>
+            <translation>Legrövidebb szakasz: az előzőhöz ennél közelebbi sarkok kimaradnak [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_shaping.py" />
+            <source>What begins at this height or above it is left out: the robot drives under it. Where things begin is said by the layers or by the parameter BASE_EXPRESSION.</source>
+            <translation>Ami ezen a magasságon vagy felette kezdődik, kimarad: a robot áthajt alatta. Hogy mi hol kezdődik, a rétegek vagy a BASE_EXPRESSION paraméter mondja meg.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_shaping.py" />
+            <source>What is not higher than this is left out: the robot drives over it. Stairs and ramps stay. Give the lower and the upper height together, or neither.</source>
+            <translation>Ami ennél nem magasabb, kimarad: a robot áthajt rajta. Lépcsők és rámpák maradnak. Az alsó és felső magasságot együtt adja meg, vagy egyiket se.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_shaping.py" />
+            <source>{name} is {value:g}: give a number of metres of 0 or more.</source>
+            <translation>{name} értéke {value:g}: adjon meg 0 vagy több métert.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_shaping.py" />
+            <source>{other} is given and {missing} is not: give both heights in metres, or none.</source>
+            <translation>{other} meg van adva, {missing} nincs: adja meg mindkét magasságot méterben, vagy egyiket se.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_window.py" />
+            <source>Both CENTER and EXTENT are given: give one of them, the window cannot be both.</source>
+            <translation>CENTER és EXTENT is meg van adva: adja meg az egyiket, az ablak nem lehet mindkettő.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_window.py" />
+            <source>Centre of the window (or choose an extent)</source>
+            <translation>Az ablak közepe (vagy válasszon kiterjedést)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_window.py" />
+            <source>EXTENT {extent} is no extent: write 'xmin,xmax,ymin,ymax'.</source>
+            <translation>EXTENT {extent} nem kiterjedés: írja így: 'xmin,xmax,ymin,ymax'.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_window.py" />
+            <source>Extent (instead of centre, width and height)</source>
+            <translation>Kiterjedés (közép, szélesség és magasság helyett)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_window.py" />
+            <source>Height of the window, along y [m]</source>
+            <translation>Az ablak magassága y mentén [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_window.py" />
+            <source>Layers without a CRS are already in the site frame's metres</source>
+            <translation>A vetület nélküli rétegek már a telephelyi keret métereiben vannak</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_window.py" />
+            <source>Neither CENTER nor EXTENT is given: give the centre of the window with WIDTH and HEIGHT in metres, or an extent.</source>
+            <translation>Sem CENTER, sem EXTENT nincs megadva: adja meg az ablak közepét a WIDTH és HEIGHT méterben megadott értékével, vagy egy kiterjedést.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_window.py" />
+            <source>ORIGIN {origin} or ROTATION {degrees} is not finite: give numbers.</source>
+            <translation>ORIGIN {origin} vagy ROTATION {degrees} nem véges: adjon meg számokat.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_window.py" />
+            <source>Origin of the site frame (default: as the project has it, else 0,0)</source>
+            <translation>A telephelyi keret kezdőpontja (alapértelmezés: a projekté, különben 0,0)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_window.py" />
+            <source>Rotation of the site frame, counter-clockwise from the CRS's x axis [degrees]</source>
+            <translation>A telephelyi keret elforgatása a vetület x tengelyétől, az óramutató járásával ellentétesen [fok]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_window.py" />
+            <source>Site CRS, in metres (default: the project's, else the layers')</source>
+            <translation>A telephely vetülete méterben (alapértelmezés: a projekté, különben a rétegeké)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_window.py" />
+            <source>Width of the window, along x [m]</source>
+            <translation>Az ablak szélessége x mentén [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_window.py" />
+            <source>{side} is {length}: give a finite number of metres.</source>
+            <translation>{side} értéke {length}: adjon meg véges számú métert.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/mask_areas.py" />
+            <source>Layer {sourcename}, feature {id}</source>
+            <translation>{sourcename} réteg, {id}. elem</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/mask_areas.py" />
+            <source>SPEED {text!r} is no expression ({reason}): write a field's name or a number.</source>
+            <translation>SPEED {text!r} nem kifejezés ({reason}): írjon mezőnevet vagy számot.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/mask_areas.py" />
+            <source>cannot be transformed into the site's CRS ({error}); it is left out</source>
+            <translation>nem számítható át a telephely vetületébe ({error}); kimarad</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/mask_areas.py" />
+            <source>has no geometry; it is left out</source>
+            <translation>nincs geometriája; kimarad</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/mask_areas.py" />
+            <source>{name}: it has no speed above 0 m/s, so it sets no limit; it is left out</source>
+            <translation>{name}: nincs 0 m/s feletti sebessége, így nem korlátoz; kimarad</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/obstacle_outlines.py" />
+            <source>Reducing obstacles</source>
+            <translation>Akadályok egyszerűsítése</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/obstacle_outlines.py" />
+            <source>{obstacles} obstacles with {segments} segments became {obstacles_left} with {segments_left}</source>
+            <translation>{obstacles} akadályból {segments} szakasszal {obstacles_left} lett {segments_left} szakasszal</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/plan_rows.py" />
+            <source>Metres of all robots</source>
+            <translation>Az összes robot méterei</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/plan_rows.py" />
+            <source>Robots that drive</source>
+            <translation>Robotok, amelyek mennek</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/plan_rows.py" />
+            <source>Seconds until the last cone is done</source>
+            <translation>Másodpercek, amíg az utolsó bója kész</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/plan_rows.py" />
+            <source>Seconds until the last robot has finished</source>
+            <translation>Másodpercek, amíg az utolsó robot végez</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/plan_rows.py" />
+            <source>Trips</source>
+            <translation>Körök</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_plan.py" />
+            <source>BOUNDS {bounds} is no extent: write 'xmin,xmax,ymin,ymax'.</source>
+            <translation>BOUNDS {bounds} nem kiterjedés: írja így: 'xmin,xmax,ymin,ymax'.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_plan.py" />
+            <source>SITE_ID is empty and the project has no variable {site_variable}: give the site an id of letters, digits, '_', '.' and '-', such as north_yard.</source>
+            <translation>SITE_ID üres, és a projektnek nincs {site_variable} változója: adjon a telephelynek betűkből, számjegyekből és '_', '.', '-' jelekből álló azonosítót, például north_yard.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_plan.py" />
+            <source>The layer {layer} is no vector layer: take its role away.</source>
+            <translation>A(z) {layer} réteg nem vektorréteg: vegye el a szerepét.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_plan.py" />
+            <source>The site's CRS is not known, and</source>
+            <translation>A telephely vetülete nem ismert, és</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_plan.py" />
+            <source>The site's CRS, {crs_name},</source>
+            <translation>A telephely vetületének ({crs_name})</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_plan.py" />
+            <source>There is nothing to publish: no layer is given and no layer of the project has a role. Give roles (Fleet Supervisor &gt; Layer roles), a PROFILE, or layers.</source>
+            <translation>Nincs mit közzétenni: nincs megadva réteg, és a projekt egyik rétegének sincs szerepe. Adjon szerepeket (Fleet Supervisor &gt; Rétegszerepek), egy PROFILE-t, vagy rétegeket.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_plan.py" />
+            <source>{named} has no code that a gateway knows it by: choose SITE_CRS such as EPSG:32633. Layers in local metres can be published with ORIGIN and LOCAL=true.</source>
+            <translation>{named} nincs kódja, amelyről egy átjáró felismerné: válasszon SITE_CRS-t, például EPSG:32633. Helyi méterben lévő rétegek az ORIGIN értékével és LOCAL=true-val tehetők közzé.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_plan.py" />
+            <source>{name} is {value}: give a number of metres above 0.</source>
+            <translation>{name} értéke {value}: adjon meg 0-nál több métert.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_plan.py" />
+            <source>{name}: the layer {layer} cannot be opened: check the file, and the layer's name after '|layername='.</source>
+            <translation>{name}: a(z) {layer} réteg nem nyitható meg: ellenőrizze a fájlt és a réteg nevét a '|layername=' után.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_plan.py" />
+            <source>{place} = {text} is no number: correct it there.</source>
+            <translation>{place} = {text} nem szám: javítsa ki ott.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>A robot is lost without a message for [s]</source>
+            <translation>A robot elveszett, ha ennyi ideje nincs üzenete [s]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>A robot is stale without a message for [s]</source>
+            <translation>A robot elavult, ha ennyi ideje nincs üzenete [s]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>A target is reached within [m]</source>
+            <translation>A cél elérve ezen belül [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>Folder of the published site</source>
+            <translation>A közzétett telephely mappája</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>Height where none is known [m]</source>
+            <translation>Magasság, ahol nem ismert [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>Id of the site</source>
+            <translation>A telephely azonosítója</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>Keepout layers (default: the project's with that role)</source>
+            <translation>Tiltott területek rétegei (alapértelmezés: a projekt ilyen szerepű rétegei)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>Keepouts</source>
+            <translation>Tiltott területek</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>Obstacle layers, stairs, ramps and furniture (default: the project's with such a role)</source>
+            <translation>Akadály-, lépcső-, rámpa- és berendezésrétegek (alapértelmezés: a projekt ilyen szerepű rétegei)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>Obstacle outlines</source>
+            <translation>Akadálykörvonalak</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>Publish site</source>
+            <translation>Telephely közzététele</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>Replace the publication of another site</source>
+            <translation>Másik telephely közzétételének felülírása</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>Road centreline layers (default: the project's with that role)</source>
+            <translation>Úttengelyrétegek (alapértelmezés: a projekt ilyen szerepű rétegei)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>Road centrelines</source>
+            <translation>Úttengelyek</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>Road surface layers (default: the project's with that role)</source>
+            <translation>Útfelület-rétegek (alapértelmezés: a projekt ilyen szerepű rétegei)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>Site id (default: the project's)</source>
+            <translation>A telephely azonosítója (alapértelmezés: a projekté)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>Site name (default: the project's title)</source>
+            <translation>A telephely neve (alapértelmezés: a projekt címe)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>Site {id} version {version} is published in {folder}: {outlines} obstacle outlines, {centrelines} centrelines, {surfaces} road surfaces, {keepouts} keepouts; bounds {bounds} m</source>
+            <translation>A(z) {id} telephely {version}. verziója közzétéve itt: {folder}: {outlines} akadálykörvonal, {centrelines} úttengely, {surfaces} útfelület, {keepouts} tiltott terület; határok: {bounds} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>Sites</source>
+            <translation>Telephelyek</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>There is nothing to publish: the layers hold nothing that can be read. See the warnings, or give BOUNDS to publish an empty site.</source>
+            <translation>Nincs mit közzétenni: a rétegekben nincs semmi olvasható. Nézze meg a figyelmeztetéseket, vagy adjon BOUNDS értéket üres telephely közzétételéhez.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>Version of the site</source>
+            <translation>A telephely verziója</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>Where robots may be sent (default: all that is published)</source>
+            <translation>Hová küldhetők robotok (alapértelmezés: minden, ami közzé van téve)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>Width of a road where none is known [m]</source>
+            <translation>Az út szélessége, ahol nem ismert [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>Writes the layers of a site, by their roles, into the folder that a gateway serves.</source>
+            <translation>A telephely rétegeit szerepeik szerint abba a mappába írja, amelyet egy átjáró szolgáltat.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>{title} (default: as published, at first {default:g})</source>
+            <translation>{title} (alapértelmezés: ahogy közzétették, először {default:g})</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_source.py" />
+            <source>CRS in metres (default: the layer's, or the project's)</source>
+            <translation>Méteres vetület (alapértelmezés: a rétegé vagy a projekté)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_source.py" />
+            <source>Direction: yes along the line, -1 against it, no both (default: a field oneway, ...)</source>
+            <translation>Irány: yes a vonal mentén, -1 vele szemben, no mindkettő (alapértelmezés: egy oneway, ... mező)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_source.py" />
+            <source>Ends this near to a road were meant to meet it [m]</source>
+            <translation>Az úthoz ennyire közeli végpontoknak csatlakozniuk kellett volna [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_source.py" />
+            <source>Layer {name}, feature {id}: {note}</source>
+            <translation>{name} réteg, {id}. elem: {note}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_source.py" />
+            <source>Layer {name}: the width of {unknown} roads is not known; {width:g} m is used</source>
+            <translation>{name} réteg: {unknown} út szélessége nem ismert; {width:g} m lesz használva</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_source.py" />
+            <source>Level of each road, 0 on the ground (default: fields level, layer, bridge, tunnel)</source>
+            <translation>Az egyes utak szintje, 0 a talajon (alapértelmezés: level, layer, bridge, tunnel mező)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_source.py" />
+            <source>ROADS {roads} cannot be opened: check the file and the layer's name.</source>
+            <translation>ROADS {roads} nem nyitható meg: ellenőrizze a fájlt és a réteg nevét.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_source.py" />
+            <source>Repair: close gaps, cut overshoots, leave out what is drawn twice</source>
+            <translation>Javítás: hézagok bezárása, túlnyúlások levágása, kétszer rajzoltak kihagyása</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_source.py" />
+            <source>Repaired: {kind} of feature {feature} at {where}: {text}</source>
+            <translation>Javítva: {kind}, {feature}. elem, itt: {where}: {text}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_source.py" />
+            <source>Speed on each road [m/s] (default: a field speed_ms, or maxspeed in km/h)</source>
+            <translation>Sebesség az egyes utakon [m/s] (alapértelmezés: egy speed_ms mező, vagy maxspeed km/h-ban)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_source.py" />
+            <source>Speed on roads of which it is not known [m/s]</source>
+            <translation>Sebesség az ismeretlen sebességű utakon [m/s]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_source.py" />
+            <source>Surface of each road (default: the layer's role, else a field surface)</source>
+            <translation>Az egyes utak felülete (alapértelmezés: a réteg szerepe, különben egy surface mező)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_source.py" />
+            <source>Whether each road is closed (default: a field closed)</source>
+            <translation>Le van-e zárva az egyes utak (alapértelmezés: egy closed mező)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_source.py" />
+            <source>Width of each road [m] (default: the layer's role, else a field width_m or width)</source>
+            <translation>Az egyes utak szélessége [m] (alapértelmezés: a réteg szerepe, különben egy width_m vagy width mező)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_source.py" />
+            <source>Width of roads of which it is not known [m]</source>
+            <translation>Az ismeretlen szélességű utak szélessége [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_source.py" />
+            <source>cannot be transformed into the CRS in metres ({error}); it is left out</source>
+            <translation>nem számítható át a méteres vetületbe ({error}); kimarad</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/sinks.py" />
+            <source>A layer cannot be written ({reason}): choose another place or format for it, and check the free space.</source>
+            <translation>Egy réteg nem írható ki ({reason}): válasszon neki másik helyet vagy formátumot, és ellenőrizze a szabad helyet.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/surface_at_point.py" />
+            <source>Adds to points, in any CRS, the class of the road surface that they are on.</source>
+            <translation>Bármely vetületű pontokhoz hozzáadja annak az útfelületnek az osztályát, amelyen vannak.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/surface_at_point.py" />
+            <source>Feature {id} has points on several surfaces; none is given for it</source>
+            <translation>A(z) {id}. elem pontjai több felületen vannak; egyik sincs megadva hozzá</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/surface_at_point.py" />
+            <source>No road surfaces are given, and no layer of the project has the role road surface: give SURFACES, or set the role in Plugins &gt; Fleet Supervisor &gt; Layer roles.</source>
+            <translation>Nincsenek megadva útfelületek, és a projekt egyik rétegének sem útfelület a szerepe: adja meg a SURFACES-t, vagy állítsa be a szerepet a Modulok &gt; Fleet Supervisor &gt; Rétegszerepek ablakban.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/surface_at_point.py" />
+            <source>Points</source>
+            <translation>Pontok</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/surface_at_point.py" />
+            <source>Points on a surface</source>
+            <translation>Pontok felületen</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/surface_at_point.py" />
+            <source>Points on none</source>
+            <translation>Pontok felületen kívül</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/surface_at_point.py" />
+            <source>Points with surface</source>
+            <translation>Pontok felülettel</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/surface_at_point.py" />
+            <source>Road surfaces (default: the project's layers with that role)</source>
+            <translation>Útfelületek (alapértelmezés: a projekt ilyen szerepű rétegei)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/surface_at_point.py" />
+            <source>Surface at point</source>
+            <translation>Felület a pontban</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/surface_at_point.py" />
+            <source>{counts} points are on a surface, {counts2} on none.</source>
+            <translation>{counts} pont van felületen, {counts2} egyiken sem.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/svg_picture.py" />
+            <source>Qt cannot draw the picture of this map: choose svg and open that in a browser.</source>
+            <translation>A Qt nem tudja megrajzolni ennek a térképnek a képét: válassza az svg-t, és nyissa meg böngészőben.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/tile_folder.py" />
+            <source>The tiles cannot be written to {folder}: {reason}. Choose a folder that may be written to, and check the free space.</source>
+            <translation>A csempék nem írhatók ide: {folder}: {reason}. Válasszon írható mappát, és ellenőrizze a szabad helyet.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/tile_folder.py" />
+            <source>{path} is a folder: choose another folder for the tiles.</source>
+            <translation>{path} egy mappa: válasszon másik mappát a csempéknek.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/tile_plan.py" />
+            <source>Both EXTENT and ROUTE are given: give one of them, for a grid or for tiles along a route.</source>
+            <translation>EXTENT és ROUTE is meg van adva: adja meg az egyiket, rácshoz vagy útvonal menti csempékhez.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/tile_plan.py" />
+            <source>Neither EXTENT nor ROUTE is given: give an extent for a grid, or a layer of lines to follow.</source>
+            <translation>Sem EXTENT, sem ROUTE nincs megadva: adjon meg kiterjedést a rácshoz, vagy követendő vonalak rétegét.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/tile_plan.py" />
+            <source>OUTPUT {folder} is a file: choose a folder for the tiles.</source>
+            <translation>OUTPUT {folder} egy fájl: válasszon mappát a csempéknek.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/tile_plan.py" />
+            <source>ROUTE {route} cannot be opened: choose a layer of lines.</source>
+            <translation>ROUTE {route} nem nyitható meg: válasszon vonalréteget.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/tile_plan.py" />
+            <source>ROUTE: feature {id} of {layer}: {doubts}. Correct the filter of the layer.</source>
+            <translation>ROUTE: {layer} {id}. eleme: {doubts}. Javítsa ki a réteg szűrőjét.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/tile_plan.py" />
+            <source>ROUTE: feature {id} of {sourcename} has no place in the site's CRS ({error}): correct its geometry or the CRS.</source>
+            <translation>ROUTE: {sourcename} {id}. elemének nincs helye a telephely vetületében ({error}): javítsa ki a geometriáját vagy a vetületet.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/tile_windows.py" />
+            <source>OVERLAP is {overlap} m: give 0 or more, and at most nine tenths of a tile's side.</source>
+            <translation>OVERLAP értéke {overlap} m: adjon meg 0-t vagy többet, legfeljebb a csempe oldalának kilenctizedét.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/tile_windows.py" />
+            <source>ROUTE holds no line: choose a layer with the route to export along.</source>
+            <translation>A ROUTE-ban nincs vonal: válasszon réteget azzal az útvonallal, amely mentén exportálni kell.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/tile_windows.py" />
+            <source>That would be {count} tiles, and {most_tiles} are the most: choose larger tiles, less overlap or a smaller area.</source>
+            <translation>Ez {count} csempe lenne, és legfeljebb {most_tiles} lehet: válasszon nagyobb csempéket, kisebb átfedést vagy kisebb területet.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/tile_windows.py" />
+            <source>The {name} of a tile is {value} m: give at least 1 m, such as 100.</source>
+            <translation>Egy csempe mérete ({name}) {value} m: adjon meg legalább 1 m-t, például 100-at.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/whole_file.py" />
+            <source>The robot map</source>
+            <translation>A robottérkép</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/whole_file.py" />
+            <source>{what} cannot be written to {target}: {reason}. Choose a file in a folder that exists and may be written to.</source>
+            <translation>{what} nem írható ide: {target}: {reason}. Válasszon fájlt egy létező, írható mappában.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/live_preview.py" />
+            <source>Reading {sources} layers …</source>
+            <translation>{sources} réteg olvasása …</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/measure.py" />
+            <source> of {counted}</source>
+            <translation>, összesen {counted}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/measure.py" />
+            <source>{counted} refused</source>
+            <translation>{counted} elutasítva</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/picture.py" />
+            <source>{metres:g} m</source>
+            <translation>{metres:g} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/preview_task.py" />
+            <source>Preview of the site</source>
+            <translation>A telephely előnézete</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/roles_action.py" />
+            <source>Layer roles…</source>
+            <translation>Rétegszerepek…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/roles_action.py" />
+            <source>Say what each layer of the project is to robots</source>
+            <translation>Megmondja, mi a projekt egyes rétege a robotoknak</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/roles_dialog.py" />
+            <source>Apply profile</source>
+            <translation>Profil alkalmazása</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/roles_dialog.py" />
+            <source>Layer roles</source>
+            <translation>Rétegszerepek</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/roles_dialog.py" />
+            <source>Map profile</source>
+            <translation>Térképprofil</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/roles_dialog.py" />
+            <source>Map profile ({kinds})</source>
+            <translation>Térképprofil ({kinds})</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/roles_dialog.py" />
+            <source>Map profile:</source>
+            <translation>Térképprofil:</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/roles_dialog.py" />
+            <source>Profile from file…</source>
+            <translation>Profil fájlból…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/roles_dialog.py" />
+            <source>{name} knows none of these layers by name and fields.</source>
+            <translation>{name} egyiket sem ismeri ezek közül a rétegek közül név és mezők szerint.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/roles_dialog.py" />
+            <source>{name}: {known} of {setups} layers set up.</source>
+            <translation>{name}: {setups} rétegből {known} beállítva.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Comes to</source>
+            <translation>Eredmény</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Estimate [m]</source>
+            <translation>Becslés [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Expression for metres above the ground where it begins, as of an arch; empty: 0</source>
+            <translation>Kifejezés arra, hány méterrel a talaj felett kezdődik, mint egy ív; üres: 0</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Expression for metres from the foot up; empty: the field height or height_m</source>
+            <translation>Kifejezés az aljtól felfelé mért méterekre; üres: a height vagy height_m mező</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Expression for the degrees clockwise that the template is turned; empty: 0</source>
+            <translation>Kifejezés arra, hány fokkal van a sablon elforgatva az óramutató járásával; üres: 0</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Expression for the height where it is not known, such as 3 * "levels"; marked as estimated</source>
+            <translation>Kifejezés a magasságra, ahol nem ismert, például 3 * "levels"; becsültként jelölve</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Expression for the label, such as 'building,' || "name"; of a road its surface</source>
+            <translation>Kifejezés a címkére, például 'building,' || "name"; útnál a felületére</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Expression for the metres across, of a road or of furniture that is points</source>
+            <translation>Kifejezés az átmérőre méterben, útnál vagy pontként rajzolt berendezésnél</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Expression for the shape that a point of furniture stands for: {shapes}, 'circle 0.6', 'square 1' or 'rectangle 2 0.5'; empty: an octagon of its width</source>
+            <translation>Kifejezés arra az alakra, amelyet egy berendezéspont jelöl: {shapes}, 'circle 0.6', 'square 1' vagy 'rectangle 2 0.5'; üres: a szélességével rajzolt nyolcszög</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Expression for true or false; empty: true</source>
+            <translation>Kifejezés igazra vagy hamisra; üres: igaz</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Expression that is true of the features that count, such as "amenity" = 'bench'; empty: all</source>
+            <translation>Kifejezés, amely a számító elemekre igaz, például "amenity" = 'bench'; üres: mind</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Filter</source>
+            <translation>Szűrő</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Foot [m]</source>
+            <translation>Alja [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Height [m]</source>
+            <translation>Magasság [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Label</source>
+            <translation>Címke</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Layer</source>
+            <translation>Réteg</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Layers of the project that can have a role</source>
+            <translation>A projekt rétegei, amelyeknek szerepük lehet</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Outdoors</source>
+            <translation>Szabadban</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Role</source>
+            <translation>Szerep</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Template</source>
+            <translation>Sablon</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Turned [°]</source>
+            <translation>Elforgatva [°]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>What is published of the layer</source>
+            <translation>Mi kerül közzétételre a rétegből</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>What the layer is to robots and operators</source>
+            <translation>Mi a réteg a robotoknak és a kezelőknek</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>Width [m]</source>
+            <translation>Szélesség [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>road centreline</source>
+            <translation>úttengely</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/roles/table_model.py" />
+            <source>road surface</source>
+            <translation>útfelület</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/obstacle_source.py" />
+            <source>The layer {name} cannot be opened ({source}): repair its data source or leave it out.</source>
+            <translation>A(z) {name} réteg nem nyitható meg ({source}): javítsa ki az adatforrását, vagy hagyja ki.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/obstacle_source.py" />
+            <source>The layer {name} holds {held}, and only lines and polygons are obstacles: leave it out, give it an extent first (for example with Buffer), or the role furniture.</source>
+            <translation>A(z) {name} réteg tartalma: {held}, és csak vonalak és poligonok akadályok: hagyja ki, adjon neki előbb kiterjedést (például Övezettel), vagy a berendezés szerepet.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/obstacle_source.py" />
+            <source>no geometry</source>
+            <translation>nincs geometria</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/obstacle_source.py" />
+            <source>points</source>
+            <translation>pontok</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/placing.py" />
+            <source>The layer {name} has no CRS, so its place on the site is not known: set the layer's CRS (Layer &gt; Set CRS of Layer), or {tick}.</source>
+            <translation>A(z) {name} rétegnek nincs vetülete, így helye a telephelyen nem ismert: állítsa be a réteg vetületét (Réteg &gt; Réteg vetületének beállítása), vagy {tick}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/placing.py" />
+            <source>The layer {name} is in the CRS {crs}, which has no known relation to the site CRS {site_crs}: choose the layer's CRS as the site CRS, or {tick}.</source>
+            <translation>A(z) {name} réteg vetülete {crs}, amelynek nincs ismert kapcsolata a telephely vetületével ({site_crs}): válassza a réteg vetületét a telephely vetületének, vagy {tick}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/placing.py" />
+            <source>tick 'Layers without a CRS are already in the site frame's metres' (LOCAL=true)</source>
+            <translation>kapcsolja be: „A vetület nélküli rétegek már a telephelyi keret métereiben vannak” (LOCAL=true)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/profile_file.py" />
+            <source>The profile {file} cannot be read: {error}.</source>
+            <translation>A(z) {file} profil nem olvasható: {error}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/profile_file.py" />
+            <source>The profile {file} is not there: give the path of a file, or one of {shipped}.</source>
+            <translation>A(z) {file} profil nincs meg: adja meg egy fájl útvonalát, vagy ezek egyikét: {shipped}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/profile_file.py" />
+            <source>{file} cannot be read: this QGIS runs Python older than 3.11, which reads no TOML. Save the profile with the same keys as JSON and choose that file.</source>
+            <translation>{file} nem olvasható: ez a QGIS 3.11-nél régebbi Pythont futtat, amely nem olvas TOML-t. Mentse a profilt ugyanazokkal a kulcsokkal JSON-ként, és válassza azt a fájlt.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/profile_file.py" />
+            <source>{file} is no profile: write an object with name and layers.</source>
+            <translation>{file} nem profil: írjon egy objektumot name és layers kulccsal.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/profile_file.py" />
+            <source>{file} is not valid {kind}: {error}. Correct that place.</source>
+            <translation>{file} nem érvényes {kind}: {error}. Javítsa ki azt a helyet.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/profile_file.py" />
+            <source>{file}: layers is missing or empty: write one table [[layers]] or more.</source>
+            <translation>{file}: a layers hiányzik vagy üres: írjon egy vagy több [[layers]] táblát.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/profile_file.py" />
+            <source>{file}: {key} fits no layer: write names = ["*building*"] or fields = ["building"].</source>
+            <translation>{file}: {key} egyik rétegre sem illik: írja így: names = ["*building*"] vagy fields = ["building"].</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/profile_file.py" />
+            <source>{file}: {key} is {content!r}: write a table [[layers]].</source>
+            <translation>{file}: {key} értéke {content!r}: írjon egy [[layers]] táblát.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/profile_file.py" />
+            <source>{file}: {key}.geometry is {geometry!r}: write one of {geometries}.</source>
+            <translation>{file}: {key}.geometry értéke {geometry!r}: írja ezek egyikét: {geometries}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/profile_file.py" />
+            <source>{file}: {key}.role is {role!r}: write one of {roles}.</source>
+            <translation>{file}: {key}.role értéke {role!r}: írja ezek egyikét: {roles}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/profile_file.py" />
+            <source>{file}: {key}.{name} is no QGIS expression: {error}. Correct it.</source>
+            <translation>{file}: {key}.{name} nem QGIS-kifejezés: {error}. Javítsa ki.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/profile_file.py" />
+            <source>{file}: {key}.{name} is {value!r}: write a list of texts, such as ["walls"].</source>
+            <translation>{file}: {key}.{name} értéke {value!r}: írja szövegek listáját, például ["walls"].</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/profile_file.py" />
+            <source>{file}: {prefix}{name} is no key of a profile: known are {known}. Remove it or correct its name.</source>
+            <translation>{file}: {prefix}{name} nem profilkulcs: az ismertek: {known}. Törölje, vagy javítsa ki a nevét.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/profile_file.py" />
+            <source>{file}: {prefix}{name} is {value!r}: write text in quotes.</source>
+            <translation>{file}: {prefix}{name} értéke {value!r}: írjon idézőjelbe tett szöveget.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/publication.py" />
+            <source>{file} is there and is no part of a published site: choose another folder, or say that it may be replaced (REPLACE=true).</source>
+            <translation>{file} ott van, és nem része közzétett telephelynek: válasszon másik mappát, vagy mondja, hogy felülírható (REPLACE=true).</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/publication.py" />
+            <source>{folder} holds version {version} of another site, {other}: choose another folder for {site}, or say that the other site may be replaced (REPLACE=true).</source>
+            <translation>{folder} egy másik telephely, {other} {version}. verzióját tartalmazza: válasszon másik mappát ennek: {site}, vagy mondja, hogy a másik telephely felülírható (REPLACE=true).</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/publication_lock.py" />
+            <source>Another publication into {folder} is under way, by {who}: wait until it has ended, or choose another folder. If it ended on another computer without a word, remove {file}.</source>
+            <translation>Másik közzététel folyik ide: {folder} ({who}): várjon, amíg véget ér, vagy válasszon másik mappát. Ha másik számítógépen szó nélkül ért véget, törölje ezt: {file}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/publication_lock.py" />
+            <source>The site cannot be published in {folder}: {reason}. Check the folder's rights and the free space.</source>
+            <translation>A telephely nem tehető közzé itt: {folder}: {reason}. Ellenőrizze a mappa jogait és a szabad helyet.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/publication_lock.py" />
+            <source>another process</source>
+            <translation>másik folyamat</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/publication_lock.py" />
+            <source>no file {lock_file} can be made in it</source>
+            <translation>nem hozható létre benne {lock_file} fájl</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/publication_lock.py" />
+            <source>process {process} on {host}</source>
+            <translation>{process} folyamat itt: {host}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/site_crs.py" />
+            <source> (EPSG:326xx north, EPSG:327xx south of the equator)</source>
+            <translation> (az Egyenlítőtől északra EPSG:326xx, délre EPSG:327xx)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/site_crs.py" />
+            <source>The CRS {crs} cannot carry a site</source>
+            <translation>A(z) {crs} vetület nem hordozhat telephelyet</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/site_crs.py" />
+            <source>without a name</source>
+            <translation>név nélküli</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/site_crs.py" />
+            <source>{named}: its coordinates are not metres on a plane. Choose a projected CRS such as the local UTM zone{suggestion}.</source>
+            <translation>{named}: koordinátái nem síkbeli méterek. Válasszon vetített rendszert, például a helyi UTM-zónát{suggestion}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/site_crs.py" />
+            <source>{named}: its metres are not metres; 1 m on the ground is 1.56 m there at latitude 50°. Choose the local UTM zone, such as EPSG:32633 for 12°E to 18°E.</source>
+            <translation>{named}: méterei nem méterek; 1 m a talajon ott 1.56 m az 50°-os szélességen. Válassza a helyi UTM-zónát, például EPSG:32633 a 12°K és 18°K között.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/site_crs.py" />
+            <source>{named}: its unit is {unit}, and robots speak metres. Choose a CRS in metres such as the local UTM zone{suggestion}.</source>
+            <translation>{named}: egysége {unit}, és a robotok métert használnak. Válasszon méteres vetületet, például a helyi UTM-zónát{suggestion}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/site_file.py" />
+            <source>GDAL does not say why</source>
+            <translation>A GDAL nem mondja meg, miért</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/site_file.py" />
+            <source>The Python bindings of GDAL (osgeo) are missing in this QGIS, which write site.gpkg: install the distribution's package, such as python3-gdal.</source>
+            <translation>Ebből a QGIS-ből hiányoznak a GDAL Python-kötései (osgeo), amelyek a site.gpkg fájlt írják: telepítse a disztribúció csomagját, például python3-gdal.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/site_file.py" />
+            <source>{file} cannot be written in {folder}: {error}. Check the folder's rights and the free space.</source>
+            <translation>{file} nem írható ide: {folder}: {error}. Ellenőrizze a mappa jogait és a szabad helyet.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/surface_store.py" />
+            <source>Reading road surfaces</source>
+            <translation>Útfelületek olvasása</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/websocket_library.py" />
+            <source>The Python package websockets is missing, which the connection to the gateway needs. Install the plugin from its release zip, which contains it, or run 'python3 -m pip install websockets' with the Python that QGIS uses, and restart QGIS.</source>
+            <translation>Hiányzik a websockets Python-csomag, amely az átjáróhoz való kapcsolódáshoz kell. Telepítse a modult a kiadott zipből, amely tartalmazza, vagy futtassa a QGIS Pythonjával: 'python3 -m pip install websockets', és indítsa újra a QGIS-t.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/websocket_library.py" />
+            <source>The Python package websockets {version} in {path} is too old for the connection to the gateway. Install the plugin from its release zip, which contains a newer one, or run 'python3 -m pip install "websockets&gt;={oldest}"' with the Python that QGIS uses, and restart QGIS.</source>
+            <translation>A websockets Python-csomag {version} verziója ({path}) túl régi az átjáróhoz való kapcsolódáshoz. Telepítse a modult a kiadott zipből, amely újabbat tartalmaz, vagy futtassa a QGIS Pythonjával: 'python3 -m pip install "websockets&gt;={oldest}"', és indítsa újra a QGIS-t.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/addresses.py" />
+            <source>Over {url} everybody on the way could read the token. Write wss:// instead of ws://; a gateway that other computers can reach has TLS.</source>
+            <translation>A(z) {url} címen útközben bárki elolvashatná a tokent. Írjon ws:// helyett wss://-t; a más gépekről elérhető átjárónak van TLS-e.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/addresses.py" />
+            <source>The CA file {file} cannot be used: {reason}. Choose the ca.pem that whoever runs the site gave you.</source>
+            <translation>A(z) {file} CA-fájl nem használható: {reason}. Válassza azt a ca.pem fájlt, amelyet a telephely üzemeltetője adott.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/addresses.py" />
+            <source>The gateway's URL is empty. {example}</source>
+            <translation>Az átjáró URL-je üres. {example}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/addresses.py" />
+            <source>The gateway's URL {url} begins with {scheme}; a gateway is reached over ws:// (or wss:// with TLS). {example}</source>
+            <translation>Az átjáró URL-je, {url}, így kezdődik: {scheme}; az átjáró ws:// (vagy TLS-sel wss://) útján érhető el. {example}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/addresses.py" />
+            <source>The gateway's URL {url} cannot be read: {error}. {example}</source>
+            <translation>Az átjáró URL-je, {url}, nem olvasható: {error}. {example}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/addresses.py" />
+            <source>The gateway's URL {url} has port 0, where nothing can listen. {example}</source>
+            <translation>Az átjáró URL-jében, {url}, 0 a port, ahol semmi sem figyelhet. {example}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/addresses.py" />
+            <source>The gateway's URL {url} names no host. {example}</source>
+            <translation>Az átjáró URL-je, {url}, nem nevez meg gépet. {example}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/addresses.py" />
+            <source>The token cannot be right: it is one word. Paste it again, whole and alone.</source>
+            <translation>A token nem lehet jó: az egyetlen szó. Illessze be újra, egészben és magában.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/addresses.py" />
+            <source>Write it like {default_url}.</source>
+            <translation>Írja így: {default_url}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/addresses.py" />
+            <source>no scheme</source>
+            <translation>nincs séma</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/client.py" />
+            <source>The gateway at {url} closed the link. It is tried again.</source>
+            <translation>A(z) {url} átjáró bontotta a kapcsolatot. Újrapróbálkozás folyik.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/client.py" />
+            <source>What answers at {url} opens a WebSocket but did not answer the desk's greeting within {answer_within:g} s. Check that the URL leads to a Fleet Supervisor gateway.</source>
+            <translation>Ami a(z) {url} címen válaszol, nyit WebSocketet, de {answer_within:g} s alatt nem felelt a kezelőpult üdvözlésére. Ellenőrizze, hogy az URL Fleet Supervisor-átjáróra mutat-e.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>No secure link to {place}: {reason}. If the gateway has no TLS, write ws:// instead of wss://.</source>
+            <translation>Nincs biztonságos kapcsolat ezzel: {place}: {reason}. Ha az átjárónak nincs TLS-e, írjon wss:// helyett ws://-t.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>Nothing listens at {place}. Start the gateway (robot-bridge serve --site ...) or correct the URL.</source>
+            <translation>Semmi sem figyel itt: {place}. Indítsa el az átjárót (robot-bridge serve --site ...), vagy javítsa ki az URL-t.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>The certificate of {place} cannot be trusted: {reason}.</source>
+            <translation>{place} tanúsítványában nem lehet megbízni: {reason}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>The certificate of {place} has expired. Whoever runs the site renews it with 'robot-bridge tls renew'; if it was renewed, check this computer's clock.</source>
+            <translation>{place} tanúsítványa lejárt. A telephely üzemeltetője a 'robot-bridge tls renew' paranccsal megújítja; ha már megújították, ellenőrizze ennek a számítógépnek az óráját.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>The certificate of {place} holds only later: check this computer's clock.</source>
+            <translation>{place} tanúsítványa csak később lesz érvényes: ellenőrizze ennek a számítógépnek az óráját.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>The certificate of {place} is for another name: {reason} Use the name that the gateway's certificate was made for, or have one made for this name.</source>
+            <translation>{place} tanúsítványa más névre szól: {reason} Használja azt a nevet, amelyre az átjáró tanúsítványa készült, vagy készíttessen egyet erre a névre.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>The certificate of {place} is from an authority that this desk does not trust. Choose the site's ca.pem as CA file under Access; whoever runs the site has it.</source>
+            <translation>{place} tanúsítványa olyan kiállítótól van, amelyben ez a kezelőpult nem bízik. Válassza a telephely ca.pem fájlját CA-fájlnak a Hozzáférés alatt; a telephely üzemeltetőjénél van.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>The gateway at {place} closed the link (code {code}{why}). It is tried again by itself.</source>
+            <translation>A(z) {place} átjáró bontotta a kapcsolatot (kód: {code}{why}). Magától újrapróbálkozik.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>The gateway at {place} ended the link{why}. Ask whoever runs the site for a new token and enter it under Access.</source>
+            <translation>A(z) {place} átjáró véget vetett a kapcsolatnak{why}. Kérjen új tokent a telephely üzemeltetőjétől, és adja meg a Hozzáférés alatt.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>The gateway at {place} ended your session{why}. Connect brings it back.</source>
+            <translation>A(z) {place} átjáró véget vetett a munkamenetének{why}. A Kapcsolódás visszahozza.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>The gateway's URL {url} cannot be used. Write it like {default_url}.</source>
+            <translation>Az átjáró URL-je, {url}, nem használható. Írja így: {default_url}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>The host of {place} is not known to this network. Correct the URL.</source>
+            <translation>{place} gépét ez a hálózat nem ismeri. Javítsa ki az URL-t.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>The link to the gateway at {place} broke off. It is tried again by itself; if it does not come back, check the gateway and the network.</source>
+            <translation>A kapcsolat a(z) {place} átjáróval megszakadt. Magától újrapróbálkozik; ha nem tér vissza, ellenőrizze az átjárót és a hálózatot.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>There is no desk at {url} (HTTP 404). A gateway's desk has the path /desk, as in {default_url}; or another program answers there.</source>
+            <translation>A(z) {url} címen nincs kezelőpult (HTTP 404). Az átjáróé a /desk útvonalon van, mint itt: {default_url}; vagy más program válaszol ott.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>What answers at {place} does not speak WebSocket. Check host and port, and ws:// or wss://: a gateway prints its URL when it starts.</source>
+            <translation>Ami itt válaszol: {place}, nem beszél WebSocketet. Ellenőrizze a gépet és a portot, és hogy ws:// vagy wss:// kell-e: az átjáró induláskor kiírja az URL-jét.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>it wants a token.</source>
+            <translation>tokent kér.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>no reason given.</source>
+            <translation>nem mondott okot.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>{place} broke off while the secure link was made. If the gateway has no TLS, write ws:// instead of wss://.</source>
+            <translation>{place} megszakította a biztonságos kapcsolat felépítését. Ha az átjárónak nincs TLS-e, írjon wss:// helyett ws://-t.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>{place} cannot be reached: {reason}. Check network and URL.</source>
+            <translation>{place} nem érhető el: {reason}. Ellenőrizze a hálózatot és az URL-t.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>{place} did not answer in time. Check that the gateway runs, and the network and firewall.</source>
+            <translation>{place} nem válaszolt időben. Ellenőrizze, hogy fut-e az átjáró, valamint a hálózatot és a tűzfalat.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>{url} answered HTTP {status} instead of opening a WebSocket. Check that a gateway runs there and what its log says.</source>
+            <translation>{url} HTTP {status} választ adott WebSocket nyitása helyett. Ellenőrizze, hogy ott átjáró fut-e, és mit mond a naplója.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>{url} refuses this desk: {said}</source>
+            <translation>{url} elutasítja ezt a kezelőpultot: {said}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>{url} refuses this desk: {said} Enter the operator's token under Access.</source>
+            <translation>{url} elutasítja ezt a kezelőpultot: {said} Adja meg a kezelő tokenjét a Hozzáférés alatt.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/failures.py" />
+            <source>{url} takes no desk now: {said} It is tried again by itself.</source>
+            <translation>{url} most nem fogad kezelőpultot: {said} Magától újrapróbálkozik.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/protocol.py" />
+            <source>The gateway at {url} refused a message: {error}</source>
+            <translation>A(z) {url} átjáró visszautasított egy üzenetet: {error}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/protocol.py" />
+            <source>The gateway at {url} sends no positions: {error}</source>
+            <translation>A(z) {url} átjáró nem küld helyzeteket: {error}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/protocol.py" />
+            <source>The gateway at {url} speaks protocol {theirs}, this plugin protocol {ours}. Update whichever of the two is older, then press Connect.</source>
+            <translation>A(z) {url} átjáró a(z) {theirs}. protokollt beszéli, ez a modul a(z) {ours}. protokollt. Frissítse kettejük közül a régebbit, majd nyomja meg a Kapcsolódás gombot.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/protocol.py" />
+            <source>The gateway at {url} turned the desk away: {error}</source>
+            <translation>A(z) {url} átjáró elutasította a kezelőpultot: {error}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/protocol.py" />
+            <source>The link was closed before the gateway answered: whether it arrived is not known. Connect again and look in the command log.</source>
+            <translation>A kapcsolat lezárult, mielőtt az átjáró válaszolt volna: hogy megérkezett-e, nem ismert. Kapcsolódjon újra, és nézze meg a parancsnaplót.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/protocol.py" />
+            <source>The link was lost before the gateway answered, and {age:.0f} s later it was not repeated: a robot shall not drive off on an old order. Look in the command log and send it again if it is not there.</source>
+            <translation>A kapcsolat megszakadt, mielőtt az átjáró válaszolt volna, és {age:.0f} s múlva már nem lett megismételve: robot ne induljon el régi parancsra. Nézze meg a parancsnaplót, és küldje újra, ha nincs ott.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/protocol.py" />
+            <source>What answers at {url} sent something that is not the desk's protocol: {text} ({kind}: {error}). Check that the URL leads to a Fleet Supervisor gateway of this version.</source>
+            <translation>Ami a(z) {url} címen válaszol, olyasmit küldött, ami nem a kezelőpult protokollja: {text} ({kind}: {error}). Ellenőrizze, hogy az URL ugyanilyen verziójú Fleet Supervisor-átjáróra mutat-e.</translation>
+        </message>
+    </context>
+</TS>

@@ -1,0 +1,166 @@
+"""One stage of a job: targets that are added to the days that robots have had so far."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+from .by_pyvrp import trips_by_pyvrp
+from .days import Day, Days, Trip
+from .improving import improved
+from .savings import TripLimits, saving_pairs, trips_by_savings
+from .scheduling import BALANCED, Aim, Score, scheduled
+
+_SLACK = 1.05
+"""By how much trips may be longer than an even share of the work."""
+_FIRST_SHARE, _LAST_SHARE = 0.12, 0.95
+"""Of the time: until when the first plan is made better, and until when PyVRP may work on its trips."""
+
+
+@dataclass(frozen=True)
+class Answer:
+    """The days, the targets that no robot has the battery for, and whether PyVRP's trips are in them."""
+
+    plan: list[Day]
+    left: Trip
+    score: Score
+    by_pyvrp: bool = False
+
+    @property
+    def rank(self) -> tuple[int, Score]:
+        """What is compared, the lesser the better."""
+        return len(self.left), self.score
+
+
+@dataclass(frozen=True)
+class Effort:
+    """The seconds a stage may take, whether PyVRP works on it, and who is told which share is over."""
+
+    seconds: float
+    use_pyvrp: bool
+    progress: Callable[[float], None]
+    seed: int = 0
+
+
+def solved_stage(
+    days: Days, targets: Sequence[int], start: Sequence[Day], aim: Aim, effort: Effort
+) -> Answer:
+    """Return the days that serve ``targets`` after what is in ``start``."""
+    begun = time.perf_counter()
+
+    def over(share: float) -> bool:
+        passed = (time.perf_counter() - begun) / max(effort.seconds, 1e-3)
+        effort.progress(min(passed, 1.0))
+        return passed >= share
+
+    begin = _on_board(days, targets, start)
+    served = {place for day in begin for trip in day for place in trip}
+    others = [place for place in targets if place not in served]
+    first, limits = _first(days, others, begin, aim)
+    share = _FIRST_SHARE if effort.use_pyvrp else 1.0
+    first = _improved(days, first, targets, aim, lambda: over(share))
+    if not effort.use_pyvrp or first.left or not others:
+        return first
+    seconds = effort.seconds * _LAST_SHARE - (time.perf_counter() - begun)
+    trips = _trips(first.plan, set(others))
+    second = _by_pyvrp(days, trips, begin, aim, limits, seconds, effort)
+    if second is None:
+        return first
+    second = _improved(days, second, targets, aim, lambda: over(1.0))
+    return min(first, second, key=lambda answer: answer.rank)
+
+
+def _on_board(days: Days, targets: Sequence[int], start: Sequence[Day]) -> list[Day]:
+    """Return the days with the cones that are aboard from the start given to the nearest targets."""
+    plan = [[list(trip) for trip in day] for day in start]
+    left = {place for place in targets if days.places_cone[place]}
+    for robot, day in enumerate(plan):
+        while len(day) == 1 and days.job.robots[robot].aboard > 0:
+            away = days.metres[day[0][-1] if day[0] else robot]
+            for place in sorted(left, key=away.__getitem__):
+                longer = [[*day[0], place]]
+                if days.fits(robot, longer[0], True) and days.cost(robot, longer).metres < math.inf:
+                    break
+            else:
+                break
+            left.remove(place)
+            day[:] = longer
+    return plan
+
+
+def _first(days: Days, targets: list[int], start: list[Day], aim: Aim) -> tuple[Answer, TripLimits]:
+    pairs = saving_pairs(days, targets)
+    best: tuple[Answer, TripLimits] | None = None
+    for limits in _limits(days, targets, aim):
+        answer = _assigned(days, trips_by_savings(days, targets, pairs, limits), start, aim)
+        if best is None or answer.rank < best[0].rank:
+            best = answer, limits
+    assert best is not None
+    return best
+
+
+def _limits(days: Days, targets: list[int], aim: Aim) -> list[TripLimits]:
+    """Return what trips may be bounded by; long trips are few, short ones can be shared out evenly."""
+    robots = days.job.robots
+    heaviest = max((days.demand[place] for place in targets), default=1)
+    rooms = sorted({robot.capacity for robot in robots if robot.capacity >= heaviest})
+    speed = sorted(robot.speed for robot in robots)[len(robots) // 2]
+    longest = max(robot.range_m for robot in robots)
+    made = [TripLimits(room, longest, math.inf, speed) for room in rooms]
+    if math.isfinite(longest):
+        made += [replace(limits, range_m=longest / 2) for limits in made]
+    work = sum(days.demand[place] for place in targets)
+    if aim.objective != BALANCED or work > 4 * len(robots) * rooms[-1]:
+        return made
+    alone = [days.trip_metres([place]) / speed + days.service[place] for place in targets]
+    share = sum(alone) / len(robots)
+    shares = {max(share * _SLACK / parts, max(alone, default=0.0)) for parts in (1, 2, 3, 4, 6)}
+    return made + [replace(one, seconds=each) for one in made for each in sorted(shares)]
+
+
+def _assigned(days: Days, trips: Sequence[Trip], start: Sequence[Day], aim: Aim) -> Answer:
+    plan, left = scheduled(days, trips, start, aim)
+    if left:
+        plan, left = scheduled(days, [[place] for trip in left for place in trip], plan, aim)
+    return Answer(plan, [place for trip in left for place in trip], _score(days, plan, aim))
+
+
+def _improved(
+    days: Days, answer: Answer, targets: Sequence[int], aim: Aim, stop: Callable[[], bool]
+) -> Answer:
+    movable = set(targets) - set(answer.left)
+    plan = improved(days, answer.plan, movable, aim, stop)
+    if not answer.left:
+        return replace(answer, plan=plan, score=_score(days, plan, aim))
+    return _assigned(days, [[place] for place in answer.left], plan, aim)
+
+
+def _trips(plan: Sequence[Day], targets: set[int]) -> list[Trip]:
+    """Return the trips of ``plan``, of each what serves ``targets``."""
+    trips = [[place for place in trip if place in targets] for day in plan for trip in day]
+    return [trip for trip in trips if trip]
+
+
+def _by_pyvrp(
+    days: Days,
+    trips: list[Trip],
+    start: list[Day],
+    aim: Aim,
+    limits: TripLimits,
+    seconds: float,
+    effort: Effort,
+) -> Answer | None:
+    def progress(share: float) -> None:
+        effort.progress(_FIRST_SHARE + (_LAST_SHARE - _FIRST_SHARE) * share)
+
+    found = trips_by_pyvrp(days, trips, limits, seconds, progress, effort.seed)
+    if found is None:
+        return None
+    answer = replace(_assigned(days, found, start, aim), by_pyvrp=True)
+    return None if answer.left else answer
+
+
+def _score(days: Days, plan: Sequence[Day], aim: Aim) -> Score:
+    return aim.score([days.cost(robot, day) for robot, day in enumerate(plan)])

@@ -1,0 +1,161 @@
+"""A command with a step to come, and how the commands of one robot bear on each other; no I/O."""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import dataclass
+
+from ..messages import Abort, Command, CommandReport, CommandState, CommandStep, SetPath, SetPosEnd, to_json
+from .arrival import Arrival, PathArrival, judge
+from .states import advance, note
+
+GATEWAY = "gateway"
+NOTHING = ""
+
+
+@dataclass(frozen=True)
+class Order:
+    """A command to be issued: who asks which robot for what, under which id, and why.
+
+    It is given up when the robot has not fetched it within ``expires_in`` seconds (None: by the site's
+    settings). With ``aborts`` it is void unless that command is still the robot's task, with ``instead_of``
+    unless that is and nobody has asked for its end; NOTHING stands for a robot that does nothing. ``task``
+    is the task of the robot's queue that it is for; an order beside the queue pauses that.
+    """
+
+    command: str
+    robot: str
+    message: Command
+    operator: str
+    reason: str | None = None
+    expires_in: float | None = None
+    aborts: str | None = None
+    task: str | None = None
+    instead_of: str | None = None
+
+
+@dataclass
+class OpenCommand:
+    """A command with a step to come; ``sa_id`` is its message's row in SA, written at ``written_at``."""
+
+    report: CommandReport
+    sa_id: int
+    message: Command
+    arrival: Arrival | None = None
+    expires_at: float | None = None
+    written_at: float | None = None
+
+    @property
+    def is_motion(self) -> bool:
+        """Tell whether it makes the robot drive."""
+        return isinstance(self.message, (SetPosEnd, SetPath))
+
+    @property
+    def is_abort(self) -> bool:
+        """Tell whether it ends what the robot does."""
+        return isinstance(self.message, Abort)
+
+    @property
+    def is_emergency(self) -> bool:
+        """Tell whether it is the Abort of an emergency stop."""
+        return isinstance(self.message, Abort) and self.message.emergency
+
+    @property
+    def is_on_its_way(self) -> bool:
+        """Tell whether the robot has not said yet that it took it on."""
+        return self.report.state in (CommandState.QUEUED, CommandState.DELIVERED)
+
+    @property
+    def driven(self) -> float | None:
+        """Metres of its path that the robot has driven, None for what is no path."""
+        return self.arrival.driven if isinstance(self.arrival, PathArrival) else None
+
+    def expired(self, now: float, after: float) -> bool:
+        """Tell whether nobody has fetched it in time; ``after`` seconds where it says nothing itself.
+
+        The Abort of an emergency stop waits for its robot however long that is away.
+        """
+        limit = self.report.steps[0].at + after if self.expires_at is None else self.expires_at
+        return not self.is_emergency and now >= limit
+
+    def step(
+        self,
+        state: CommandState,
+        at: float,
+        by: str,
+        reason: str | None = None,
+        deviation: float | None = None,
+        stood: tuple[float, float, float] | None = None,
+    ) -> OpenCommand:
+        """Return the command one step further."""
+        return dataclasses.replace(self, report=advance(self.report, state, at, by, reason, deviation, stood))
+
+    def noted(self, at: float, by: str, reason: str, arrival: Arrival | None = None) -> OpenCommand:
+        """Return the command in the same state with a note, judged by ``arrival`` from now on."""
+        return dataclasses.replace(self, report=note(self.report, at, by, reason), arrival=arrival)
+
+    def judged(self, tolerance: float) -> OpenCommand:
+        """Return the command as one that the robot has just taken on."""
+        return dataclasses.replace(self, arrival=judge(self.message, tolerance))
+
+
+def drafted(order: Order, now: float) -> OpenCommand:
+    """Return the command of ``order`` before it is stored, with no row in SA."""
+    report = CommandReport(
+        command=order.command,
+        robot=order.robot,
+        op=type(order.message).__name__,
+        params=to_json(order.message),
+        operator=order.operator,
+        state=CommandState.QUEUED,
+        steps=[CommandStep(CommandState.QUEUED, now, order.operator, order.reason)],
+    )
+    expires_at = None if order.expires_in is None else now + order.expires_in
+    return OpenCommand(report, 0, order.message, expires_at=expires_at, written_at=now)
+
+
+def voided(order: Order, mine: list[OpenCommand], now: float) -> list[OpenCommand]:
+    """Return the ends of those commands of the robot, ``mine``, that ``order`` ends at once.
+
+    An Abort ends the task that the robot has not fetched; what it has taken on ends when it acknowledges the
+    Abort. That of an emergency stop overtakes what it has fetched and not taken on, so that ends at once too.
+    """
+    ended = []
+    for command in mine:
+        if isinstance(order.message, Abort) and command.is_motion:
+            overtaken = order.message.emergency and command.is_on_its_way
+            if command.report.state is not CommandState.QUEUED and not overtaken:
+                continue
+            # Not "before the robot read it": a robot may have done that without the gateway knowing yet.
+            reason = because("before the robot acknowledged it", order.reason)
+            ended.append(command.step(CommandState.ABORTED, now, order.operator, reason))
+        elif _replaces(order.message, command):
+            reason = f"by command {order.command}"
+            ended.append(command.step(CommandState.SUPERSEDED, now, order.operator, reason))
+    return ended
+
+
+def ended_by(abort: OpenCommand, mine: list[OpenCommand], now: float, why: str) -> list[OpenCommand]:
+    """Return the ends of those commands of the robot, ``mine``, that came before an Abort of an operator."""
+    if not abort.is_abort:
+        return []
+    reason = because(why, abort.report.steps[0].reason)
+    return [
+        command.step(CommandState.ABORTED, now, abort.report.operator, reason)
+        for command in mine
+        if command.is_motion and command.sa_id < abort.sa_id
+    ]
+
+
+def because(what: str, reason: str | None) -> str:
+    """Return what happened, with the operator's reason if one was given."""
+    return what if not reason else f"{what}: {reason}"
+
+
+def _replaces(message: Command, command: OpenCommand) -> bool:
+    """Tell whether a new ``message`` makes an older command void: each kind its own."""
+    if isinstance(message, (SetPosEnd, SetPath)):
+        return command.is_motion
+    if command.is_emergency and not (isinstance(message, Abort) and message.emergency):
+        return False
+    return isinstance(command.message, type(message))

@@ -1,0 +1,1 @@
+"""Commands at work: ordered by operators, stored, followed to their ends."""

@@ -1,0 +1,390 @@
+"""The open commands of the fleet: issued, delivered, acknowledged, judged, ended; each step stored first."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import dataclasses
+from collections import Counter
+from collections.abc import AsyncIterator, Awaitable, Callable, Coroutine, Iterable
+from typing import Any, TypeVar
+
+from sqlalchemy import Connection
+
+from ..command_life.arrival import judge
+from ..command_life.open_command import GATEWAY, NOTHING, OpenCommand, Order, drafted, ended_by, voided
+from ..command_life.open_commands import OpenCommands
+from ..command_life.states import is_open, may_become
+from ..errors import DataRefusedError, RefusedError, StoreError, UncertainError
+from ..messages import Command, CommandReport, CommandState, OpAck, SendPos, SetPath, SetPosEnd
+from ..store import commands
+from ..store.commands import StoredCommand
+from ..store.database import Database
+from .writing import (
+    Also,
+    Draft,
+    opened,
+    write_acknowledged,
+    write_again,
+    write_all,
+    write_drafts,
+    write_driven,
+    write_late,
+)
+
+__all__ = ["GATEWAY", "CommandBook", "OpenCommand", "Order"]
+
+T = TypeVar("T")
+DRIVEN_STEP = 0.5
+"""metres along a path between two that are stored."""
+MOST_LATE = 1000
+"""acknowledgements of ended commands that wait for the database."""
+
+
+class CommandBook:
+    """Holds the open commands and takes them through their lives.
+
+    Every change is committed before it is shown: ``changed`` is called with each command's new report, and
+    ``outbox_changed`` with the robot for which SA holds something new. ``check`` raises RefusedError for a
+    message that must not be sent to a robot now; ``consider`` is awaited before, for what of that takes long.
+    What concerns one robot waits only for what concerns the same robot.
+    """
+
+    def __init__(
+        self,
+        database: Database,
+        tolerance: float,
+        clock: Callable[[], float],
+        changed: Callable[[CommandReport], None],
+        outbox_changed: Callable[[str], None],
+        check: Callable[[Command], None],
+        consider: Callable[[Command], Awaitable[None]],
+    ) -> None:
+        self._database = database
+        self.tolerance = tolerance
+        self._clock = clock
+        self._changed = changed
+        self._outbox_changed = outbox_changed
+        self._check = check
+        self._consider = consider
+        self.waits: Callable[[str], bool] = lambda _robot: False
+        """Tells whether a robot waits for another: that ends with whatever else it is told."""
+        self._open = OpenCommands()
+        self._locks: dict[str, asyncio.Lock] = {}
+        self._doubtful = False
+        self._late: set[tuple[str, int]] = set()
+
+    async def restore(self) -> None:
+        """Take up the commands that an earlier gateway left open."""
+        for stored in await self._database.run(commands.still_open):
+            self._open.put(self._restored(stored))
+
+    def count(self) -> Counter[CommandState]:
+        """Return how many open commands are in each state."""
+        return Counter(command.report.state for command in self._open)
+
+    def busy_with(self, robot: str) -> str | None:
+        """Return the id of the command that makes the robot drive, if any."""
+        moving = [c.report.command for c in self._open.of(robot) if c.is_motion]
+        return moving[-1] if moving else None
+
+    def task(self, robot: str) -> tuple[SetPosEnd | SetPath, float] | None:
+        """Return what the robot is to drive, and how many metres of it (of a path) it has driven."""
+        for command in reversed(self._open.of(robot)):
+            if isinstance(command.message, (SetPosEnd, SetPath)):
+                return command.message, command.driven or 0.0
+        return None
+
+    def is_carrying_out(self, robot: str, command: str) -> bool:
+        """Tell whether the command is the robot's task, and nobody has asked for its end."""
+        mine = self._open.of(robot)
+        task = self._open.get(command)
+        aborted = any(c.is_abort and task is not None and c.sa_id > task.sa_id for c in mine)
+        return command == self.busy_with(robot) and not aborted
+
+    def is_open(self, command: str) -> bool:
+        """Tell whether a command has a step to come."""
+        return self._open.get(command) is not None
+
+    def robot_of(self, command: str) -> str | None:
+        """Return the robot of an open command."""
+        known = self._open.get(command)
+        return None if known is None else known.report.robot
+
+    def awaits_stop(self, robot: str) -> bool:
+        """Tell whether the Abort of an emergency stop is on its way to the robot."""
+        return any(c.is_emergency and c.is_on_its_way for c in self._open.of(robot))
+
+    def undelivered(self) -> dict[int, str]:
+        """Return the robot of every message that waits in SA, by the message's id."""
+        return {sa_id: command.report.robot for sa_id, command in self._open.queued.items()}
+
+    async def issue(self, orders: list[Order], also: Also | None = None) -> list[CommandReport]:
+        """Store new commands with their messages, all or none, and ``also`` more; return them as stored.
+
+        A command whose id is known already is returned as it stands and changes nothing.
+        """
+        return await _to_its_end(self._issue(orders, also))
+
+    async def lead(self, robot: str, task: str, path: SetPath, write: Callable[[Connection], None]) -> None:
+        """Tell a robot the way to its target; ``write`` writes that. The target stays the command.
+
+        :raises RefusedError: when ``task`` is not what the robot does any more; StoreError.
+        """
+        await _to_its_end(self._lead(robot, task, path, write))
+
+    async def delivered(self, sa_ids: Iterable[int]) -> None:
+        """Note that the messages ``sa_ids`` have reached their robots."""
+        wanted = [id for id in sa_ids if id in self._open.queued]
+        if wanted:
+            await _to_its_end(self._delivered(wanted))
+
+    async def acknowledged(self, robot: str, ack: OpAck) -> float | None:
+        """Note a robot's OpAck: it took the message on, or (``ok`` false) will not do it, or gave it up.
+
+        Return when the message was written into SA, if it was a command's and is acknowledged at first.
+        """
+        return await _to_its_end(self._acknowledged(robot, ack))
+
+    def observe(self, robot: str, pose: SendPos) -> Coroutine[Any, Any, None] | None:
+        """Judge the robot's acknowledged commands by where it is now.
+
+        Return what stores those that are done, to be awaited; None where none is.
+        """
+        reached = [
+            (command, deviation, pose)
+            for command in self._open.of(robot)
+            if command.arrival and (deviation := command.arrival.deviation(pose)) is not None
+        ]
+        return _to_its_end(self._all_reached(reached)) if reached else None
+
+    async def deliver_again(self, robot: str, reason: str, expire_after: float) -> None:
+        """Send once more what a robot that started anew may have forgotten, unless it is too old."""
+        await _to_its_end(self._deliver_again(robot, reason, expire_after))
+
+    async def expire(self, expire_after: float) -> None:
+        """End the commands that were not fetched in time: ``expire_after`` seconds, or as they say."""
+        now = self._clock()
+        late = [c for c in self._open.queued.values() if c.expired(now, expire_after)]
+        if late:
+            await _to_its_end(self._expire([c.report.command for c in late]))
+
+    async def save_progress(self) -> None:
+        """Store how far robots have come along their paths, and acknowledgements that came too late."""
+        for robot, sa_id in list(self._late):
+            await self.acknowledged(robot, OpAck(id=sa_id))
+        driven = self._open.progress(DRIVEN_STEP)
+        if driven:
+            await self._database.run(write_driven, driven)
+            self._open.note_progress(driven)
+
+    # --- what has to be done to its end, with the robots' locks held --------------------------------------
+
+    async def _issue(self, orders: list[Order], also: Also | None) -> list[CommandReport]:
+        async with self._holding(order.robot for order in orders):
+            for order in orders:
+                await self._consider(order.message)
+            now = self._clock()
+            drafts = [self._draft(order, now) for order in orders]
+            issued, ended = await self._run(write_drafts, drafts, also)
+            for command in ended:
+                self._apply(command)
+            for command in issued:
+                id = command.report.command
+                if command.report.state is CommandState.QUEUED and self._open.get(id) is None:
+                    self._apply(command)
+                    self._outbox_changed(command.report.robot)
+            return [command.report for command in issued]
+
+    def _draft(self, order: Order, now: float) -> Draft:
+        refusal = None
+        try:
+            self._check(order.message)
+            self._check_task(order)
+        except RefusedError as error:
+            refusal = error
+        mine = self._open.of(order.robot)
+        return Draft(order, drafted(order, now), voided(order, mine, now), refusal, self.waits(order.robot))
+
+    def _check_task(self, order: Order) -> None:
+        if order.instead_of is not None and not self._is_open_to(order.robot, order.instead_of):
+            raise RefusedError(f"robot {order.robot!r} has been told otherwise in the meantime")
+        if order.aborts is not None and order.aborts != self.busy_with(order.robot):
+            raise RefusedError(
+                f"command {order.aborts} is no longer what robot {order.robot!r} is doing; look at the log, "
+                "and abort the robot if it is to stop all the same"
+            )
+
+    def _is_open_to(self, robot: str, task: str) -> bool:
+        if task == NOTHING:
+            return not any(c.is_motion or c.is_abort for c in self._open.of(robot))
+        return self.is_carrying_out(robot, task)
+
+    async def _lead(self, robot: str, task: str, path: SetPath, write: Callable[[Connection], None]) -> None:
+        async with self._holding([robot]):
+            await self._consider(path)
+            self._check(path)
+            if not self.is_carrying_out(robot, task):
+                raise RefusedError(f"robot {robot!r} has been told otherwise in the meantime")
+            await self._run(write)
+            self._outbox_changed(robot)
+
+    async def _delivered(self, sa_ids: list[int]) -> None:
+        # By now some may be further on.
+        robots = {self._open.queued[id].report.robot for id in sa_ids if id in self._open.queued}
+        async with self._holding(robots):
+            queued = [self._open.queued[id] for id in sa_ids if id in self._open.queued]
+            now = self._clock()
+            await self._save([command.step(CommandState.DELIVERED, now, GATEWAY) for command in queued])
+
+    async def _acknowledged(self, robot: str, ack: OpAck) -> float | None:
+        async with self._holding([robot]):
+            command = next((c for c in self._open.of(robot) if c.sa_id == ack.id), None)
+            if command is None and ack.ok and ack.id is not None:
+                await self._note_late(robot, ack.id)
+                return None
+            steps = [] if command is None else self._taken(command, robot, ack)
+            # One transaction: a message that is gone from SA with its step unsaved would be lost.
+            await self._run(write_acknowledged, robot, ack.id, steps)
+            for step in steps:
+                self._apply(step)
+            return command.written_at if command is not None and command.is_on_its_way else None
+
+    async def _note_late(self, robot: str, sa_id: int) -> None:
+        """Note that the robot read a message whose command has ended; what cannot be stored now is kept."""
+        try:
+            report = await self._run(write_late, robot, sa_id, self._clock())
+        except DataRefusedError:
+            raise
+        except StoreError:
+            if len(self._late) < MOST_LATE:
+                self._late.add((robot, sa_id))
+            raise
+        self._late.discard((robot, sa_id))
+        if report is not None:
+            self._changed(report)
+
+    async def _all_reached(self, reached: list[tuple[OpenCommand, float, SendPos]]) -> None:
+        for command, deviation, pose in reached:
+            await self._reached(command, deviation, pose)
+
+    async def _reached(self, command: OpenCommand, deviation: float, pose: SendPos) -> None:
+        async with self._holding([command.report.robot]):
+            if self._open.get(command.report.command) is command:
+                # An Abort has no place that it could be off.
+                off = None if command.is_abort else deviation
+                stood, now = (pose.x, pose.y, pose.theta), self._clock()
+                await self._save(
+                    [command.step(CommandState.REACHED, now, GATEWAY, deviation=off, stood=stood)]
+                )
+
+    async def _deliver_again(self, robot: str, reason: str, expire_after: float) -> None:
+        async with self._holding([robot]):
+            mine, now = self._open.of(robot), self._clock()
+            forgotten = [c for c in mine if c.report.state is not CommandState.QUEUED]
+            if not forgotten:
+                return
+            ended = [end for c in mine for end in ended_by(c, mine, now, "the robot started anew")]
+            ended += [
+                c.step(CommandState.EXPIRED, now, GATEWAY, "the robot started anew, and it was too old then")
+                for c in mine
+                if c.is_on_its_way and c.expired(now, expire_after)
+            ]
+            ended = list({c.report.command: c for c in reversed(ended)}.values())
+            gone = {command.report.command for command in ended}
+            first = min(c.sa_id for c in forgotten)
+            again = [
+                self._anew(c, reason, now) for c in mine if c.report.command not in gone and c.sa_id >= first
+            ]
+            for command in await self._run(write_again, again, ended):
+                self._apply(command)
+            self._outbox_changed(robot)
+
+    async def _expire(self, ids: list[str]) -> None:
+        async with self._holding({robot for id in ids if (robot := self.robot_of(id))}):
+            found = [command for id in ids if (command := self._open.get(id))]
+            late = [command for command in found if command.report.state is CommandState.QUEUED]
+            now, reason = self._clock(), "the robot did not fetch it in time"
+            await self._save([c.step(CommandState.EXPIRED, now, GATEWAY, reason) for c in late])
+
+    # -------------------------------------------------------------------------------------------------------
+
+    def _taken(self, command: OpenCommand, robot: str, ack: OpAck) -> list[OpenCommand]:
+        """Return what a robot's OpAck of ``command`` changes."""
+        now = self._clock()
+        if not ack.ok:
+            return [command.step(CommandState.FAILED, now, robot, ack.reason)]
+        if may_become(command.report.state, CommandState.ACKNOWLEDGED):
+            steps = []
+            if command.report.state is CommandState.QUEUED:
+                # What a robot answers to has reached it, even if that was not seen yet.
+                command = command.step(CommandState.DELIVERED, now, GATEWAY)
+                steps.append(command)
+            steps.append(command.step(CommandState.ACKNOWLEDGED, now, robot).judged(self.tolerance))
+            mine = self._open.of(robot)
+            return [*steps, *ended_by(command, mine, now, "the robot acknowledged the Abort")]
+        if command.arrival is None:
+            arrival = judge(command.message, self.tolerance)
+            return [command.noted(now, robot, "acknowledged again", arrival)]
+        return []
+
+    def _anew(self, command: OpenCommand, reason: str, now: float) -> OpenCommand:
+        """Return a command to be sent once more; one that was never fetched keeps its place behind."""
+        if command.report.state is CommandState.QUEUED:
+            reason = "behind what the robot is told once more"
+        return dataclasses.replace(command.noted(now, GATEWAY, reason), written_at=now)
+
+    def _restored(self, stored: StoredCommand) -> OpenCommand:
+        command = opened(stored)
+        if stored.report.state is CommandState.ACKNOWLEDGED:
+            command.arrival = judge(command.message, self.tolerance, driven=stored.driven, under_way=True)
+        return command
+
+    async def _save(self, steps: list[OpenCommand]) -> None:
+        if steps:
+            await self._run(write_all, steps)
+            for command in steps:
+                self._apply(command)
+
+    def _apply(self, command: OpenCommand) -> None:
+        if is_open(command.report.state):
+            self._open.put(command)
+        else:
+            self._open.remove(command.report.command)
+        self._changed(command.report)
+
+    async def _run(self, work: Callable[..., T], *arguments: Any) -> T:
+        try:
+            return await self._database.run(work, *arguments)
+        except UncertainError:
+            self._doubtful = True
+            raise
+
+    @contextlib.asynccontextmanager
+    async def _holding(self, robots: Iterable[str]) -> AsyncIterator[None]:
+        """Hold the locks of some robots, taken in one order by everybody."""
+        async with contextlib.AsyncExitStack() as stack:
+            for robot in sorted(set(robots)):
+                await stack.enter_async_context(self._locks.setdefault(robot, asyncio.Lock()))
+            if self._doubtful:
+                await self._look_up()
+            yield
+
+    async def _look_up(self) -> None:
+        """Take over what the database holds, after a transaction that may have been done or not."""
+        stored = {s.report.command: s for s in await self._database.run(commands.still_open)}
+        here = {command.report.command: command for command in self._open}
+        ended = await self._database.run(commands.find_all, sorted(here.keys() - stored.keys()))
+        self._doubtful = False
+        for found in [*ended.values(), *stored.values()]:
+            known = here.get(found.report.command)
+            if known is None or (known.report, known.sa_id) != (found.report, found.sa_id):
+                self._apply(self._restored(found))
+                self._outbox_changed(found.report.robot)
+
+
+async def _to_its_end(work: Coroutine[Any, Any, T]) -> T:
+    """Await ``work``, which goes on when the waiting is cancelled: what is stored must be known here, too."""
+    task = asyncio.ensure_future(work)
+    task.add_done_callback(lambda done: done.cancelled() or done.exception())
+    return await asyncio.shield(task)

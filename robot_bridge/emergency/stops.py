@@ -1,0 +1,269 @@
+"""The emergency stop: every robot is told to stop before anything else is done, and none is sent anywhere
+until a supervisor clears it.
+
+Safety comes before bookkeeping: a stop is in force the moment it is asked for, noted in a file of this
+computer (a few milliseconds) and on its way over every open connection; it is stored as soon as the database
+can be written. What is not stored yet says so. Robots on SQL are reached by nothing but the database, so they
+are told when it can be written again.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import time
+import uuid
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+from sqlalchemy import Connection
+
+from ..command_life.open_command import Order
+from ..commanding.book import CommandBook
+from ..errors import RefusedError, StoreError
+from ..messages import (
+    Abort,
+    ClearEmergencyStop,
+    CommandReport,
+    EmergencyReport,
+    EmergencyStop,
+    SetPath,
+    SetPosEnd,
+    to_json,
+)
+from ..store import answers, commands, emergency_stops
+from ..store.database import Database
+from ..store.emergency_stops import StopRow
+from .journal import StopJournal
+from .tally import Tally
+
+log = logging.getLogger(__name__)
+
+STORED_WITHIN = 1.0
+"""seconds for which an operator waits to hear whether the stop is stored; it is in force before that."""
+NOTED_WITHIN = 0.1
+"""seconds for which robots wait until their stop is noted: a disk that hangs must not keep them going."""
+NAME_PREFIX = "emergency-"
+"""Begins the id of the call that tells a robot of a stop directly: a text, unlike the ids of SA."""
+MOTIONS = (SetPosEnd, SetPath)
+HELD_BACK = tuple(cls.__name__ for cls in MOTIONS)
+
+
+class EmergencyStops:
+    """The stop in force, if one is, and what the robots say to it.
+
+    ``robots`` returns the names of the robots known, ``announce`` tells every operator. What is not stored
+    yet is noted in ``journal``, where there is one.
+    """
+
+    def __init__(
+        self,
+        book: CommandBook,
+        database: Database,
+        clock: Callable[[], float],
+        robots: Callable[[], list[str]],
+        announce: Callable[[str, str, dict[str, Any]], None],
+        journal: StopJournal | None = None,
+    ) -> None:
+        self._book = book
+        self._database = database
+        self._clock = clock
+        self._robots = robots
+        self._tell_operators = announce
+        self._journal = journal
+        self._links: list[Callable[[str], None]] = []
+        self._stop: StopRow | None = None
+        self._unstored: list[StopRow] = []
+        self._seen: set[str] = set()
+        self._tally = Tally()
+        self._writing = asyncio.Lock()
+
+    def reach(self, link: Callable[[str], None]) -> None:
+        """Call ``link`` with the id of the call at every stop: it tells every robot at its other end."""
+        self._links.append(link)
+
+    @property
+    def in_force(self) -> bool:
+        """Whether robots must not be sent anywhere."""
+        return self._stop is not None and self._stop.cleared_at is None
+
+    @property
+    def call_id(self) -> str | None:
+        """The id of the call by which a robot that connects now is told, None when no stop is in force."""
+        return f"{NAME_PREFIX}{self._stop.id}" if self._stop is not None and self.in_force else None
+
+    def report(self) -> EmergencyReport:
+        """Return how things stand."""
+        stop = self._stop
+        if stop is None:
+            return EmergencyReport()
+        return EmergencyReport(
+            in_force=self.in_force,
+            stop=stop.id,
+            at=stop.at,
+            by=stop.by,
+            reason=stop.reason,
+            stored=not self._unstored,
+            cleared_at=stop.cleared_at,
+            cleared_by=stop.cleared_by,
+            clear_reason=stop.clear_reason,
+            **self._tally.counts(),
+        )
+
+    async def restore(self) -> None:
+        """Take up the stop that an earlier gateway left in force, stored or not, and what robots said to it.
+
+        Raises BridgeError when it cannot be known whether there is one.
+        """
+        self._stop, self._seen, aborts = await self._database.run(_load)
+        self._tally.begin(self._robots())
+        for report in aborts:
+            self._tally.take(report)
+        noted = await asyncio.to_thread(self._journal.read) if self._journal else []
+        for stop in noted:
+            if stop.id not in self._seen:
+                log.warning("emergency stop by %s%s, from before the restart", stop.by, _because(stop.reason))
+                self._put_in_force(stop)
+        if noted:
+            await self._store_and_log()
+            self._note()
+
+    def check(self, message: object) -> None:
+        """Raise RefusedError for a message that would make a robot drive while a stop is in force."""
+        stop = self._stop
+        if stop is not None and self.in_force and isinstance(message, MOTIONS):
+            raise RefusedError(
+                f"an emergency stop is in force since {_clock(stop.at)}, by {stop.by}"
+                f"{_because(stop.reason)}: no robot is sent anywhere until a supervisor clears it"
+            )
+
+    async def stop(self, request: EmergencyStop, operator: str) -> EmergencyReport:
+        """Stop every robot; asked again under the same id it is the same stop.
+
+        Returns when the stop is stored, or after a second if the database does not answer or cannot be
+        written: it is in force all the same.
+        """
+        if request.command not in self._seen:
+            begun = asyncio.ensure_future(
+                self._begin(StopRow(request.command, self._clock(), operator, request.line))
+            )
+            # Goes on to its end when the operator's connection does not.
+            await asyncio.shield(begun)
+        storing = asyncio.ensure_future(self._store_and_log())
+        await asyncio.wait({storing}, timeout=STORED_WITHIN)
+        return self.report()
+
+    async def clear(self, request: ClearEmergencyStop, supervisor: str) -> EmergencyReport:
+        """Let robots be sent again. Raises RefusedError, and StoreError when that cannot be stored."""
+        seen = self._stop
+        async with self._writing:
+            stop = self._stop
+            if stop is None or not self.in_force:
+                if stop is not None and request.stop == stop.id:
+                    return self.report()
+                raise RefusedError("no emergency stop is in force; there is nothing to clear")
+            # Who asked cannot have meant a stop that came while this waited.
+            if request.stop not in (None, stop.id) or stop is not seen:
+                raise RefusedError(
+                    f"{stop.by} made another emergency stop at {_clock(stop.at)}{_because(stop.reason)}; "
+                    "look at that one first, then clear it"
+                )
+            await self._store()
+            at, reason = self._clock(), request.reason or None
+            await self._database.run(emergency_stops.clear, at, supervisor, reason)
+            if self._stop is stop:
+                self._stop = stop._replace(cleared_at=at, cleared_by=supervisor, clear_reason=reason)
+        self._announce()
+        return self.report()
+
+    async def store(self) -> None:
+        """Store the stops that are not stored yet; raises StoreError when the database cannot be written."""
+        if self._unstored:
+            async with self._writing:
+                await self._store()
+
+    async def ready(self, robot: str) -> None:
+        """Tell a robot that has just said Ready to stop, unless it is being told already."""
+        stop = self._stop
+        if stop is None or not self.in_force:
+            return
+        self._tally.told(robot)
+        if not self._book.awaits_stop(robot):
+            order = Order(str(uuid.uuid4()), robot, Abort(emergency=True), stop.by, stop.reason)
+            await self._book.issue([order])
+        self._announce()
+
+    def answered(self, robot: str, call_id: str, refused: bool) -> None:
+        """Note what a robot answered to the call that told it directly."""
+        if call_id == self.call_id and self._tally.answer(robot, refused=refused):
+            self._announce()
+
+    def take(self, report: CommandReport) -> None:
+        """Note what became of the Abort that a robot was sent."""
+        if self.in_force and self._tally.take(report):
+            self._announce()
+
+    def _put_in_force(self, stop: StopRow) -> None:
+        self._seen.add(stop.id)
+        self._stop = stop
+        self._unstored.append(stop)
+        self._tally.begin(self._robots())
+
+    async def _begin(self, stop: StopRow) -> None:
+        self._put_in_force(stop)
+        if (noting := self._note()) is not None:
+            await asyncio.wait({noting}, timeout=NOTED_WITHIN)
+        for link in self._links:
+            link(f"{NAME_PREFIX}{stop.id}")
+        log.warning("emergency stop by %s%s", stop.by, _because(stop.reason))
+        self._announce()
+
+    def _note(self) -> asyncio.Future[None] | None:
+        """Have what is not stored noted on the disk."""
+        return None if self._journal is None else self._journal.write(self._unstored)
+
+    async def _store_and_log(self) -> None:
+        try:
+            await self.store()
+        except StoreError as error:
+            log.error("the emergency stop is in force and not stored yet: %s", error)
+
+    async def _store(self) -> None:
+        while self._unstored:
+            stop = self._unstored[0]
+            orders = [
+                Order(_abort_id(stop, robot), robot, Abort(emergency=True), stop.by, stop.reason)
+                for robot in self._robots()
+            ]
+            await self._book.issue(orders, partial(_write_stop, stop))
+            self._unstored.remove(stop)
+            self._note()
+            self._announce()
+
+    def _announce(self) -> None:
+        self._tell_operators("emergency", "emergency", to_json(self.report()))
+
+
+def _load(connection: Connection) -> tuple[StopRow | None, set[str], list[CommandReport]]:
+    stop = emergency_stops.newest(connection)
+    aborts = [] if stop is None else commands.of_kind_since(connection, Abort.__name__, stop.at)
+    return stop, emergency_stops.ids(connection), aborts
+
+
+def _write_stop(stop: StopRow, connection: Connection) -> None:
+    emergency_stops.add(connection, stop)
+    # Some are no commands' messages, but answers to GetPath.
+    answers.remove_everywhere(connection, HELD_BACK)
+
+
+def _abort_id(stop: StopRow, robot: str) -> str:
+    return str(uuid.uuid5(uuid.NAMESPACE_OID, f"{stop.id} {robot}"))
+
+
+def _clock(at: float) -> str:
+    return time.strftime("%H:%M:%S UTC", time.gmtime(at))
+
+
+def _because(reason: str | None) -> str:
+    return f" ({reason})" if reason else ""

@@ -1,0 +1,26 @@
+"""The map of the whole site, sent to a robot because an operator asks for it."""
+
+from __future__ import annotations
+
+import asyncio
+
+from .errors import RefusedError
+from .exchange import Outcome
+from .fleet import Fleet
+from .messages import RobotState, SendMap, SetMap
+
+
+async def send_map(fleet: Fleet, request: SendMap) -> None:
+    """Return when the map for the robot is stored; it replaces one that still waits for it.
+
+    :raises RefusedError: for a robot that is not known, or is not there.
+    """
+    if request.robot not in fleet.robots:
+        known = ", ".join(fleet.robots.names()) or "none yet"
+        raise RefusedError(f"robot {request.robot!r} is not known to this gateway; known are: {known}")
+    if fleet.robots.get(request.robot).state is RobotState.OFFLINE:
+        raise RefusedError(
+            f"robot {request.robot!r} is offline; it is sent the map by itself when it connects"
+        )
+    content = await asyncio.to_thread(fleet.site.whole_map)
+    await fleet.finish([Outcome(request.robot, answer=SetMap(content))], [], acks=False)

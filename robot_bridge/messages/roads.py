@@ -1,0 +1,251 @@
+"""What operators ask about roads: a route to look at, a road to be closed, robots in each other's way."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import ClassVar, Literal
+
+from .checks import MessageError, check_finite, check_robot_name
+from .stopping import check_reason
+
+LONGEST_ID = 64
+LONGEST_CLOSURE = 10 * 366 * 86400.0
+"""seconds."""
+
+
+@dataclass(frozen=True)
+class GetRoute:
+    """Ask for the way along the roads from where ``robot`` is, or from ``start``, to (``x``, ``y``).
+
+    ``surfaces`` names those that may be used (None: all), ``least_width`` metres that a road must have at
+    least. With ``avoid_reserved`` roads on which other robots' tasks lead are left out.
+    """
+
+    method: ClassVar[str] = "get_route"
+    x: float
+    y: float
+    robot: str | None = None
+    start: tuple[float, float] | None = None
+    fastest: bool = False
+    surfaces: list[str] | None = None
+    least_width: float = 0.0
+    avoid_reserved: bool = False
+
+    def __post_init__(self) -> None:
+        check_finite(x=self.x, y=self.y, least_width=self.least_width)
+        if (self.robot is None) == (self.start is None):
+            raise MessageError("get_route: give one of robot and start: whose way it is, or from where")
+        if self.robot is not None:
+            check_robot_name(self.robot)
+        if self.start is not None:
+            check_finite(start_x=self.start[0], start_y=self.start[1])
+
+
+@dataclass(frozen=True)
+class SurfaceMetres:
+    """Metres of a route on one surface; the name is empty where it is not known."""
+
+    surface: str
+    metres: float
+
+
+@dataclass(frozen=True)
+class RouteReport:
+    """A way that a robot can be sent by SetPath: ``points`` are those that it drives.
+
+    ``seconds`` are at the speeds of the roads. ``tight`` holds the corners that are tighter than the turning
+    radius of the site's settings; ``note`` says what is not as one would expect, such as that the way is no
+    road but a straight line. ``engine`` is what found it, ``off_goal`` metres from the goal to its road.
+    """
+
+    points: list[tuple[float, float]]
+    metres: float
+    seconds: float
+    surfaces: list[SurfaceMetres] = field(default_factory=list)
+    tight: list[tuple[float, float]] = field(default_factory=list)
+    off_goal: float = 0.0
+    note: str = ""
+    engine: str = ""
+
+
+@dataclass(frozen=True)
+class CloseRoad:
+    """Close the road nearest to (``x``, ``y``), from its one junction to the next, for every robot.
+
+    ``closure`` is an id that the operator's side invents: sent twice, done once. The road is open again after
+    ``seconds``, if that is given. It must be within ``reach`` metres.
+    """
+
+    method: ClassVar[str] = "close_road"
+    closure: str
+    x: float
+    y: float
+    reason: str | None = None
+    seconds: float | None = None
+    reach: float = 20.0
+
+    def __post_init__(self) -> None:
+        check_closure_id(self.closure)
+        check_finite(x=self.x, y=self.y, reach=self.reach)
+        check_reason(self.reason)
+        if self.seconds is not None and not 0 < self.seconds <= LONGEST_CLOSURE:
+            raise MessageError(
+                f"seconds is {self.seconds}; give how long, above 0 and up to {LONGEST_CLOSURE:g}, or nothing"
+            )
+
+
+@dataclass(frozen=True)
+class OpenRoad:
+    """Open a road again that was closed under the id ``closure``."""
+
+    method: ClassVar[str] = "open_road"
+    closure: str
+    reason: str | None = None
+
+    def __post_init__(self) -> None:
+        check_closure_id(self.closure)
+        check_reason(self.reason)
+
+
+@dataclass(frozen=True)
+class GetClosures:
+    """Ask for the roads that are closed now."""
+
+    method: ClassVar[str] = "get_closures"
+
+
+@dataclass(frozen=True)
+class ClosureReport:
+    """A road that is closed, or was: ``line`` is the stretch, metres in the site frame.
+
+    ``edges`` counts the edges of the network that it closes; 0 means that the site, as it is published now,
+    has no such road. It opens by itself at ``until``. Times are seconds since 1970.
+    """
+
+    closure: str
+    line: list[tuple[float, float]]
+    closed_at: float
+    closed_by: str
+    level: int = 0
+    edges: int = 0
+    reason: str | None = None
+    until: float | None = None
+    opened_at: float | None = None
+    opened_by: str | None = None
+
+
+@dataclass(frozen=True)
+class ReplannedRobot:
+    """A robot whose way led along a road that was closed, and what became of it.
+
+    ``became`` is ``another way``, ``stopped``, ``told only`` (the site's settings ask for no more) or
+    ``failed``: look after that robot yourself. ``command`` is the one that does it, if one does.
+    """
+
+    robot: str
+    became: Literal["another way", "stopped", "told only", "failed"]
+    text: str
+    command: str | None = None
+
+
+@dataclass(frozen=True)
+class RoadClosed:
+    """What closing a road led to."""
+
+    closure: ClosureReport
+    robots: list[ReplannedRobot] = field(default_factory=list)
+
+
+@dataclass(frozen=True)
+class Closures:
+    """The roads that are closed now, oldest first."""
+
+    closures: list[ClosureReport] = field(default_factory=list)
+
+
+@dataclass(frozen=True)
+class GetConflicts:
+    """Ask where the ways of robots come too near to one another, if they are driven as they are now."""
+
+    method: ClassVar[str] = "get_conflicts"
+
+
+@dataclass(frozen=True)
+class ConflictReport:
+    """Two robots that will be nearer to one another than their widths and the margin allow.
+
+    ``kind`` is ``head-on``, ``crossing``, ``following`` or ``standing``: ``other`` does not move then. From
+    ``begins`` to ``ends`` (None: for good), seconds since 1970; nearest at ``nearest_at``, with ``metres``
+    between their middles, at (``x``, ``y``).
+    """
+
+    robot: str
+    other: str
+    kind: Literal["head-on", "crossing", "following", "standing"]
+    begins: float
+    nearest_at: float
+    metres: float
+    x: float
+    y: float
+    ends: float | None = None
+
+
+@dataclass(frozen=True)
+class Conflicts:
+    """The conflicts of all robots, soonest first, reckoned at the gateway's time ``t``.
+
+    ``waiting`` names the robots that are held until another has passed.
+    """
+
+    t: float
+    conflicts: list[ConflictReport] = field(default_factory=list)
+    waiting: list[HoldReport] = field(default_factory=list)
+
+
+@dataclass(frozen=True)
+class HoldReport:
+    """A robot that waits at (``x``, ``y``) for another to pass; it is sent on at ``until`` or later."""
+
+    robot: str
+    other: str
+    x: float
+    y: float
+    until: float
+    by: str
+    command: str
+
+
+@dataclass(frozen=True)
+class ResolveConflict:
+    """Ask for a conflict to be resolved by what ``robot`` does; ``other`` goes on as it is.
+
+    It waits, takes another way (``route``), or whichever gets it to its end sooner (``either``).
+    """
+
+    method: ClassVar[str] = "resolve_conflict"
+    robot: str
+    other: str
+    by: Literal["waiting", "route", "either"] = "either"
+
+    def __post_init__(self) -> None:
+        check_robot_name(self.robot)
+        check_robot_name(self.other)
+        if self.robot == self.other:
+            raise MessageError(f"resolve_conflict: robot and other are both {self.robot!r}; give two robots")
+
+
+@dataclass(frozen=True)
+class ConflictResolved:
+    """What the robot was told: ``became`` is ``waits`` or ``another way``; ``command`` is what tells it."""
+
+    robot: str
+    became: Literal["waits", "another way"]
+    text: str
+    command: str
+    delay: float = 0.0
+
+
+def check_closure_id(closure: str) -> None:
+    """Refuse an id that cannot tell one closure from every other; raises MessageError."""
+    if not (8 <= len(closure) <= LONGEST_ID and closure.isprintable()):
+        raise MessageError(f"closure is {closure!r}; give an id of 8 to {LONGEST_ID} characters, say a UUID")

@@ -1,0 +1,1 @@
+"""Cones as they were placed, on their way out of the database."""

@@ -1,0 +1,230 @@
+"""Sends robots the tasks of their queues, one after the other.
+
+What is to be done is seen from what is stored, never from what was heard: so a gateway that was killed goes
+on where it stopped, and a task that was sent is known as sent. A task and the command that drives it are
+written in one transaction.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections.abc import Callable
+from functools import partial
+
+from sqlalchemy import Connection
+
+from ..command_life.open_command import Order
+from ..command_life.states import is_open
+from ..commanding.book import CommandBook
+from ..errors import OutdatedError, RefusedError, StoreError
+from ..messages import (
+    CommandReport,
+    CommandState,
+    RobotState,
+    SetPath,
+    SetPosEnd,
+    SetPosIni,
+    TaskKind,
+)
+from ..messages.queues import check_path
+from ..queues import life
+from ..queues.legs import legs, path_left
+from ..queues.queue import Queue, QueuedTask
+from ..robots import Robots
+from ..served_site import ServedSite
+from ..store import commands as stored_commands
+from ..store import queues
+from ..store.commands import StoredCommand
+from ..store.database import Database
+from .book import QueueBook
+from .settling import QueueSettling
+
+log = logging.getLogger(__name__)
+
+LOOK_INTERVAL = 1.0
+"""seconds after which every queue with something to do is looked at, whether anything was heard or not."""
+AWAY = (RobotState.LOST, RobotState.OFFLINE)
+
+
+class QueueDriving:
+    """Keeps the robots' queues going."""
+
+    def __init__(
+        self,
+        site: ServedSite,
+        robots: Robots,
+        commands: CommandBook,
+        book: QueueBook,
+        database: Database,
+        clock: Callable[[], float],
+    ) -> None:
+        self._site = site
+        self._robots = robots
+        self._commands = commands
+        self._book = book
+        self._settling = QueueSettling(site, commands, book, database, clock)
+        self._database = database
+        self._clock = clock
+        self._due: set[str] = set()
+        self._event = asyncio.Event()
+        self._sending: set[str] = set()
+        self._told: dict[str, RobotState] = {}
+        book.due = self.look
+
+    async def run(self) -> None:
+        """Keep them going until cancelled."""
+        while True:
+            try:
+                async with asyncio.timeout(LOOK_INTERVAL):
+                    await self._event.wait()
+            except TimeoutError:
+                self.look_at_all()
+            await self.advance()
+
+    def look(self, robot: str) -> None:
+        """Look at a robot's queue soon."""
+        self._due.add(robot)
+        self._event.set()
+
+    def take(self, report: CommandReport) -> None:
+        """Note what became of a command; called with each step of every one."""
+        queue = self._book.get(report.robot)
+        head = queue.head
+        if head is None:
+            return
+        if report.command == head.command:
+            if not is_open(report.state):
+                self.look(report.robot)
+        elif report.state is CommandState.QUEUED and self._is_beside(queue, report):
+            # It has paused the queue in its own transaction.
+            self._book.doubt(report.robot)
+
+    def look_at_all(self) -> None:
+        """Look at every queue that has something to do; tell of robots that are lost, or back."""
+        for robot in self._book.names():
+            queue = self._book.get(robot)
+            if not queue.tasks:
+                self._told.pop(robot, None)
+                continue
+            state = self._robots.get(robot).state
+            if self._told.setdefault(robot, state) is not state:
+                self._told[robot] = state
+                self._book.announce(robot)
+            if queue.running or queue.current is not None:
+                self.look(robot)
+
+    async def advance(self) -> None:
+        """Do what is due now: settle what has ended, send what comes next."""
+        self._event.clear()
+        due, self._due = self._due, set()
+        await asyncio.gather(*(self._advance(robot) for robot in sorted(due)))
+
+    async def redirect(
+        self, robot: str, path: SetPath, operator: str, reason: str | None = None
+    ) -> CommandReport | None:
+        """Send the robot to the end of its present task by another path; its queue goes on.
+
+        Return the command that does it, None when the robot is not doing a task of its queue. Raises
+        MessageError for a path that ends elsewhere, RefusedError and StoreError.
+        """
+        async with self._book.holding([robot]):
+            queue = self._book.get(robot)
+            current = queue.current
+            if current is None or current.command is None or not self._commands.is_open(current.command):
+                return None
+            check_path(current.id, path.points, (current.task.x, current.task.y))
+            after = life.redirected(queue, path.points)
+            message = legs(after.tasks[0].task, self._site.settings.cones.offset)[0]
+            return await self._send(queue, after, message, operator, reason, current.command)
+
+    def place(self, robot: str) -> tuple[float, float] | None:
+        """Return the place of the task that the robot does, None where that is none of its queue."""
+        current = self._book.get(robot).current
+        if current is None or current.command is None or not self._commands.is_open(current.command):
+            return None
+        return current.task.x, current.task.y
+
+    # --------------------------------------------------------------------------------------------------
+
+    async def _advance(self, robot: str) -> None:
+        try:
+            async with self._book.holding([robot]):
+                await self._settling.settle(self._book.get(robot))
+                await self._go_on(self._book.get(robot))
+        except OutdatedError:
+            self.look(robot)
+        except StoreError as error:
+            log.error("queue of %s: %s; it is looked at again", robot, error)
+
+    def _is_beside(self, queue: Queue, report: CommandReport) -> bool:
+        return queue.running and report.op != SetPosIni.__name__ and report.command not in self._sending
+
+    # --- what comes next ------------------------------------------------------------------------------
+
+    async def _go_on(self, queue: Queue) -> None:
+        """Send what comes next, or pause, saying why it cannot be sent."""
+        head = queue.head
+        if head is None or not queue.running or (head.is_current and head.command is not None):
+            return
+        if self._robots.get(queue.robot).state in AWAY:
+            await self._wait_for_robot(queue)
+            return
+        busy, own = self._commands.busy_with(queue.robot), {task.command for task in queue.tasks}
+        try:
+            if busy is not None and busy not in own:
+                raise RefusedError(f"the robot is busy with command {busy}, which is not of its queue")
+            message = await self._message(queue, head)
+            await self._send(queue, life.sent(queue, self._clock()), message, head.added_by)
+        except OutdatedError:
+            raise
+        except RefusedError as error:
+            await self._book.save(queue, life.held(queue, str(error), self._clock()))
+
+    async def _wait_for_robot(self, queue: Queue) -> None:
+        away = self._clock() - self._robots.get(queue.robot).received_at
+        limit = self._site.settings.commands.expire_after_s
+        if away > limit:
+            reason = f"the robot has been away for longer than {limit:g} s; resume when it may drive again"
+            await self._book.save(queue, life.held(queue, reason, self._clock()))
+
+    async def _message(self, queue: Queue, head: QueuedTask) -> SetPath | SetPosEnd:
+        message = legs(head.task, self._site.settings.cones.offset)[head.leg]
+        if not isinstance(message, SetPath):
+            return message
+        pose = self._robots.get(queue.robot).pose
+        here = None if pose is None else (pose.x, pose.y)
+        before = None if head.command is None else await self._stored(head.command)
+        driven = 0.0 if before is None else before.driven or 0.0
+        join = before is not None or head.task.kind is not TaskKind.DRIVE
+        return path_left(message, here, driven, join=join)
+
+    async def _send(
+        self,
+        before: Queue,
+        after: Queue,
+        message: SetPath | SetPosEnd,
+        operator: str,
+        reason: str | None = None,
+        instead_of: str | None = None,
+    ) -> CommandReport:
+        task = after.tasks[0]
+        assert task.command is not None
+        what = f"task {task.id}" if reason is None else f"task {task.id}: {reason}"
+        told = (task.command, before.robot, message, operator, what)
+        order = Order(*told, task=task.id, instead_of=instead_of)
+        self._sending.add(order.command)
+        try:
+            issuing = self._commands.issue([order], partial(_save, before, after))
+            (report,) = await self._book.stored([before.robot], issuing)
+        finally:
+            self._sending.discard(order.command)
+        self._book.accept(after)
+        return report
+
+    async def _stored(self, command: str) -> StoredCommand | None:
+        return (await self._database.run(stored_commands.find_all, [command])).get(command)
+
+
+def _save(before: Queue, after: Queue, connection: Connection) -> None:
+    queues.save(connection, before, after)

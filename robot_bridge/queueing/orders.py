@@ -1,0 +1,240 @@
+"""What operators change in queues: understood, checked against robots and site, and put into the book."""
+
+from __future__ import annotations
+
+import contextlib
+import uuid
+from collections.abc import AsyncIterator, Callable, Sequence
+from functools import partial
+
+from sqlalchemy import Connection
+
+from ..command_life.open_command import Order
+from ..commanding.book import CommandBook
+from ..errors import OutdatedError, RefusedError
+from ..messages import (
+    Abort,
+    AddTasks,
+    CollectingTasks,
+    CollectLayout,
+    GetQueue,
+    MakeCurrent,
+    MoveTask,
+    PauseQueue,
+    PlacementReport,
+    QueueReport,
+    QueueTask,
+    RemoveTask,
+    ResumeQueue,
+    SetQueue,
+    TakeOver,
+    TaskKind,
+    TaskState,
+    check_robot_name,
+)
+from ..places import check_places
+from ..queues import edits, life, sharing
+from ..queues.legs import legs
+from ..queues.queue import Queue, queue_report
+from ..robots import Robots
+from ..served_site import ServedSite
+from ..store import placements, queues
+from ..store.database import Database
+from .book import QueueBook
+
+
+class QueueOrders:
+    """Takes what operators want of queues. Each method returns when what it changed is stored.
+
+    Those that change a queue raise OutdatedError when it is not as the operator saw it, RefusedError for what
+    cannot be done, MessageError for what cannot be understood, and StoreError when it cannot be stored.
+    """
+
+    def __init__(
+        self,
+        site: ServedSite,
+        robots: Robots,
+        commands: CommandBook,
+        book: QueueBook,
+        database: Database,
+        clock: Callable[[], float],
+    ) -> None:
+        self._site = site
+        self._robots = robots
+        self._commands = commands
+        self._book = book
+        self._database = database
+        self._clock = clock
+
+    async def set(self, request: SetQueue, operator: str) -> QueueReport:
+        """Replace what is not begun."""
+        async with self._editing(request.robot, request.revision) as queue:
+            known = await self._checked(request.robot, request.tasks)
+            after = edits.replaced(queue, request.tasks, known, operator, self._clock())
+            return await self._edit(queue, after, operator, "another list took its place")
+
+    async def add(self, request: AddTasks, operator: str) -> QueueReport:
+        """Put tasks into a queue."""
+        async with self._editing(request.robot, request.revision) as queue:
+            known = await self._checked(request.robot, request.tasks)
+            now = self._clock()
+            after = edits.added(queue, request.tasks, request.before, known, operator, now)
+            return await self._edit(queue, after, operator)
+
+    async def move(self, request: MoveTask, operator: str) -> QueueReport:
+        """Move a task to another place of its queue."""
+        async with self._editing(request.robot, request.revision) as queue:
+            return await self._edit(queue, edits.moved(queue, request.task, request.before), operator)
+
+    async def remove(self, request: RemoveTask, operator: str) -> QueueReport:
+        """Take a task out of its queue."""
+        async with self._editing(request.robot, request.revision) as queue:
+            return await self._edit(queue, edits.removed(queue, request.task), operator, request.reason)
+
+    async def make_current(self, request: MakeCurrent, operator: str) -> QueueReport:
+        """Let a task be done first."""
+        async with self._editing(request.robot, request.revision) as queue:
+            return await self._edit(queue, edits.put_first(queue, request.task), operator)
+
+    async def pause(self, request: PauseQueue, operator: str) -> QueueReport:
+        """Send a robot nothing more by itself."""
+        reason = f"paused by {operator}{f': {request.reason}' if request.reason else ''}"
+        async with self._book.holding([request.robot]):
+            self._check_known(request.robot)
+            try:
+                return await self._pause(request.robot, reason, operator)
+            except OutdatedError:
+                # An order beside the queue came in between, and the queue has been read again.
+                return await self._pause(request.robot, reason, operator)
+
+    async def resume(self, request: ResumeQueue, operator: str) -> QueueReport:
+        """Let a queue go on."""
+        async with self._editing(request.robot, request.revision) as queue:
+            return await self._edit(queue, edits.resumed(queue, operator, self._clock()), operator)
+
+    async def take_over(self, request: TakeOver, operator: str) -> list[QueueReport]:
+        """Let other robots do what waits in one robot's queue, all of it or nothing."""
+        names = [request.robot, *(share.robot for share in request.shares)]
+        revisions = {request.robot: request.revision}
+        revisions.update({share.robot: share.revision for share in request.shares})
+        async with self._book.holding(names):
+            for name in names:
+                self._check_known(name)
+                self._check_revision(name, revisions[name])
+            before = {name: self._book.get(name) for name in names}
+            after = sharing.taken_over(before, request, operator, self._clock())
+            for share in request.shares:
+                for wanted in share.tasks:
+                    check_places(self._site, wanted.path or ())
+            write = partial(_save_many, [(before[name], after[name]) for name in names])
+            taken = sharing.takes_current(before[request.robot], request)
+            if taken is not None and taken.command is not None and self._commands.is_open(taken.command):
+                abort = Order(
+                    life.abort_id(taken),
+                    request.robot,
+                    Abort(),
+                    operator,
+                    f"task {taken.id} is taken over by another robot",
+                    task=taken.id,
+                )
+                await self._book.stored(names, self._commands.issue([abort], write))
+            else:
+                await self._book.stored(names, self._database.run(write))
+            return [self._book.accept(after[name]) for name in names]
+
+    async def read(self, request: GetQueue) -> list[QueueReport]:
+        """Return queues as they are."""
+        if request.robot is not None:
+            self._check_known(request.robot)
+        found = []
+        for name in self._book.names() if request.robot is None else [request.robot]:
+            ended = await self._database.read(queues.newest_ended, name, request.ended)
+            state = self._robots.get(name).state
+            found.append(queue_report(self._book.get(name), state, ended, paths=request.paths))
+        return found
+
+    async def collecting(self, request: CollectLayout) -> CollectingTasks:
+        """Return a task for each cone that stands and is in no queue yet."""
+        found = await self._database.read(placements.standing, request.layout)
+        queued = {task.task.placement for name in self._book.names() for task in self._book.get(name).tasks}
+        turns = self._site.settings.cones.offset != (0.0, 0.0)
+        tasks = [_collecting(cone, turns) for cone in found if cone.placement not in queued]
+        return CollectingTasks(tasks, len(found) - len(tasks))
+
+    async def _pause(self, robot: str, reason: str, operator: str) -> QueueReport:
+        queue = self._book.get(robot)
+        return await self._edit(queue, queue.paused(reason, operator, self._clock()), operator)
+
+    @contextlib.asynccontextmanager
+    async def _editing(self, robot: str, revision: int) -> AsyncIterator[Queue]:
+        async with self._book.holding([robot]):
+            self._check_known(robot)
+            self._check_revision(robot, revision)
+            yield self._book.get(robot)
+
+    async def _edit(
+        self, before: Queue, after: Queue, operator: str, reason: str | None = None
+    ) -> QueueReport:
+        kept = {task.id for task in after.tasks}
+        why = f"removed by {operator}{f': {reason}' if reason else ''}"
+        now = self._clock()
+        gone = [life.ended(task, TaskState.REMOVED, now, why) for task in before.tasks if task.id not in kept]
+        return await self._book.save(before, after, gone)
+
+    def _check_known(self, robot: str) -> None:
+        check_robot_name(robot)
+        if robot not in self._robots:
+            known = ", ".join(self._robots.names()) or "none yet"
+            raise RefusedError(f"robot {robot!r} is not known to this gateway; known are: {known}")
+
+    def _check_revision(self, robot: str, revision: int) -> None:
+        now = self._book.get(robot).revision
+        if revision != now:
+            raise self._book.outdated(
+                robot, f"the queue of robot {robot!r} is at revision {now}, not {revision}; look at it again"
+            )
+
+    async def _checked(self, robot: str, tasks: Sequence[QueueTask]) -> dict[str, edits.Whereabouts]:
+        """Return which of ``tasks`` were given before; raises RefusedError for one that cannot be driven."""
+        self._check_places(tasks)
+        wanted = {task.placement: task.task for task in tasks if task.placement is not None}
+        for name, queue in ((n, self._book.get(n)) for n in self._book.names()):
+            for queued in queue.tasks:
+                if queued.task.placement in wanted and wanted[queued.task.placement] != queued.id:
+                    raise RefusedError(
+                        f"placed cone {queued.task.placement} is collected by task {queued.id} of robot "
+                        f"{name!r} already; leave it out"
+                    )
+        standing = await self._database.read(placements.standing_ids, sorted(wanted))
+        gone = sorted(wanted.keys() - standing)
+        if gone:
+            raise RefusedError(
+                f"placed cone {gone[0]} does not stand: it was collected, or never put down; "
+                "see get_placements"
+            )
+        return await self._database.read(queues.whereabouts, [task.task for task in tasks])
+
+    def _check_places(self, tasks: Sequence[QueueTask]) -> None:
+        for task in tasks:
+            legs(task, self._site.settings.cones.offset)
+            check_places(self._site, [(task.x, task.y), *(task.path or ())])
+
+
+def _collecting(cone: PlacementReport, turns: bool) -> QueueTask:
+    """Return the task that collects a cone; one that stands off its robot is taken from the same side."""
+    return QueueTask(
+        task=str(uuid.uuid4()),
+        x=cone.x,
+        y=cone.y,
+        theta=cone.theta if turns else None,
+        kind=TaskKind.COLLECT,
+        cone=cone.cone,
+        label=cone.label,
+        layout=cone.layout,
+        plan=cone.plan,
+        placement=cone.placement,
+    )
+
+
+def _save_many(changes: Sequence[tuple[Queue, Queue]], connection: Connection) -> None:
+    queues.save_many(connection, changes)

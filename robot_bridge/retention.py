@@ -1,0 +1,71 @@
+"""How long things are kept: what is older than the site's settings say is deleted, in small pieces."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections.abc import Callable, Iterator
+from typing import NamedTuple
+
+from sqlalchemy import Connection
+
+from .access import audit, session_rows
+from .sites.settings import SiteSettings
+from .store import closures, commands, emergency_stops, observations, placements, queues, trajectories
+from .store.database import Database
+
+log = logging.getLogger(__name__)
+
+DAY = 86400.0
+AT_ONCE = 1000
+IMAGES_AT_ONCE = 20
+"""in one transaction; an image may be 15 MiB."""
+PAUSE = 0.05
+"""seconds between two deletions, in which robots and operators have the database."""
+
+
+class Kept(NamedTuple):
+    """Things of one kind: ``forget(connection, before, limit)`` deletes some, and returns how many."""
+
+    name: str
+    days: float
+    forget: Callable[[Connection, float, int], int]
+    at_once: int = AT_ONCE
+
+
+def kept(settings: SiteSettings) -> Iterator[Kept]:
+    """Yield all that is kept for a time only, with the days for which a site wants it."""
+    yield Kept("positions", settings.trajectories.keep_days, trajectories.forget)
+    yield Kept("ended commands", settings.commands.keep_days, commands.forget)
+    yield Kept("ended tasks", settings.commands.keep_days, queues.forget)
+    yield Kept("collected cones", settings.commands.keep_days, placements.forget)
+    yield Kept("emergency stops", settings.commands.keep_days, emergency_stops.forget)
+    yield Kept("opened roads", settings.commands.keep_days, closures.forget)
+    yield Kept("rejected objects", settings.observations.keep_days, observations.forget_rejected)
+    yield Kept("images", settings.observations.keep_images_days, observations.forget_images, IMAGES_AT_ONCE)
+    yield Kept("entries of the audit log", settings.audit.keep_days, audit.forget)
+    yield Kept("sessions", settings.audit.keep_days, session_rows.forget_ended)
+
+
+class Retention:
+    """Deletes what is too old; ``settings`` is asked each time, so they may change."""
+
+    def __init__(
+        self, database: Database, settings: Callable[[], SiteSettings], clock: Callable[[], float]
+    ) -> None:
+        self._database = database
+        self._settings = settings
+        self._clock = clock
+
+    async def prune(self) -> None:
+        """Delete what the settings do not keep any longer; raises StoreError."""
+        for kind in kept(self._settings()):
+            if removed := await self._forget(kind):
+                log.info("deleted %d %s, older than %g days", removed, kind.name, kind.days)
+
+    async def _forget(self, kind: Kept) -> int:
+        before, removed = self._clock() - kind.days * DAY, 0
+        while some := await self._database.run(kind.forget, before, kind.at_once):
+            removed += some
+            await asyncio.sleep(PAUSE)
+        return removed

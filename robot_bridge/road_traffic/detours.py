@@ -1,0 +1,159 @@
+"""Another way for robots whose road was closed; where there is none they stop, or operators are told."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import uuid
+from collections.abc import Callable
+from functools import partial
+from typing import Protocol
+
+from sqlalchemy import Connection
+
+from ..command_life.open_command import NOTHING, Order
+from ..commanding.book import CommandBook
+from ..commanding.orders import Orders
+from ..commanding.writing import Also
+from ..errors import BridgeError, RefusedError
+from ..messages import (
+    AbortTask,
+    CommandReport,
+    MessageError,
+    ReplannedRobot,
+    SetPath,
+    SetPosEnd,
+)
+from ..planning import Point
+from ..store import answers
+from .road_planning import RoadPlanner
+from .ways import Underway, Way, Ways
+
+log = logging.getLogger(__name__)
+
+
+AlsoOf = Callable[[str], Also]
+"""What more is to be written, made from the id of the command that the robot then carries out."""
+
+
+class Queues(Protocol):
+    """The robots' queues, as far as another way concerns them."""
+
+    async def redirect(self, robot: str, path: SetPath, operator: str, reason: str) -> CommandReport | None:
+        """Send a task of a queue by another path; None where the robot's task is none of a queue."""
+
+    def place(self, robot: str) -> Point | None:
+        """Return the place of the task that the robot does, None where that is none of its queue."""
+
+
+class Detours:
+    """Finds and sends other ways; ``stops`` tells whether a robot without another way is to stop."""
+
+    def __init__(
+        self,
+        ways: Ways,
+        roads: RoadPlanner | None,
+        orders: Orders,
+        queues: Queues,
+        book: CommandBook,
+        stops: Callable[[], bool],
+    ) -> None:
+        self._ways = ways
+        self._roads = roads
+        self._orders = orders
+        self._queues = queues
+        self._book = book
+        self._stops = stops
+
+    async def around(self, closure: str, reason: str | None, operator: str) -> list[ReplannedRobot]:
+        """Send every robot whose way leads along the road of ``closure``, closed by now, another way."""
+        if self._roads is None:
+            return []
+        concerned = await asyncio.to_thread(self._concerned, self._roads, closure, self._ways.all())
+        because = f"a road was closed{f': {reason}' if reason else ''}"
+        found = await asyncio.gather(*(self._lead(way, because, operator) for way in concerned))
+        return sorted(found, key=lambda robot: robot.robot)
+
+    def is_queued_path(self, robot: str) -> bool:
+        """Tell whether the robot drives a path of its queue, which ends with the task."""
+        underway = self._ways.of(robot)
+        drives_path = underway is not None and isinstance(underway.task, SetPath)
+        return drives_path and self._queues.place(robot) is not None
+
+    def goal(self, way: Way) -> Point:
+        """Return where the robot's task ends."""
+        place = self._queues.place(way.robot) if isinstance(way.task, SetPath) else None
+        return place or way.points[-1]
+
+    async def send(
+        self, way: Way, path: SetPath, operator: str, reason: str, also: AlsoOf | None = None
+    ) -> str:
+        """Send a robot along ``path``; return the id of the command that it then carries out.
+
+        A target stays the task that it is: the robot is told the way to it as if it had asked. ``also`` is
+        written in the same transaction. Raises RefusedError, as when the robot was told otherwise in the
+        meantime or is to stop, and StoreError.
+        """
+        if isinstance(way.task, SetPosEnd) and way.command != NOTHING:
+            more = None if also is None else also(way.command)
+            await self._book.lead(way.robot, way.command, path, partial(_tell, way.robot, path, more))
+            self._ways.told(way.robot, way.task, path)
+            return way.command
+        done = await self._queues.redirect(way.robot, path, operator, reason)
+        if done is None:
+            order = Order(str(uuid.uuid4()), way.robot, path, operator, reason, instead_of=way.command)
+            (done,) = await self._book.issue([order], None if also is None else also(order.command))
+        return done.command
+
+    async def stop(self, robot: str, reason: str, operator: str) -> str:
+        """Tell a robot to give up its task; return the id of the command."""
+        report = await self._orders.abort(AbortTask(str(uuid.uuid4()), robot, reason=reason), operator)
+        return report.command
+
+    def _concerned(self, roads: RoadPlanner, closure: str, underway: list[Underway]) -> list[Way]:
+        found = []
+        for way in (one.way() for one in underway):
+            points = way.points
+            if not way.known:
+                # It may have its own idea; the shortest way along the roads is the likeliest.
+                planned = roads.path_with_open(closure, points[0], points[-1])
+                points = points if planned is None else list(planned.points)
+            if roads.closed.along(points, [closure]) or roads.closed.at(points[-1]) == closure:
+                found.append(way)
+        return found
+
+    async def _lead(self, way: Way, because: str, operator: str) -> ReplannedRobot:
+        try:
+            points, none = await asyncio.to_thread(self._other_way, way)
+            if points is None:
+                return await self._without_way(way, f"{because}; {none}", operator)
+            path = SetPath(points, way.task.theta)
+            command = await self.send(way, path, operator, because[:500])
+            text = f"{way.robot} was sent another way: {because}"
+            return ReplannedRobot(way.robot, "another way", text, command)
+        except (BridgeError, MessageError) as error:
+            log.error("robot %s, whose road was closed: %s", way.robot, error)
+            text = f"{way.robot} was NOT sent another way: {because}; {error}. Look after it."
+            return ReplannedRobot(way.robot, "failed", text)
+
+    def _other_way(self, way: Way) -> tuple[list[Point] | None, str]:
+        assert self._roads is not None
+        try:
+            planned = self._roads.path(way.points[0], self.goal(way))
+        except RefusedError as error:
+            return None, str(error)
+        # Straight over the fields is no other way.
+        return (None, planned.note) if planned.note else (list(planned.points), "")
+
+    async def _without_way(self, way: Way, because: str, operator: str) -> ReplannedRobot:
+        if not self._stops():
+            text = f"{way.robot} drives on as it was told, though {because}. Look after it."
+            return ReplannedRobot(way.robot, "told only", text)
+        command = await self.stop(way.robot, f"no other way: {because}"[:500], operator)
+        return ReplannedRobot(way.robot, "stopped", f"{way.robot} was stopped: {because}", command)
+
+
+def _tell(robot: str, path: SetPath, more: Also | None, connection: Connection) -> None:
+    answers.add_all(connection, [(robot, path)])
+    if more is not None:
+        more(connection)

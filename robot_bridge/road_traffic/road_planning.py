@@ -1,0 +1,233 @@
+"""Paths along the roads of the published site."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from ..errors import RefusedError
+from ..messages import RouteReport, SurfaceMetres
+from ..planning import Planned, Point
+from ..roads.centrelines import Floats
+from ..roads.dense import Driving, dense_path
+from ..roads.errors import NoRouteError, OffNetworkError, RoadsError
+from ..roads.joining import with_ends
+from ..roads.route import Route
+from ..roads.routes import Restrictions
+from ..sites.site import Site
+from .closed_roads import ClosedRoads
+from .site_roads import SiteRoads, Stretch
+
+
+class Wanted(NamedTuple):
+    """What a way is to be like, beside open: :class:`.Restrictions`, and paths whose roads it is to avoid."""
+
+    restrictions: Restrictions = Restrictions()
+    avoid: Sequence[Sequence[Point]] = ()
+
+
+ANY = Restrictions()
+
+
+class NoWayError(RefusedError):
+    """There are roads, and no way that may be used leads along them."""
+
+
+class RoadPlanner:
+    """Finds the shortest way along the centrelines of the site that ``site`` returns, around its keepouts.
+
+    The network is built here, and again when the site is another. Roads that operators closed stay closed on
+    it, and those narrower than robots are never used. Safe to use from several threads; what is closed is
+    told without waiting for any other.
+    """
+
+    def __init__(self, site: Callable[[], Site], driving: Driving | None = None) -> None:
+        self._site = site
+        self._driving = driving
+        self._using = threading.Lock()
+        self._building = threading.Lock()
+        self._closures: dict[str, Stretch] = {}
+        with refusals():
+            self._roads = SiteRoads.of(site())
+        self._closed = self._roads.closed_roads()
+
+    def path(self, start: Point, goal: Point) -> Planned:
+        """Return the path, a straight line with a note where the site has no roads near both places.
+
+        :raises RefusedError: when roads are near and no way leads along them, or a place is on a closed one.
+        """
+        try:
+            with self._in_use() as roads:
+                found = self._found(roads, start, goal)
+        except NoWayError as error:
+            raise RefusedError(f"GetPath: {error}") from error
+        return self._planned(found, start, goal)
+
+    def path_with_open(self, closure: str, start: Point, goal: Point) -> Planned | None:
+        """Return the path that there would be if the road of ``closure`` were open; None without a way."""
+        with self._in_use() as roads, roads.opened(closure):
+            try:
+                found = self._found(roads, start, goal)
+            except RefusedError:
+                return None
+        return self._planned(found, start, goal)
+
+    def route(self, start: Point, goal: Point, wanted: Wanted | None = None) -> RouteReport:
+        """Return the way as operators are shown it.
+
+        :raises RefusedError: as :meth:`path`; and at once while a new publication's roads are being read.
+        """
+        wanted = wanted or Wanted()
+        with self._in_use(patient=False) as roads:
+            avoid = {edge for path in wanted.avoid for edge in roads.edges_of(path)}
+            try:
+                found = self._found(roads, start, goal, wanted.restrictions, avoid)
+            except NoWayError as error:
+                more = " Roads on which other robots' tasks lead were left out." if avoid else ""
+                raise RefusedError(f"{error}{more}") from error
+        if isinstance(found, str):
+            why = f" and not along roads: {found}" if found else "; the site has no roads"
+            return _straight(start, goal, f"the way is a straight line{why}")
+        # Long ways take long to make dense, and need nobody to wait for the roads meanwhile.
+        return self._reported(found, start, goal)
+
+    def stretch(self, place: Point, reach: float) -> Stretch:
+        """Return the road nearest to ``place``, from junction to junction.
+
+        :raises RefusedError: when none is within ``reach`` metres.
+        """
+        with self._in_use() as roads:
+            return roads.stretch(place, reach)
+
+    def set_closures(self, closures: Mapping[str, Stretch]) -> dict[str, int]:
+        """Close the stretches of ``closures`` and no others; return how many edges each of them closes."""
+        with self._in_use() as roads:
+            self._closures = dict(closures)
+            counts = roads.set_closures(self._closures)
+            self._closed = roads.closed_roads()
+            return counts
+
+    @property
+    def closed(self) -> ClosedRoads:
+        """What is closed now; another one whenever that changes."""
+        return self._closed
+
+    def renew(self) -> dict[str, int]:
+        """Take over the roads of a new publication; return how many edges each closure closes there."""
+        self._take_over(patient=True)
+        with self._using:
+            return self._roads.edge_counts()
+
+    @contextmanager
+    def _in_use(self, *, patient: bool = True) -> Iterator[SiteRoads]:
+        self._take_over(patient=patient)
+        with self._using, refusals():
+            yield self._roads
+
+    def _take_over(self, *, patient: bool) -> None:
+        """Build the roads of a new publication beside those in use, which go on being used meanwhile."""
+        if self._roads.site is self._site():
+            return
+        if not self._building.acquire(blocking=patient):
+            raise RefusedError("the roads of a new publication are being read; try again in a moment")
+        try:
+            site = self._site()
+            if self._roads.site is not site:
+                with refusals():
+                    roads = SiteRoads.of(site)
+                with self._using:
+                    roads.set_closures(self._closures)
+                    self._roads, self._closed = roads, roads.closed_roads()
+        finally:
+            self._building.release()
+
+    def _found(
+        self,
+        roads: SiteRoads,
+        start: Point,
+        goal: Point,
+        wanted: Restrictions = ANY,
+        avoid: Collection[int] = (),
+    ) -> Route | str:
+        """Return the way along the roads, or why there are none to go along, empty for a site without any."""
+        if roads.router is None:
+            return ""
+        roads.check_open(start, goal)
+        width = max(wanted.least_width, self._how().robot_width)
+        try:
+            return roads.router.route(start, goal, replace(wanted, least_width=width), avoid=avoid)
+        except OffNetworkError as error:
+            if not all(roads.is_near(*place) for place in (start, goal)):
+                return str(error)
+            raise NoWayError(
+                f"{error} There are roads nearer that may not be used: narrower than {width:g} m, closed, or "
+                "of another surface."
+            ) from error
+        except NoRouteError as error:
+            raise NoWayError(str(error)) from error
+
+    def _planned(self, found: Route | str, start: Point, goal: Point) -> Planned:
+        if isinstance(found, str):
+            note = f"the path is a straight line and not along roads: {found}" if found else ""
+            return Planned([start, goal], note)
+        points, widths = with_ends(found, start, goal)
+        return Planned(_rounded(dense_path(points, widths, self._how()).points, start, goal))
+
+    def _reported(self, route: Route, start: Point, goal: Point) -> RouteReport:
+        points, widths = with_ends(route, start, goal)
+        dense = dense_path(points, widths, self._how())
+        metres: dict[str, float] = {}
+        for surface, length in zip(route.surfaces, route.lengths.tolist(), strict=True):
+            metres[surface] = metres.get(surface, 0.0) + length
+        return RouteReport(
+            points=_rounded(dense.points, start, goal),
+            metres=round(float(np.hypot(*np.diff(dense.points, axis=0).T).sum()), 2),
+            seconds=round(route.seconds, 1),
+            surfaces=[SurfaceMetres(surface, round(length, 2)) for surface, length in metres.items()],
+            tight=[(round(x, 2), round(y, 2)) for x, y in dense.tight.tolist()],
+            off_goal=round(route.off_goal, 2),
+            engine=route.engine,
+        )
+
+    def _how(self) -> Driving:
+        if self._driving is not None:
+            return self._driving
+        how = self._site().settings.routes
+        return Driving(how.spacing_m, how.turning_radius_m, how.robot_width_m)
+
+
+def check_roads(site: Site) -> None:
+    """Raise RefusedError when no ways can be found on the roads of ``site``."""
+    with refusals():
+        SiteRoads.of(site)
+
+
+@contextmanager
+def refusals() -> Iterator[None]:
+    """Raise RefusedError for what is wrong with roads, or with what finds ways on them."""
+    try:
+        yield
+    except RoadsError as error:
+        raise RefusedError(
+            f"the roads of the site cannot be used: {error} Correct the road layers, and publish the site "
+            "again"
+        ) from error
+    except ImportError as error:
+        raise RefusedError(
+            f"no ways can be found: the gateway lacks Python package {error.name or error}; install it there "
+            "with: pip install 'fleet-supervisor-robot-bridge[routes]'"
+        ) from error
+
+
+def _straight(start: Point, goal: Point, note: str) -> RouteReport:
+    metres = float(np.hypot(goal[0] - start[0], goal[1] - start[1]))
+    return RouteReport([start, goal], round(metres, 2), round(metres, 1), note=note)
+
+
+def _rounded(points: Floats, start: Point, goal: Point) -> list[Point]:
+    return [start, *map(tuple, points[1:-1].round(3).tolist()), goal]

@@ -1,0 +1,159 @@
+"""The roads of one publication: its network, what finds ways on it, and what is closed there."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import RefusedError
+from ..roads.along import edges_along
+from ..roads.centrelines import Floats, centrelines
+from ..roads.closures import edges_of_closure
+from ..roads.keepouts import edges_through
+from ..roads.network import Network, build_network
+from ..roads.routes import REACH, Router
+from ..sites.site import Site
+from .closed_roads import ClosedRoads, Place
+
+log = logging.getLogger(__name__)
+
+
+class Stretch(NamedTuple):
+    """A piece of road, (n, 2) metres in the site frame, on its level."""
+
+    line: Floats
+    level: int
+
+
+@dataclass
+class SiteRoads:
+    """The roads of ``site``; ``router`` is None where it has none. Not to be used by two threads at once."""
+
+    site: Site
+    router: Router | None
+    _always_closed: NDArray[np.bool_]
+    _closures: dict[str, set[int]] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, site: Site) -> SiteRoads:
+        """Build the network of ``site`` and close what leads through its keepouts."""
+        if not site.centrelines:
+            return cls(site, None, np.zeros(0, bool))
+        network = _network(site)
+        router = Router(network)
+        closed = edges_through(network, [area.rings for area in site.keepouts])
+        router.close(closed.tolist())
+        log.info(
+            "paths follow the roads of site %s: %d edges, %d of them closed by keepouts, found by %s",
+            site.id,
+            len(network),
+            len(closed),
+            router.engine_name,
+        )
+        return cls(site, router, router.closed)
+
+    def stretch(self, place: Place, reach: float) -> Stretch:
+        """Return the road nearest to ``place``; raises RefusedError where none is within ``reach`` metres."""
+        x, y = place
+        found = None if self.router is None else self.router.nearest.nearest(x, y, reach)
+        if found is None or self.router is None:
+            raise RefusedError(
+                f"no road of site {self.site.id} is within {reach:g} m of ({x:.2f}, {y:.2f}); "
+                "choose a place on a road"
+            )
+        edges = self.router.network.edges
+        return Stretch(edges.line(found.edge), int(edges.level[found.edge]))
+
+    def is_near(self, x: float, y: float) -> bool:
+        """Tell whether (x, y) is near any road, whether that may be used or not."""
+        return self.router is not None and self.router.nearest.nearest(x, y, REACH) is not None
+
+    def set_closures(self, closures: Mapping[str, Stretch]) -> dict[str, int]:
+        """Close these stretches and no others; return how many edges each of them closes."""
+        if self.router is None:
+            self._closures = {id: set() for id in closures}
+            return self.edge_counts()
+        before = self._all_closed()
+        nearest = self.router.nearest
+        self._closures = {
+            id: known if (known := self._closures.get(id)) else set(edges_of_closure(nearest, *one).tolist())
+            for id, one in closures.items()
+        }
+        after = self._all_closed()
+        self._change(before - after, after - before)
+        return self.edge_counts()
+
+    def edge_counts(self) -> dict[str, int]:
+        """Return how many edges each closure closes."""
+        return {id: len(edges) for id, edges in self._closures.items()}
+
+    @contextmanager
+    def opened(self, closure: str) -> Iterator[None]:
+        """Open the road of one closure for a while."""
+        edges = self._closures.get(closure, set())
+        elsewhere = {edge for id, some in self._closures.items() if id != closure for edge in some}
+        alone = edges - elsewhere
+        self._closures[closure] = set()
+        self._change(alone, set())
+        try:
+            yield
+        finally:
+            self._closures[closure] = edges
+            self._change(set(), alone)
+
+    def edges_of(self, path: Sequence[Place]) -> list[int]:
+        """Return the edges along which ``path`` leads."""
+        if self.router is None or len(path) < 2:
+            return []
+        found: list[int] = edges_along(self.router.nearest, np.asarray(path, dtype=np.float64)).tolist()
+        return found
+
+    def closed_roads(self) -> ClosedRoads:
+        """Return what is closed now."""
+        closures = {id: frozenset(edges) for id, edges in self._closures.items()}
+        if self.router is None:
+            return ClosedRoads(None, closures)
+        return ClosedRoads(self.router.nearest, closures, self.router.closed)
+
+    def check_open(self, *places: Place) -> None:
+        """Raise RefusedError for the first of ``places`` that is on a closed road."""
+        if not any(self._closures.values()):
+            return
+        closed = self.closed_roads()
+        for x, y in places:
+            if closed.at((x, y)) is not None:
+                raise RefusedError(
+                    f"({x:.2f}, {y:.2f}) is on a road that an operator closed; open the road, or choose "
+                    "another place"
+                )
+
+    def _all_closed(self) -> set[int]:
+        return {edge for edges in self._closures.values() for edge in edges}
+
+    def _change(self, opened: set[int], closed: set[int]) -> None:
+        if self.router is None:
+            return
+        if opened := {edge for edge in opened if not self._always_closed[edge]}:
+            self.router.open(sorted(opened))
+        if closed:
+            self.router.close(sorted(closed))
+
+
+def _network(site: Site) -> Network:
+    return build_network(
+        centrelines(
+            [line.points for line in site.centrelines],
+            width=[line.width_m for line in site.centrelines],
+            surface=[line.surface for line in site.centrelines],
+            direction=[line.direction for line in site.centrelines],
+            speed=[line.speed_ms for line in site.centrelines],
+            closed=[line.closed for line in site.centrelines],
+            level=[line.level for line in site.centrelines],
+        )
+    )

@@ -1,0 +1,209 @@
+"""Robots in each other's way: found, told to operators, and resolved when one of them asks for it."""
+
+from __future__ import annotations
+
+import asyncio
+import math
+import time
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+from ..errors import RefusedError
+from ..messages import ConflictResolved, Conflicts, ResolveConflict, SetPath, to_json
+from ..planning import Point
+from ..robots import Robots
+from ..sites.settings import RouteSettings
+from ..traffic.conflicts import conflicts_with, find_conflicts
+from ..traffic.giving_way import give_way
+from ..traffic.movement import Movement, driving
+from .detours import Detours
+from .road_planning import RoadPlanner, Wanted
+from .traffic_picture import Seen, conflict_report, cut
+from .waiting_robots import WaitingRobots
+from .ways import Way, Ways
+
+SLOWEST = 0.3
+"""A robot at less than this share of the usual speed starts or ends, and will not go on so."""
+SHARE = 0.1
+"""The share of one processor that looking for conflicts may take."""
+SHORTEST = 0.5
+"""Metres of a way below which a robot cannot be sent on to wait: it would have to stop where it is."""
+
+
+class Plan(NamedTuple):
+    """How a robot gets out of the way: it waits at ``station`` of its way, or drives ``points``.
+
+    ``later`` is the seconds that it arrives later than it would, ``until`` when its waiting ends.
+    """
+
+    way: Way
+    points: list[Point]
+    later: float
+    station: float = 0.0
+    until: float | None = None
+
+
+class TrafficControl:
+    """Looks for conflicts about once a second, and resolves one when an operator says who gives way."""
+
+    def __init__(
+        self,
+        clock: Callable[[], float],
+        robots: Robots,
+        ways: Ways,
+        roads: RoadPlanner | None,
+        detours: Detours,
+        waiting: WaitingRobots,
+        settings: Callable[[], RouteSettings],
+        announce: Callable[[str, str, dict[str, Any]], None],
+    ) -> None:
+        self._clock = clock
+        self._robots = robots
+        self._ways = ways
+        self._roads = roads
+        self._detours = detours
+        self._waiting = waiting
+        self._settings = settings
+        self._announce = announce
+        self._lock = asyncio.Lock()
+        self._told = False
+        self._next = 0.0
+
+    async def conflicts(self) -> Conflicts:
+        """Return the conflicts of all robots as they are on their ways now."""
+        seen = self._look()
+        found = await asyncio.to_thread(_found, seen)
+        return Conflicts(seen.now, found, self._waiting.report())
+
+    async def watch(self, *, listened_to: bool) -> None:
+        """Send on who has waited long enough; tell operators, if they are ``listened_to``, of conflicts."""
+        async with self._lock:
+            if self._waiting:
+                await self._waiting.see_to(self._look())
+        if not listened_to or time.monotonic() < self._next:
+            return
+        seen, began = self._look(), time.monotonic()
+        found = await asyncio.to_thread(_found, seen) if seen.underway else []
+        self._next = time.monotonic() + (time.monotonic() - began) / SHARE
+        report = Conflicts(seen.now, found, self._waiting.report())
+        something = bool(report.conflicts or report.waiting)
+        if something or self._told:
+            self._announce("conflicts", "conflicts", to_json(report))
+        self._told = something
+
+    async def resolve(self, request: ResolveConflict, operator: str) -> ConflictResolved:
+        """Let ``robot`` wait for ``other``, or send it another way.
+
+        :raises RefusedError: when there is no such conflict, or it cannot be resolved so; nothing is changed.
+        """
+        async with self._lock:
+            queued = self._detours.is_queued_path(request.robot)
+            plan = await asyncio.to_thread(self._plan, self._look(), request, queued)
+            if plan.until is None:
+                return await self._send_round(request, plan, operator)
+            return await self._let_wait(request, plan, operator)
+
+    def _look(self) -> Seen:
+        settings, places = self._settings(), {}
+        for name in self._robots.names():
+            pose = self._robots.get(name).pose
+            if pose is not None:
+                usual = abs(pose.v) >= SLOWEST * settings.speed_ms
+                places[name] = (pose.x, pose.y), abs(pose.v) if usual else settings.speed_ms
+        return Seen(self._clock(), settings, self._ways.all(), places, self._waiting.rows())
+
+    def _plan(self, seen: Seen, request: ResolveConflict, queued: bool) -> Plan:
+        """Return how the robot is out of the way soonest; raises RefusedError where it cannot be."""
+        movements = seen.movements()
+        for robot in (request.robot, request.other):
+            if robot not in movements:
+                raise RefusedError(f"it is not known where robot {robot!r} is, so nothing can be planned")
+        mine, margin = movements[request.robot], seen.settings.margin_m
+        if not conflicts_with(mine, [movements[request.other]], margin, seen.now):
+            raise RefusedError(
+                f"{request.robot} and {request.other} are not in each other's way now; nothing was done"
+            )
+        underway = next((one for one in seen.underway if one.robot == request.robot), None)
+        if underway is None or request.robot in seen.holds:
+            raise RefusedError(
+                f"{request.robot} has no task or waits already, so it cannot give way; "
+                f"let {request.other} do it"
+            )
+        way = underway.way()
+        plans = []
+        if request.by != "route" and not queued:
+            plans.append(_waiting(way, movements, seen))
+        if request.by != "waiting":
+            plans.append(self._round(way, movements, seen))
+        good = [plan for plan in plans if plan is not None]
+        if not good:
+            raise RefusedError(_unresolved(request, queued))
+        return min(good, key=lambda plan: plan.later)
+
+    def _round(self, way: Way, movements: dict[str, Movement], seen: Seen) -> Plan | None:
+        """Return another way on which the robot meets nobody, None where there is none."""
+        if self._roads is None:
+            return None
+        mine, margin = movements[way.robot], seen.settings.margin_m
+        others = [movement for name, movement in movements.items() if name != way.robot]
+        found = conflicts_with(mine, others, margin, seen.now)
+        met = {name for one in found for name in (one.robot, one.other)}
+        avoid = [movements[name].points.tolist() for name in met - {way.robot}]
+        try:
+            goal = self._detours.goal(way)
+            route = self._roads.route(way.points[0], goal, Wanted(avoid=avoid))
+        except RefusedError:
+            return None
+        movement = driving(way.robot, route.points, seen.places[way.robot][1], seen.now, mine.radius)
+        if route.note or conflicts_with(movement, others, margin, seen.now):
+            return None
+        return Plan(way, route.points, max(movement.ends - mine.ends, 0.0))
+
+    async def _send_round(self, request: ResolveConflict, plan: Plan, operator: str) -> ConflictResolved:
+        robot, reason = plan.way.robot, f"out of the way of {request.other}"
+        path = SetPath(plan.points, plan.way.task.theta)
+        command = await self._detours.send(plan.way, path, operator, reason)
+        text = f"{robot} was sent another way, {reason}, and arrives about {plan.later:.0f} s later"
+        return ConflictResolved(robot, "another way", text, command, round(plan.later, 1))
+
+    async def _let_wait(self, request: ResolveConflict, plan: Plan, operator: str) -> ConflictResolved:
+        assert plan.until is not None
+        robot = plan.way.robot
+        first, rest = cut(plan.points, plan.station)
+        path = SetPath(rest, plan.way.task.theta)
+        command = await self._waiting.send(
+            plan.way, SetPath(first), path, request.other, plan.until, operator
+        )
+        x, y = first[-1]
+        text = f"{robot} waits at ({x:.1f}, {y:.1f}) for {request.other}, about {plan.later:.0f} s"
+        return ConflictResolved(robot, "waits", text, command, round(plan.later, 1))
+
+
+def _found(seen: Seen) -> list[Any]:
+    movements = list(seen.movements().values())
+    return [conflict_report(one) for one in find_conflicts(movements, seen.settings.margin_m, seen.now)]
+
+
+def _waiting(way: Way, movements: dict[str, Movement], seen: Seen) -> Plan | None:
+    """Return where and how long the robot waits, None where that does not help or is where it is now."""
+    mine = movements[way.robot]
+    others = [movement for name, movement in movements.items() if name != way.robot]
+    wait = give_way(mine, others, seen.settings.margin_m, seen.now) if way.known else None
+    if wait is None or wait.station < SHORTEST or math.isinf(wait.movement.ends):
+        return None
+    until = mine.time_at(wait.station) + wait.seconds
+    return Plan(way, way.points, wait.seconds, wait.station, until)
+
+
+def _unresolved(request: ResolveConflict, queued: bool) -> str:
+    how = {
+        "waiting": "waiting does not resolve it, or it is too late for that",
+        "route": "no other way on the roads meets nobody",
+        "either": "neither waiting nor another way resolves it",
+    }[request.by]
+    if queued and request.by != "route":
+        how += "; the task is one of a queue, and is not driven in two parts"
+    return (
+        f"{request.robot} cannot give way to {request.other}: {how}. Let {request.other} give way, "
+        "abort one of the two, or draw a route"
+    )

@@ -1,0 +1,1 @@
+"""Road surfaces: made of centrelines by their widths, and told for any place."""

@@ -1,0 +1,195 @@
+"""The part on assignment: 200 cones for five robots, against nearest neighbour, savings, and PyVRP alone."""
+
+from __future__ import annotations
+
+import os
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from robot_bridge.assignment.by_pyvrp import load_pyvrp
+from robot_bridge.assignment.checks import check_plan
+from robot_bridge.assignment.days import Days
+from robot_bridge.assignment.job import Job, Robot, Store, Target
+from robot_bridge.assignment.plan import Plan
+from robot_bridge.assignment.road_travel import RoadTravel
+from robot_bridge.assignment.savings import TripLimits, saving_pairs, trips_by_savings
+from robot_bridge.assignment.solving import PREVIEW, PYVRP, Wanted, assign
+from robot_bridge.assignment.travel import StraightTravel, Travel
+from robot_bridge.roads.repairs import repaired_network
+from robot_bridge.roads.route import stretch
+from robot_bridge.roads.routes import Router
+
+from . import e_n51_k5
+from .page import Part
+from .road_data import track
+
+CONES, ROBOTS, CAPACITY = 200, 5, 8
+SHORT_S, LONG_S = 2.0, 10.0
+GOAL = 1.005
+SEEDS = (1, 2, 3)
+
+TEXT = """\
+{cones} cones, room for {room}, {robots} robots that begin at the one store; metres of all robots, and how many
+times what PyVRP alone finds in {long:g} s, with its own defaults, in the same run. Load of the machine: {load}
+(1 min, at the end).
+
+| | nearest neighbour | Clarke and Wright | preview | ours, {short:g} s | PyVRP alone, {short:g} s | PyVRP alone, {long:g} s |
+|---|---|---|---|---|---|---|
+{metres}
+
+The preview took {preview}; all distances on the track's roads took {matrix:.2f} s. On average ours is {mean:.4f}
+times PyVRP's in {long:g} s (goal: {goal}).
+
+Balanced, the last robot finishes at (seconds; 10 s for each cone, 30 s at each visit to the store):
+
+| | preview | ours, {short:g} s | an even share of the shortest plan |
+|---|---|---|---|
+{ends}
+
+E-n51-k5 (Christofides and Eilon, 1969; 50 customers, optimum {optimum}): preview {instance_preview:.0f}, ours
+{instance:.0f} in {short:g} s. {faults} of {plans} plans have faults by the checker.
+"""  # noqa: E501
+
+
+@dataclass(frozen=True)
+class Case:
+    """One set of cones, and what was found for it."""
+
+    name: str
+    job: Job
+    travel: Travel
+
+
+def measure(data: Path) -> Part:
+    """Measure on made-up places, on the roads of ZalaZONE's track, and on a public instance."""
+    load_pyvrp()
+    cases = [_made_up(seed) for seed in SEEDS]
+    begun = time.perf_counter()
+    cases.append(_on_the_track(data))
+    matrix_s = time.perf_counter() - begun
+    rows, ends, ratios, previews, plans = [], [], [], [], []
+    for case in cases:
+        seconds, preview = _planned(case, "distance", PREVIEW)
+        _, ours = _planned(case, "distance", PYVRP)
+        found = [
+            _nearest_neighbour(case), _savings(case), preview.metres, ours.metres,
+            _pyvrp_alone(case, SHORT_S), _pyvrp_alone(case, LONG_S),
+        ]  # fmt: skip
+        rows.append(_row(case.name, [f"{one:.0f} ({one / found[-1]:.4f})" for one in found]))
+        ratios.append(ours.metres / found[-1])
+        previews.append(seconds)
+        even = [_planned(case, "balanced", method)[1] for method in (PREVIEW, PYVRP)]
+        ends.append(_row(case.name, [*(f"{one.end_s:.0f}" for one in even), f"{_even_share(ours):.0f}"]))
+        plans += [preview, ours, *even]
+    short, quick = _instance(PYVRP), _instance(PREVIEW)
+    faults = sum(bool(check_plan(plan)) for plan in plans)
+    mean = float(np.mean(ratios))
+    text = TEXT.format(
+        cones=CONES, room=CAPACITY, robots=ROBOTS, short=SHORT_S, long=LONG_S,
+        load=f"{os.getloadavg()[0]:.1f}", metres="\n".join(rows), ends="\n".join(ends),
+        preview=f"{min(previews):.2f} to {max(previews):.2f} s", matrix=matrix_s, mean=mean, goal=GOAL,
+        optimum=e_n51_k5.OPTIMUM, instance=short, instance_preview=quick, faults=faults, plans=len(plans),
+    )  # fmt: skip
+    return Part("Assignment of cones", text, failed=mean > GOAL or faults > 0)
+
+
+def _made_up(seed: int) -> Case:
+    places = np.random.default_rng(seed).uniform(0, 300, (CONES, 2))
+    job = _job(places, (150.0, 150.0))
+    return Case(f"field of 300 m, seed {seed}", job, StraightTravel(job))
+
+
+def _on_the_track(data: Path) -> Case:
+    network, _ = repaired_network(track(data), 0.5)
+    random = np.random.default_rng(1)
+    # One way where the lanes are: places that can be reached are those of the greatest strong part.
+    edges, shares = random.integers(0, len(network), 6 * CONES), random.uniform(size=6 * CONES)
+    stations = shares * network.lengths[edges]
+    places = np.array(
+        [stretch(network.edges.line(k), 0.0, at)[-1] for k, at in zip(edges, stations, strict=True)]
+    )
+    job = _job(places, tuple(places[0]))
+    metres = RoadTravel(job, Router(network)).metres
+    store = job.first_store
+    reached = np.flatnonzero(np.isfinite(metres[store]) & np.isfinite(metres[:, store]))
+    kept = reached[reached >= job.first_target][:CONES] - job.first_target
+    job = _job(places[kept], tuple(places[0]))
+    return Case("roads of ZalaZONE's track", job, RoadTravel(job, Router(network)))
+
+
+def _job(places: np.ndarray, store: tuple[float, float]) -> Job:
+    return Job(
+        tuple(Target(f"c{k}", float(x), float(y)) for k, (x, y) in enumerate(places, 1)),
+        tuple(Robot(f"r{k}", *store, CAPACITY) for k in range(1, ROBOTS + 1)),
+        (Store("store", *store),),
+    )
+
+
+def _planned(case: Case, objective: str, method: str) -> tuple[float, Plan]:
+    begun = time.perf_counter()
+    plan = assign(case.job, case.travel, Wanted(objective, method, SHORT_S))
+    return time.perf_counter() - begun, plan
+
+
+def _nearest_neighbour(case: Case) -> float:
+    metres, store = case.travel.metres, case.job.first_store
+    left = set(range(case.job.first_target, len(case.job.places)))
+    total, at, room = 0.0, store, CAPACITY
+    while left:
+        if room == 0:
+            total, at, room = total + metres[at, store], store, CAPACITY
+        place = min(left, key=lambda one: metres[at, one])
+        total, at, room = total + metres[at, place], place, room - 1
+        left.remove(place)
+    return float(total + metres[at, store])
+
+
+def _savings(case: Case) -> float:
+    days = Days(case.job, case.travel.metres)
+    targets = list(range(case.job.first_target, len(case.job.places)))
+    trips = trips_by_savings(days, targets, saving_pairs(days, targets), TripLimits(CAPACITY))
+    return sum(days.trip_metres(trip) for trip in trips)
+
+
+def _pyvrp_alone(case: Case, seconds: float) -> float:
+    """Return what PyVRP finds with its own defaults, one vehicle for each trip."""
+    from pyvrp.stop import MaxRuntime
+
+    pyvrp = load_pyvrp()
+    places = [case.job.first_store, *range(case.job.first_target, len(case.job.places))]
+    whole = np.rint(case.travel.metres[np.ix_(places, places)] * 10).astype(np.int64)
+    np.fill_diagonal(whole, 0)
+    data = pyvrp.ProblemData(
+        [pyvrp.Location(*map(float, case.job.places[place])) for place in places],
+        [pyvrp.Client(k, delivery=[1]) for k in range(1, len(places))],
+        [pyvrp.Depot(0)],
+        [pyvrp.VehicleType(len(places) // CAPACITY + ROBOTS, [CAPACITY])],
+        [whole],
+        [whole],
+    )
+    best = pyvrp.solve(data, MaxRuntime(seconds), collect_stats=False).best
+    return float(best.distance()) / 10 if best.is_feasible() else float("inf")
+
+
+def _even_share(plan: Plan) -> float:
+    return sum(one.end_s for one in plan.robots) / len(plan.robots)
+
+
+def _instance(method: str) -> float:
+    customers = e_n51_k5.customers()
+    x, y = map(float, e_n51_k5.DEPOT)
+    job = Job(
+        tuple(Target(f"c{k}", *row[:2], demand=row[2]) for k, row in enumerate(customers, 1)),
+        (Robot("r", x, y, e_n51_k5.CAPACITY),),
+        (Store("store", x, y),),
+    )
+    travel = StraightTravel(job)
+    travel.metres = e_n51_k5.rounded(travel.metres)
+    return assign(job, travel, Wanted("distance", method, SHORT_S)).metres
+
+
+def _row(name: str, cells: list[str]) -> str:
+    return f"| {name} | {' | '.join(cells)} |"

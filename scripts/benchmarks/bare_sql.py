@@ -1,0 +1,145 @@
+"""The least that can answer robots on SQL: a loop on one connection, with the gateway's drivers.
+
+``python -m benchmarks.bare_sql URL`` reads requests, writes an OpAck for each (and an empty map for Ready)
+and deletes them, in one transaction that waits for the disk no more than the gateway's does. It checks
+nothing and keeps nothing: what it cannot do faster is the database's and the robots' own time.
+"""
+
+from __future__ import annotations
+
+import sqlite3
+import sys
+import time
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from typing import Any
+from urllib.parse import urlsplit
+
+from robot_bridge.store.wakeups import LONGEST_S, SHORTEST_S
+
+from .sql_robots import Ear, where
+
+READ = "select id, robot, op, params from rr order by id limit 500"
+ADD = "insert into sa (robot, op, params, urgent) values (%s, %s, %s, 0)"
+
+
+class Server(ABC):
+    """One connection."""
+
+    def __init__(self, url: str) -> None:
+        self.connection = self.connect(url)
+        self.pause = SHORTEST_S
+
+    def serve(self) -> None:
+        """Answer until killed."""
+        while True:
+            rows = self.read()
+            if rows:
+                ids = [row[0] for row in rows]
+                self.answer([answer for row in rows for answer in _answers(*row)], ids)
+            self.wait(bool(rows))
+
+    def wait(self, found: bool) -> None:
+        """Look again at once where there was something, else less and less often."""
+        self.pause = SHORTEST_S if found else min(2 * self.pause, LONGEST_S)
+        time.sleep(self.pause)
+
+    @abstractmethod
+    def connect(self, url: str) -> Any:
+        """Return a connection."""
+
+    @abstractmethod
+    def read(self) -> Sequence[tuple[Any, ...]]:
+        """Return the oldest requests."""
+
+    @abstractmethod
+    def answer(self, rows: list[tuple[str, str, str]], ids: list[int]) -> None:
+        """Write answers and delete requests in one transaction."""
+
+
+class SQLite(Server):
+    """Asks for rows only where another connection wrote."""
+
+    def connect(self, url: str) -> Any:
+        connection = sqlite3.connect(url.removeprefix("sqlite:///"), timeout=10, isolation_level=None)
+        connection.execute("pragma synchronous = normal")
+        self.seen = -1
+        return connection
+
+    def read(self) -> Sequence[tuple[Any, ...]]:
+        version = self.connection.execute("pragma data_version").fetchone()[0]
+        if version == self.seen:
+            return []
+        self.seen = version
+        return list(self.connection.execute(READ))
+
+    def answer(self, rows: list[tuple[str, str, str]], ids: list[int]) -> None:
+        self.connection.execute("begin immediate")
+        self.connection.executemany(ADD.replace("%s", "?"), rows)
+        self.connection.executemany("delete from rr where id = ?", [(id,) for id in ids])
+        self.connection.execute("commit")
+
+
+class MariaDB(Server):
+    """READ COMMITTED, as the gateway."""
+
+    def connect(self, url: str) -> Any:
+        import pymysql
+
+        return pymysql.connect(
+            **where(url),
+            database=urlsplit(url).path[1:],
+            autocommit=True,
+            init_command="set session transaction isolation level read committed",
+        )
+
+    def read(self) -> Sequence[tuple[Any, ...]]:
+        with self.connection.cursor() as cursor:
+            cursor.execute(READ)
+            return list(cursor.fetchall())
+
+    def answer(self, rows: list[tuple[str, str, str]], ids: list[int]) -> None:
+        with self.connection.cursor() as cursor:
+            self.connection.begin()
+            cursor.executemany(ADD, rows)
+            cursor.execute("delete from rr where id in %s", (ids,))
+            self.connection.commit()
+
+
+class PostgreSQL(Server):
+    """Is told by a notification."""
+
+    def connect(self, url: str) -> Any:
+        import psycopg
+
+        options = "-c synchronous_commit=off"
+        connection = psycopg.connect(
+            **where(url), dbname=urlsplit(url).path[1:], autocommit=True, options=options
+        )
+        self.ear = Ear(connection, "rr")
+        return connection
+
+    def read(self) -> Sequence[tuple[Any, ...]]:
+        return list(self.connection.execute(READ).fetchall())
+
+    def answer(self, rows: list[tuple[str, str, str]], ids: list[int]) -> None:
+        with self.connection.pipeline():
+            self.connection.cursor().executemany(ADD, rows)
+            self.connection.execute("delete from rr where id = any(%s)", (ids,))
+
+    def wait(self, found: bool) -> None:
+        self.ear.wait()
+
+
+KINDS: dict[str, type[Server]] = {"sqlite": SQLite, "postgresql": PostgreSQL, "mariadb": MariaDB}
+
+
+def _answers(id: int, robot: str, op: str, _params: str | None) -> list[tuple[str, str, str]]:
+    ack = (robot, "OpAck", f'{{"id": {id}, "ok": true}}')
+    return [ack, (robot, "SetMap", "{}")] if op == "Ready" else [ack]
+
+
+if __name__ == "__main__":
+    server = KINDS[sys.argv[1].split(":")[0]](sys.argv[1])
+    print("answering", flush=True)
+    server.serve()

@@ -1,0 +1,114 @@
+"""WebSocket by hand, for those who must cost little: frames made once, sockets opened in one line."""
+
+from __future__ import annotations
+
+import asyncio
+import base64
+import json
+import os
+import socket
+import struct
+
+PING, TEXT = 9, 1
+
+
+def frame(text: str | bytes, opcode: int = TEXT) -> bytes:
+    """Return a client's frame; its mask is zero, which leaves the payload as it is."""
+    payload = text.encode() if isinstance(text, str) else text
+    if len(payload) < 126:
+        return struct.pack("!BBI", 0x80 | opcode, 0x80 | len(payload), 0) + payload
+    return struct.pack("!BBHI", 0x80 | opcode, 0x80 | 126, len(payload), 0) + payload
+
+
+def pong(payload: bytes) -> bytes:
+    """Return the frame that answers a ping."""
+    return frame(payload, 10)
+
+
+def call(method: str, params: object, id: int | None = None) -> bytes:
+    """Return the frame of a JSON-RPC call."""
+    value = {"jsonrpc": "2.0", "method": method, "params": params}
+    return frame(json.dumps(value if id is None else {**value, "id": id}))
+
+
+def connect(host: str, port: int, path: str, receive_buffer: int | None = None) -> socket.socket:
+    """Return a socket on which the handshake is done."""
+    sock = socket.socket()
+    if receive_buffer:
+        sock.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, receive_buffer)
+    sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+    sock.connect((host, port))
+    key = base64.b64encode(os.urandom(16)).decode()
+    sock.sendall(
+        f"GET {path} HTTP/1.1\r\nHost: {host}:{port}\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
+        f"Sec-WebSocket-Key: {key}\r\nSec-WebSocket-Version: 13\r\n\r\n".encode()
+    )
+    answer = b""
+    while not answer.endswith(b"\r\n\r\n"):
+        # Byte by byte: what comes behind the answer belongs to whoever reads frames.
+        byte = sock.recv(1)
+        if not byte:
+            raise ConnectionError(f"{path}: the server closed: {answer.decode(errors='replace')}")
+        answer += byte
+    if b" 101 " not in answer.splitlines()[0]:
+        raise ConnectionError(f"{path}: {answer.decode(errors='replace')}")
+    sock.setblocking(False)
+    return sock
+
+
+class Inbox:
+    """Takes frames out of what a server sends."""
+
+    def __init__(self) -> None:
+        self._bytes = bytearray()
+
+    def take(self, data: bytes) -> list[tuple[int, bytes]]:
+        """Return the frames that are whole with ``data``: opcode and payload."""
+        self._bytes += data
+        found, at = [], 0
+        while (size := self._header(at)) is not None:
+            header, length = size
+            if len(self._bytes) < at + header + length:
+                break
+            begin = at + header
+            found.append((self._bytes[at] & 0x0F, bytes(self._bytes[begin : begin + length])))
+            at = begin + length
+        del self._bytes[:at]
+        return found
+
+    def _header(self, at: int) -> tuple[int, int] | None:
+        left = len(self._bytes) - at
+        if left < 2:
+            return None
+        length = self._bytes[at + 1] & 0x7F
+        if length < 126:
+            return 2, length
+        extended = 2 if length == 126 else 8
+        if left < 2 + extended:
+            return None
+        return 2 + extended, int.from_bytes(self._bytes[at + 2 : at + 2 + extended], "big")
+
+
+class Stream:
+    """One connection of an operator."""
+
+    def __init__(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        self.reader, self.writer = reader, writer
+
+    @classmethod
+    async def on(cls, sock: socket.socket) -> Stream:
+        """Return a stream on a socket that is connected."""
+        return cls(*await asyncio.open_connection(sock=sock, limit=1 << 22))
+
+    async def receive(self) -> bytes:
+        """Return the payload of the next text frame; pings are answered."""
+        while True:
+            first, second = await self.reader.readexactly(2)
+            length = second & 0x7F
+            if length >= 126:
+                length = int.from_bytes(await self.reader.readexactly(2 if length == 126 else 8), "big")
+            payload = await self.reader.readexactly(length)
+            if first & 0x0F == PING:
+                self.writer.write(pong(payload))
+            elif first & 0x0F == TEXT:
+                return payload

@@ -1,0 +1,143 @@
+"""Closed roads and robots in each other's way on Malta: how long a closure and a look at all ways take."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+from robot_bridge.road_traffic.closed_roads import ClosedRoads
+from robot_bridge.roads.dense import Driving, dense_path
+from robot_bridge.roads.errors import NoRouteError
+from robot_bridge.roads.network import Network, build_network
+from robot_bridge.roads.routes import Router
+from robot_bridge.traffic.conflicts import find_conflicts
+from robot_bridge.traffic.movement import Movement, driving
+
+from .road_data import malta
+
+CLOSURES, LIMIT = 20, 10.0
+"""edges closed one after the other, and milliseconds within which that must be honoured."""
+FLEETS = (100, 1000)
+ENGINES = ("contraction", "scipy")
+SPEED, RADIUS, MARGIN = 1.0, 0.5, 0.5
+"""metres a second, and metres."""
+
+HEAD = """On the {edges} edges of Malta, {closures} roads are closed one after the other, each in the middle
+of a way that had just been found. Honoured: the milliseconds from asking for the closure until the next way,
+found without it, is there; of that, closing alone. Where SciPy finds the ways it is the way that takes long.
+
+| engine | honoured: median | honoured: most | closing: median |
+|---|---|---|---|
+{honoured}
+
+To hold a path of {metres:.1f} km and {points} points against these {closures} closures takes {order:.1f} ms,
+beside the gateway's event loop.
+
+| robots on ways of Malta at once | conflicts | all found in |
+|---|---|---|
+{conflicts}
+"""
+
+
+def traffic(data: Path) -> tuple[str, bool]:
+    """Return what was measured, and whether RoutingKit honours closures too late."""
+    network = build_network(malta(data))
+    rows, usual = [], {}
+    for engine in ENGINES:
+        router = Router(network, engine)
+        whole, closing = _honoured(router)
+        usual[engine] = float(np.median(whole))
+        rows.append(
+            f"| {router.engine_name} | {np.median(whole):.1f} ms | {max(whole):.1f} ms | "
+            f"{np.median(closing):.1f} ms |"
+        )
+    router = Router(network)
+    order, longest = _order(router)
+    text = HEAD.format(
+        edges=len(network),
+        closures=CLOSURES,
+        honoured="\n".join(rows),
+        metres=np.hypot(*np.diff(longest, axis=0).T).sum() / 1000,
+        points=len(longest),
+        order=order,
+        conflicts="\n".join(_conflicts(router, count) for count in FLEETS),
+    )
+    return text, usual["contraction"] > LIMIT
+
+
+def _honoured(router: Router) -> tuple[list[float], list[float]]:
+    """Return the milliseconds of closing and the next way, and of closing alone, for each closure."""
+    whole, closing = [], []
+    shut: list[int] = []
+    for start, goal in _pairs(router, CLOSURES, near=2000.0):
+        edges = router.route(start, goal).edges
+        edge = int(edges[len(edges) // 2])
+        took_closing, _ = _timed(lambda edge=edge: router.close([edge]))
+        took_way, left = _timed(lambda a=start, b=goal: _edges(router, a, b))
+        assert edge not in left
+        shut.append(edge)
+        whole.append(took_closing + took_way)
+        closing.append(took_closing)
+    router.open(shut)
+    return whole, closing
+
+
+def _order(router: Router) -> tuple[float, np.ndarray]:
+    """Return the milliseconds of holding the longest of some paths against closures, and that path."""
+    paths = [_dense(router, *pair) for pair in _pairs(router, 30)]
+    longest = max(paths, key=len)
+    edges = np.random.default_rng(8).choice(len(router.network), CLOSURES, replace=False).tolist()
+    router.close(edges)
+    closures = {str(edge): frozenset([edge]) for edge in edges}
+    closed = ClosedRoads(router.nearest, closures, router.closed)
+    took = min(_timed(lambda: closed.along(longest.tolist()))[0] for _ in range(5))
+    router.open(edges)
+    return took, longest
+
+
+def _conflicts(router: Router, count: int) -> str:
+    movements: list[Movement] = [
+        driving(f"r{number}", _dense(router, *pair), SPEED, 0.0, RADIUS)
+        for number, pair in enumerate(_pairs(router, count, near=1000.0))
+    ]
+    took, found = _timed(lambda: find_conflicts(movements, MARGIN, 0.0))
+    return f"| {count} | {len(found)} | {took / 1000:.2f} s |"
+
+
+def _pairs(
+    router: Router, count: int, near: float = np.inf
+) -> list[tuple[tuple[float, float], tuple[float, float]]]:
+    """Return places at most ``near`` metres apart between which there is a way."""
+    network: Network = router.network
+    random = np.random.default_rng(5)
+    found = []
+    while len(found) < count:
+        a = network.nodes[random.integers(len(network.nodes))]
+        away = np.hypot(*(network.nodes - a).T)
+        b = network.nodes[random.choice(np.flatnonzero((away > 100.0) & (away <= near)))]
+        pair = tuple(a.tolist()), tuple(b.tolist())
+        if _edges(router, *pair):
+            found.append(pair)
+    return found
+
+
+def _edges(router: Router, start: tuple[float, float], goal: tuple[float, float]) -> list[int]:
+    try:
+        return router.route(start, goal).edges.tolist()
+    except NoRouteError:
+        return []
+
+
+def _dense(router: Router, start: tuple[float, float], goal: tuple[float, float]) -> np.ndarray:
+    route = router.route(start, goal)
+    return dense_path(route.points, route.widths, Driving()).points
+
+
+def _timed(work: Callable[[], object]) -> tuple[float, object]:
+    """Return the milliseconds that ``work`` took, and what it returned."""
+    start = time.perf_counter()
+    result = work()
+    return 1000 * (time.perf_counter() - start), result

@@ -1,0 +1,174 @@
+"""The part on road surfaces: how fast they are told, and how near generated ones come to real ones."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyogrio
+import shapely
+
+from robot_bridge.roads.surfaces.generation import generate, polygon_of, rings_of
+from robot_bridge.roads.surfaces.index import NOWHERE, SurfaceIndex
+from robot_bridge.roads.surfaces.outlines import areas_of, edges_of
+from robot_bridge.roads.surfaces.surface import Surface
+
+from .clock import once, table
+from .page import Part
+from .road_data import malta, track
+from .road_rivals import start_qgis
+from .surface_rivals import by_spatial_index, by_tree
+
+BULK, SINGLE = 1_000_000, 100_000
+SLOW = 20_000
+"""Places for what takes longer."""
+
+_HEAD = ["ZalaZONE university track", "against", "IoU", "m² of both", "only the first", "only the second"]
+
+TEXT = """\
+Load of the machine during the run: {load} (1 min, at the end). Places lie at random in the extent of the
+surfaces, a fresh one for each question; all contenders are asked the same and give the same answers
+({wrong} of {asked} differ). The town is made up: 100 000 polygons of 12 corners that overlap. Malta's are
+generated from its {malta} roads; one of them is most of the island.
+
+### Points a second
+
+{speeds}
+
+### Made ready
+
+{built}
+
+### Generated surfaces against real ones
+
+{truth}
+"""
+
+
+def measure(data: Path) -> Part:
+    """Measure on a made-up town, on Malta and on ZalaZONE's track."""
+    application = start_qgis()
+    roads = malta(data)
+    seconds, made = _timed(lambda: generate(roads))
+    town, island = Ground("made-up town", _town(100_000)), Ground("Malta", made)
+    speeds: dict[str, list[str]] = {}
+    for ground in (town, island):
+        for name, rate in ground.rates().items():
+            speeds.setdefault(name, []).append(f"{rate:,.0f}".replace(",", " "))
+    built = [ground.ready for ground in (town, island)]
+    text = TEXT.format(
+        load=f"{os.getloadavg()[0]:.1f}",
+        wrong=town.wrong + island.wrong,
+        asked=town.asked + island.asked,
+        malta=len(roads),
+        speeds=table(["", town.title, island.title], [[name, *rates] for name, rates in speeds.items()]),
+        built=f"{table(['', 'polygons', 'edges', 'index built in'], built)}\n\n"
+        f"Malta's surfaces are generated in {seconds:.1f} s.",
+        truth=_truth(data),
+    )
+    assert application is not None
+    return Part("Road surfaces", text, failed=town.wrong + island.wrong > 0)
+
+
+class Ground:
+    """Surfaces, their index, and how many answers of others were not the same."""
+
+    def __init__(self, name: str, surfaces: Sequence[Surface]) -> None:
+        self._surfaces = surfaces
+        self._shapes = np.array([polygon_of(one.rings) for one in surfaces])
+        seconds, self._index = _timed(lambda: SurfaceIndex(surfaces))
+        edges = int(shapely.get_num_coordinates(self._shapes).sum())
+        self.title = f"{name}, {len(surfaces)} polygons"
+        self.ready = [name, len(surfaces), edges, f"{seconds:.2f} s"]
+        self.wrong = self.asked = 0
+
+    def rates(self) -> dict[str, float]:
+        """Return points a second of every contender, ours first; the others' answers are held to ours."""
+        low, high = shapely.total_bounds(self._shapes).reshape(2, 2)
+        places = np.random.default_rng(1).uniform(low, high, (BULK, 2))
+        ours, told = self._index, self._index.at_many(places[:1000])
+        areas = areas_of(edges_of(self._surfaces), len(self._surfaces))
+        rank = np.lexsort([-np.arange(len(areas)), areas]).argsort()
+        tree_bulk, tree_single = by_tree(self._shapes, rank)
+        spatial = by_spatial_index(self._shapes, rank)
+        seconds, told = _timed(lambda: ours.at_many(places))
+        rates = {"surface index, bulk": BULK / seconds}
+        rates["surface index, single"] = self._single(ours.at, places[:SINGLE], told)
+        rates["QgsSpatialIndex, prepared geometries, single"] = self._single(spatial, places[:SLOW], told)
+        seconds, found = _timed(lambda: tree_bulk(places[:SINGLE]))
+        self._hold(found, told)
+        rates["shapely STRtree, bulk"] = SINGLE / seconds
+        rates["shapely STRtree, single"] = self._single(tree_single, places[:SLOW], told)
+        return rates
+
+    def _single(self, query: Callable[[float, float], int], places: np.ndarray, told: np.ndarray) -> float:
+        pairs = places.tolist()
+        seconds, found = _timed(lambda: [query(x, y) for x, y in pairs])
+        self._hold(np.array(found), told)
+        return len(pairs) / seconds
+
+    def _hold(self, found: np.ndarray, told: np.ndarray) -> None:
+        self.wrong += int((found != told[: len(found)]).sum())
+        self.asked += len(found)
+
+
+def _town(count: int) -> list[Surface]:
+    random = np.random.default_rng(2)
+    centres = random.uniform(0, 20 * np.sqrt(count), (count, 1, 2))
+    turn = np.sort(random.uniform(0, 2 * np.pi, (count, 12)), axis=1)
+    reach = random.uniform(4, 12, (count, 12))
+    rings = centres + np.stack([np.cos(turn) * reach, np.sin(turn) * reach], axis=-1)
+    shapes = shapely.make_valid(shapely.polygons(np.concatenate([rings, rings[:, :1]], axis=1)))
+    shapes = shapely.convex_hull(shapes)
+    return [Surface(rings_of(shape), "asphalt") for shape in shapes]
+
+
+def _truth(data: Path) -> str:
+    """Return how far generated and real surfaces of ZalaZONE's track are the same, and the drive on them."""
+    zalazone = data / "zalazone"
+    _, _, wkb, (kinds,) = pyogrio.raw.read(
+        zalazone / "university_track_surfaces_derived_utm33.gpkg", columns=["surface"]
+    )
+    drawn = dict.fromkeys(kinds.tolist())
+    for kind in drawn:
+        drawn[kind] = shapely.union_all(shapely.from_wkb(wkb[kinds == kind]))
+    digitised = shapely.union_all(list(drawn.values()))
+    parking = [
+        Surface(rings_of(part), "parking pavement") for part in shapely.get_parts(drawn["parking_pavement"])
+    ]
+    lanes_file = zalazone / "zalazone_lanelets_utm33.gpkg"
+    _, _, wkb, _ = pyogrio.raw.read(lanes_file, layer="lanes", where="module = 'university_track'")
+    lanes = shapely.union_all(shapely.from_wkb(wkb))
+    roads = track(data)
+    alone, with_parking = generate(roads), [*parking, *generate(roads, parking)]
+    rows = [
+        ["generated from the centrelines", "digitised from the photo", *_overlap(alone, digitised)],
+        ["the same and the parking by hand", "digitised from the photo", *_overlap(with_parking, digitised)],
+        ["generated from the centrelines", "the lanes' own outlines", *_overlap(alone, lanes)],
+    ]
+    drive = np.genfromtxt(zalazone / "uni_track_drive_utm33.csv", delimiter=",", names=True)
+    places = np.column_stack([drive["x_utm33"], drive["y_utm33"]])
+    on_made, on_digitised = (
+        100 * float((SurfaceIndex(surfaces).at_many(places) != NOWHERE).mean())
+        for surfaces in (alone, [Surface(rings_of(part), "") for part in shapely.get_parts(digitised)])
+    )
+    told = (
+        f"Of the {len(places)} poses of a real drive {on_made:.1f} % lie on the generated surfaces and "
+        f"{on_digitised:.1f} % on the digitised ones."
+    )
+    return f"{table(_HEAD, rows)}\n\n{told}"
+
+
+def _overlap(surfaces: Sequence[Surface], truth: shapely.Geometry) -> list[str]:
+    whole = shapely.union_all([polygon_of(one.rings) for one in surfaces])
+    both = whole.intersection(truth).area
+    union = whole.area + truth.area - both
+    return [f"{both / union:.3f}", f"{both:.0f}", f"{whole.area - both:.0f}", f"{truth.area - both:.0f}"]
+
+
+def _timed(work: Callable[[], Any]) -> tuple[float, Any]:
+    result, seconds = once(work)
+    return seconds, result

@@ -1,0 +1,146 @@
+"""Operators in one process: ``python swarm_operators.py PLAN``, see :mod:`.swarm`.
+
+It prints ``ready``, and for each window that comes as a line of JSON what was seen in it, when it is over.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import itertools
+import json
+import re
+import sys
+import threading
+import time
+from dataclasses import asdict, dataclass, field
+
+import msgspec
+from raw_websocket import Stream, call, connect
+
+
+@dataclass
+class Told:
+    """Times in milliseconds, median and 99th percentile; None where nothing was told.
+
+    ``delays`` are from a robot's clock to the probe, of positions that are new to it; ``ages`` are from the
+    gateway's clock to one of the other operators.
+    """
+
+    delays: list[float | None] = field(default_factory=list)
+    ages: list[float | None] = field(default_factory=list)
+
+
+class _Position(msgspec.Struct):
+    robot: str
+    device_time: float | None = None
+
+
+class _Positions(msgspec.Struct):
+    robots: list[_Position]
+
+
+class _Notification(msgspec.Struct):
+    method: str = ""
+    params: _Positions | None = None
+
+
+class _Pose(msgspec.Struct):
+    y: float
+    t: float
+
+
+class _Forwarded(msgspec.Struct):
+    """What a peer that forwards every position sends; ``y`` tells the robot."""
+
+    params: _Pose
+
+
+class Operators:
+    """All of them, the probe and those that never read among them."""
+
+    def __init__(self, plan: dict[str, object]) -> None:
+        self._plan = plan
+        self._delays: list[float] = []
+        self._ages: list[float] = []
+        self._window = (0.0, 0.0)
+        self._tasks: list[asyncio.Task[None]] = []
+        self._stuck: list[object] = []
+
+    async def connect(self) -> None:
+        """Connect and subscribe."""
+        plan = self._plan
+        for number in range(int(str(plan["operators"]))):
+            operator = await self._subscribed(plan["operator_rate"])
+            self._begin(operator, self._age if number == 0 and plan["rpc"] else None)
+        self._begin(await self._subscribed(plan["probe_rate"]), self._delay)
+        for _ in range(int(str(plan["stuck"]))):
+            self._stuck.append(await self._subscribed(plan["operator_rate"], 4096))
+
+    async def see(self, begin: float, seconds: float) -> Told:
+        """Return what is seen from ``begin`` (of :func:`time.monotonic`) on."""
+        self._window = begin, begin + seconds
+        self._delays.clear()
+        self._ages.clear()
+        await asyncio.sleep(begin + seconds - time.monotonic())
+        return Told(_median_and_p99(self._delays), _median_and_p99(self._ages))
+
+    async def _subscribed(self, rate: object, receive_buffer: int | None = None) -> Stream:
+        host, port = str(self._plan["host"]), int(str(self._plan["port"]))
+        stream = await Stream.on(await asyncio.to_thread(connect, host, port, "/desk", receive_buffer))
+        stream.writer.write(call("hello", {"operator": "load"}, 1) + call("subscribe", {"rate": rate}, 2))
+        return stream
+
+    def _begin(self, stream: Stream, look: object) -> None:
+        self._tasks.append(asyncio.create_task(self._read(stream, look)))
+
+    async def _read(self, stream: Stream, look: object) -> None:
+        newest: dict[object, float] = {}
+        while True:
+            payload = await stream.receive()
+            now, at = time.time(), time.monotonic()
+            if look is not None and self._window[0] <= at < self._window[1]:
+                look(payload, now, newest)  # type: ignore[operator]
+
+    def _delay(self, payload: bytes, now: float, newest: dict[object, float]) -> None:
+        for robot, sent in self._positions(payload):
+            if sent > newest.get(robot, 0.0):
+                newest[robot] = sent
+                self._delays.append((now - sent) * 1e3)
+
+    def _age(self, payload: bytes, now: float, _newest: dict[object, float]) -> None:
+        if found := re.search(rb'"params":\{"t":([0-9.]+)', payload[:200]):
+            self._ages.append((now - float(found.group(1))) * 1e3)
+
+    def _positions(self, payload: bytes) -> list[tuple[object, float]]:
+        if not self._plan["rpc"]:
+            pose = msgspec.json.decode(payload, type=_Forwarded).params
+            return [(pose.y, pose.t)]
+        message = msgspec.json.decode(payload, type=_Notification)
+        if message.method != "positions" or message.params is None:
+            return []
+        return [(p.robot, p.device_time) for p in message.params.robots if p.device_time is not None]
+
+
+def _median_and_p99(times: list[float]) -> list[float | None]:
+    found = sorted(times)
+    return [round(found[int(part * (len(found) - 1))], 1) if found else None for part in (0.5, 0.99)]
+
+
+async def run(plan: dict[str, object]) -> None:
+    """Watch as told on standard input until that ends."""
+    operators, lines = Operators(plan), asyncio.Queue[str]()
+    loop = asyncio.get_running_loop()
+    await operators.connect()
+    print("ready", flush=True)
+
+    def read() -> None:
+        for line in itertools.chain(iter(sys.stdin.readline, ""), [""]):
+            loop.call_soon_threadsafe(lines.put_nowait, line)
+
+    threading.Thread(target=read, daemon=True).start()
+    while line := await lines.get():
+        print(json.dumps(asdict(await operators.see(**json.loads(line)))), flush=True)
+
+
+if __name__ == "__main__":
+    asyncio.run(run(json.loads(sys.argv[1])))

@@ -1,0 +1,162 @@
+"""Draw docs/images/road-surfaces*.png with a QGIS that has no display: generated surfaces, real and made up.
+
+python scripts/surfaces_pictures.py [docs/images]
+
+The second one is of the real track: without the data beside the project it is left as it is.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import tempfile
+from pathlib import Path
+from typing import Any
+
+from plugin_files import ROOT
+from robot_map_pictures import CRS, SITE, register_plugin, run
+from stage.picture import reduce_colours
+
+DATA = ROOT.parent / "shared" / "data" / "zalazone"
+STYLES = ROOT / "resources" / "styles"
+EXTENT = (640420.0, 5193482.0, 640620.0, 5193622.0)
+PIXELS_PER_M = 5
+MARGIN_M = 8.0
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("folder", type=Path, nargs="?", default=ROOT / "docs" / "images")
+    folder = parser.parse_args().folder.resolve()
+    os.environ["QT_QPA_PLATFORM"] = "offscreen"
+    from qgis.core import QgsApplication
+
+    application = QgsApplication([], True)
+    application.initQgis()
+    register_plugin()
+    with tempfile.TemporaryDirectory() as place:
+        made = Path(place)
+        sample_site(made / "sample.gpkg", folder / "road-surfaces.png")
+        if DATA.is_dir():
+            real_track(made, folder / "road-surfaces-track.png")
+
+
+def sample_site(made: Path, picture: Path) -> None:
+    """Draw the surfaces that the sample site's centrelines make, over its orthophoto."""
+    from qgis.core import QgsRasterLayer
+
+    roads = f"{SITE / 'site.gpkg'}|layername=road_centrelines"
+    print(run("build_road_surfaces.BuildRoadSurfaces", {"ROADS": roads, "SURFACES": str(made)}))
+    photo = QgsRasterLayer(str(SITE / "orthophoto.tif"), "Orthophoto", "gdal")
+    draw([_line(roads, "#ffffff", 0.5, "dash"), _styled(str(made)), photo], EXTENT, picture)
+
+
+def real_track(folder: Path, picture: Path) -> None:
+    """Draw what the lanes of the real track make, its digitised surfaces as outlines, and the real drive."""
+    roads = str(DATA / "university_track_centrelines.geojson")
+    real = str(DATA / "university_track_surfaces_derived_utm33.gpkg")
+    made = str(folder / "track.gpkg")
+    given = {"ROADS": roads, "SITE_CRS": CRS, "SURFACE": "'asphalt'", "DRAWN": [_parking(real)]}
+    print(run("build_road_surfaces.BuildRoadSurfaces", {**given, "SURFACES": made}))
+    drive = f"file://{DATA / 'uni_track_drive_utm33.csv'}?xField=x_utm33&yField=y_utm33&crs={CRS}"
+    surfaces = _solid(made)
+    box = surfaces.extent().buffered(MARGIN_M)
+    extent = (box.xMinimum(), box.yMinimum(), box.xMaximum(), box.yMaximum())
+    draw([_dots(drive), _outline(real, "#c01c28"), surfaces], extent, picture)
+
+
+def draw(layers: list[Any], extent: tuple[float, ...], picture: Path) -> None:
+    """Draw ``layers``, the top one first."""
+    from qgis.core import (
+        QgsCoordinateReferenceSystem,
+        QgsMapRendererParallelJob,
+        QgsMapSettings,
+        QgsRectangle,
+    )
+    from qgis.PyQt.QtCore import QSize
+
+    settings = QgsMapSettings()
+    settings.setLayers(layers)
+    settings.setDestinationCrs(QgsCoordinateReferenceSystem(CRS))
+    settings.setExtent(QgsRectangle(*extent))
+    settings.setOutputSize(QSize(*(round((extent[k + 2] - extent[k]) * PIXELS_PER_M) for k in (0, 1))))
+    settings.setOutputDpi(96)
+    job = QgsMapRendererParallelJob(settings)
+    job.start()
+    job.waitForFinished()
+    if not job.renderedImage().save(str(picture)):
+        raise SystemExit(f"{picture} cannot be written: choose a folder that exists.")
+    reduce_colours(picture)
+
+
+def _vector(source: str, provider: str = "ogr") -> Any:
+    from qgis.core import QgsVectorLayer
+
+    layer = QgsVectorLayer(source, "layer", provider)
+    if not layer.isValid():
+        raise SystemExit(f"QGIS cannot open {source}.")
+    return layer
+
+
+def _styled(source: str) -> Any:
+    layer = _vector(source)
+    layer.loadNamedStyle(str(STYLES / "road_surfaces.qml"))
+    return layer
+
+
+def _solid(source: str) -> Any:
+    from qgis.core import QgsCategorizedSymbolRenderer, QgsFillSymbol, QgsRendererCategory
+
+    layer = _vector(source)
+    colours = {"asphalt": "#a9b4c0", "parking pavement": "#e6c88f"}
+    categories = [
+        QgsRendererCategory(
+            name, QgsFillSymbol.createSimple({"color": colour, "outline_color": "#6b7683"}), name
+        )
+        for name, colour in colours.items()
+    ]
+    layer.setRenderer(QgsCategorizedSymbolRenderer("surface", categories))
+    return layer
+
+
+def _parking(source: str) -> Any:
+    """Return the digitised parking, under the name that the style knows."""
+    from fleet_supervisor.plugin.sites.roles import LayerExpressions, LayerSetup, keep_setup
+
+    layer = _vector(source)
+    expressions = LayerExpressions(
+        filter="\"surface\" = 'parking_pavement'", semantics="replace(\"surface\", '_', ' ')"
+    )
+    keep_setup(layer, LayerSetup("road_surface", expressions))
+    return layer
+
+
+def _line(source: str, colour: str, width: float, style: str) -> Any:
+    from qgis.core import QgsLineSymbol, QgsSingleSymbolRenderer
+
+    layer = _vector(source)
+    look = {"line_color": colour, "line_width": str(width), "line_style": style}
+    layer.setRenderer(QgsSingleSymbolRenderer(QgsLineSymbol.createSimple(look)))
+    return layer
+
+
+def _outline(source: str, colour: str) -> Any:
+    from qgis.core import QgsFillSymbol, QgsSingleSymbolRenderer
+
+    layer = _vector(source)
+    look = {"style": "no", "outline_color": colour, "outline_width": "0.4"}
+    layer.setRenderer(QgsSingleSymbolRenderer(QgsFillSymbol.createSimple(look)))
+    return layer
+
+
+def _dots(source: str) -> Any:
+    from qgis.core import QgsMarkerSymbol, QgsSingleSymbolRenderer
+
+    layer = _vector(source, "delimitedtext")
+    look = {"name": "circle", "size": "1.5", "color": "#1a202c", "outline_style": "no"}
+    layer.setRenderer(QgsSingleSymbolRenderer(QgsMarkerSymbol.createSimple(look)))
+    return layer
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,123 @@
+"""A connection on a real server: what goes past its queue, in which order, and what never does."""
+
+from __future__ import annotations
+
+import asyncio
+from functools import partial
+
+import pytest
+from websockets.asyncio.client import connect
+from websockets.asyncio.server import serve
+from websockets.exceptions import ConnectionClosed
+
+from robot_bridge.access.tokens import TokenKind
+from robot_bridge.access.visitor import Identity, Visitor
+from robot_bridge.sites.limit_settings import LimitSettings
+
+
+class OpenDoor:
+    """A door that lets everybody in."""
+
+    limits = LimitSettings()
+
+    def arrived(self, _visitor):
+        return True
+
+    def left(self, _visitor):
+        pass
+
+
+class Host:
+    """Notes what came which way; a message that begins with "p" may go past the queue."""
+
+    def __init__(self):
+        self.came = []
+        self.goes_on = asyncio.Event()
+
+    async def let_in(self, visitor, _request):
+        visitor.let_in(Identity(TokenKind.ROBOT, "r", None, "s"), 10_000)
+
+    async def serve(self, visitor):
+        visitor.short_cut.handler = self._at_once
+        async for message in visitor:
+            if message == "wait":
+                await asyncio.wait_for(self.goes_on.wait(), 5)
+            self.came.append(("queued", message))
+
+    def _at_once(self, message):
+        if not message.startswith(b"p"):
+            return False
+        self.came.append(("at once", message.decode()))
+        return True
+
+    async def until(self, number):
+        async with asyncio.timeout(10):
+            while len(self.came) < number:
+                await asyncio.sleep(0.005)
+
+
+@pytest.fixture
+async def host():
+    return Host()
+
+
+@pytest.fixture
+async def client(host):
+    options = {"create_connection": partial(Visitor, OpenDoor()), "compression": None}
+    async with serve(host.serve, "127.0.0.1", 0, process_request=host.let_in, **options) as server:
+        port = server.sockets[0].getsockname()[1]
+        async with connect(f"ws://127.0.0.1:{port}", compression=None) as wire:
+            await wire.ping()
+            yield wire
+
+
+async def test_positions_go_past_the_queue(host, client):
+    for number in range(20):
+        await client.send(f"p{number}")
+    await host.until(20)
+    assert host.came == [("at once", f"p{number}") for number in range(20)]
+
+
+async def test_nothing_goes_past_a_message_that_waits(host, client):
+    for message in ("wait", "stop"):
+        await client.send(message)
+    await asyncio.sleep(0.05)  # so that the next comes in pieces of its own
+    await client.send("p1")
+    await asyncio.sleep(0.05)
+    assert host.came == []
+    host.goes_on.set()
+    await host.until(3)
+    assert host.came == [("queued", "wait"), ("queued", "stop"), ("queued", "p1")]
+    await client.send("p2")
+    await host.until(4)
+    assert host.came[-1] == ("at once", "p2")
+
+
+async def test_a_message_in_fragments_is_queued_and_the_next_goes_past_again(host, client):
+    await client.send(["p", "1"])
+    await host.until(1)
+    await client.send("p2")
+    await host.until(2)
+    assert [text for _, text in host.came] == ["p1", "p2"]
+    assert host.came[0][0] == "queued"
+
+
+async def test_a_message_amid_the_fragments_of_another_is_a_breach_of_the_protocol(host, client):
+    client.protocol.send_text(b"half", fin=False)
+    client.send_data()
+    await asyncio.sleep(0.05)  # so that the next comes in pieces of its own
+    client.transport.write(b"\x81\x82" + bytes(4) + b"p1")
+    with pytest.raises(ConnectionClosed) as caught:
+        await asyncio.wait_for(client.recv(), 10)
+    assert caught.value.rcvd.code == 1002
+    assert host.came == []
+
+
+async def test_too_many_messages_are_refused_whichever_way_they_go(host, client):
+    burst = OpenDoor.limits.robot_burst
+    with pytest.raises(ConnectionClosed) as caught:
+        for _ in range(5 * burst):
+            await client.send("p")
+        await client.recv()
+    assert caught.value.rcvd.code == 1008
+    assert len(host.came) < 2 * burst

@@ -1,0 +1,71 @@
+"""Robots and positions by the hundred, on each kind of database: all of them stored, and each once."""
+
+from __future__ import annotations
+
+import pytest
+from sqlalchemy import func, select
+
+from robot_bridge.messages import SendPos
+from robot_bridge.robots import Robot
+from robot_bridge.store import robots, trajectories
+from robot_bridge.store.database import Database
+from robot_bridge.store.rows import TOGETHER
+from robot_bridge.store.schema import trajectories as stored_positions
+from robot_bridge.store.trajectories import Fix
+
+NOW = 1_790_000_000.25
+STATUS = "50 % 'full'; läuft ?"
+SIZES = [0, 1, TOGETHER, TOGETHER + 1, 3 * TOGETHER - 1]
+
+
+@pytest.fixture
+async def database(url):
+    opened = Database(url)
+    yield opened
+    await opened.close()
+
+
+def robot(number, **pose):
+    """Every third robot has said nothing of where it is."""
+    where = SendPos(number + 0.25, -1.0, 0.5, 0.0, status=STATUS, **pose) if number % 3 else None
+    return Robot(f"r{number}", number, "websocket", NOW, pose=where, pose_at=NOW if where else None)
+
+
+async def save(database, known):
+    await database.run(robots.save, [robots.row(one) for one in known])
+
+
+async def loaded(database):
+    return {one.name: one for one in await database.run(robots.load)}
+
+
+@pytest.mark.parametrize("size", SIZES)
+async def test_robots_are_loaded_as_they_were_saved(database, size):
+    known = [robot(number) for number in range(size)]
+    await save(database, known)
+    found = await loaded(database)
+    assert {one.name: (one.magic, one.pose, one.pose_at) for one in known} == {
+        name: (one.magic, one.pose, one.pose_at) for name, one in found.items()
+    }
+
+
+async def test_what_is_saved_again_replaces_what_was_and_nothing_else(database):
+    await save(database, [robot(number) for number in range(2 * TOGETHER)])
+    await save(database, [robot(number, t=7.0) for number in range(TOGETHER + 50)])
+    found = await loaded(database)
+    assert len(found) == 2 * TOGETHER
+    again = {int(name[1:]) for name, one in found.items() if one.pose and one.pose.t == 7.0}
+    assert again == {number for number in range(TOGETHER + 50) if number % 3}
+
+
+@pytest.mark.parametrize("size", SIZES)
+async def test_every_position_is_stored_once(database, size):
+    fixes = [
+        Fix(f"r{n % 7}", NOW + n, SendPos(float(n), 0.0, 0.5, 1.0, t=None if n % 2 else NOW, fix_t=None))
+        for n in range(size)
+    ]
+    await database.run(trajectories.add, fixes)
+    x, t = stored_positions.c.x, stored_positions.c.device_time
+    found = await database.run(lambda c: list(c.scalars(select(x).order_by(x))))
+    assert found == [float(n) for n in range(size)]
+    assert await database.run(lambda c: c.scalar(select(func.count(t)))) == (size + 1) // 2

@@ -1,0 +1,74 @@
+"""The command line names every command without importing it, and imports the one that is asked for."""
+
+import pkgutil
+import subprocess
+import sys
+
+import pytest
+import typer
+
+from robot_bridge import commands
+from robot_bridge.__main__ import COMMANDS, command_line
+
+HEAVY = {"sqlalchemy", "websockets", "numpy", "robot_bridge.gateway", "robot_bridge.messages"}
+
+RUN = """
+import sys
+from robot_bridge.__main__ import main
+try:
+    main()
+finally:
+    print(*sys.modules, file=sys.stderr)
+"""
+
+
+def imported_by(*words):
+    """Return what a run of the program imports, and what it prints."""
+    command = [sys.executable, "-c", RUN, *words]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == 0, done.stderr
+    return set(done.stderr.split()), done.stdout
+
+
+def test_the_help_of_all_imports_none_of_them():
+    modules, text = imported_by("--help")
+    assert modules & HEAVY == set()
+    assert [name for name in COMMANDS if f" {name} " not in text] == []
+
+
+def test_the_help_of_serve_waits_for_no_gateway():
+    modules, text = imported_by("serve", "--help")
+    assert modules & HEAVY == set()
+    assert "--database" in text
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_what_a_command_says_of_itself_is_what_the_list_says(name):
+    app = command_line([name])
+    one = {group.name: group for group in app.registered_groups}.get(name)
+    if one is None:
+        (function,) = [command.callback for command in app.registered_commands if command.name == name]
+        said = function.__doc__.strip().splitlines()[0]
+    else:
+        said = one.typer_instance.info.help
+    assert said == COMMANDS[name]
+
+
+def test_a_shell_that_completes_is_given_every_command_whole(monkeypatch):
+    monkeypatch.setenv("_ROBOT_BRIDGE_COMPLETE", "complete_bash")
+    app = command_line([])
+    assert {"database", "robots"} <= {group.name for group in app.registered_groups}
+
+
+def test_every_module_that_has_a_command_is_named():
+    for module in pkgutil.iter_modules(commands.__path__):
+        found = __import__(f"robot_bridge.commands.{module.name}", fromlist=["app"])
+        if isinstance(getattr(found, "app", None), typer.Typer):
+            assert module.name in COMMANDS
+
+
+def test_what_there_is_not_is_said_with_a_status_of_2():
+    command = [sys.executable, "-m", "robot_bridge", "databse"]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == 2
+    assert "No such command 'databse'" in done.stderr

@@ -1,0 +1,237 @@
+"""What is kept for a time only, on each kind of database: it goes in time, in pieces, and nothing else."""
+
+import asyncio
+from dataclasses import replace
+
+import pytest
+from sqlalchemy import func, insert, select
+
+from robot_bridge import gateway, retention
+from robot_bridge.access.gate import Gate
+from robot_bridge.fleet import Fleet
+from robot_bridge.messages import SendPos
+from robot_bridge.retention import Retention
+from robot_bridge.site_maps import SiteMaps
+from robot_bridge.sites.publication import read_site
+from robot_bridge.sites.settings import (
+    AuditSettings,
+    CommandSettings,
+    LimitSettings,
+    ObservationSettings,
+    TrajectorySettings,
+)
+from robot_bridge.store import trajectories
+from robot_bridge.store.database import Database
+from robot_bridge.store.schema import (
+    audit,
+    closures,
+    command_steps,
+    commands,
+    emergency_stops,
+    metadata,
+    observations,
+    sessions,
+)
+from robot_bridge.store.trajectories import Fix, Wanted
+
+NOW = 1_790_000_000.25
+DAY = 86400.0
+WEEK = {"keep_days": 7.0}
+
+
+@pytest.fixture
+async def database(url):
+    opened = Database(url)
+    await opened.open()
+    yield opened
+    await opened.close()
+
+
+@pytest.fixture(scope="module")
+def site(sample_site):
+    return read_site(sample_site)
+
+
+@pytest.fixture
+def settings(site):
+    """A site that keeps everything for a week, and images for two days."""
+    return replace(
+        site.settings,
+        trajectories=TrajectorySettings(**WEEK),
+        commands=CommandSettings(**WEEK),
+        observations=ObservationSettings(**WEEK, keep_images_days=2.0),
+        audit=AuditSettings(**WEEK),
+    )
+
+
+def ago(days):
+    return NOW - days * DAY
+
+
+def command(id, state, days):
+    return {
+        "id": id,
+        "robot": "r1",
+        "op": "SetPosEnd",
+        "params": "{}",
+        "operator": "Ada",
+        "state": state,
+        "sa_id": 1,
+        "created_at": ago(days),
+    }
+
+
+def seen(id, kind, state, told, reviewed=None):
+    return {
+        "robot": "r1",
+        "source": id,
+        "object": id,
+        "kind": kind,
+        "state": state,
+        "x": 1.0,
+        "y": 1.0,
+        "received_at": ago(told),
+        "reviewed_at": None if reviewed is None else ago(reviewed),
+        "image": b"image" if kind == "SendImage" else None,
+    }
+
+
+def stop(id, days, cleared):
+    return {"id": id, "at": ago(days), "by": "Ada", "cleared_at": None if cleared is None else ago(cleared)}
+
+
+def closure(id, closed, opened):
+    return {
+        "id": id,
+        "line": "[[0, 0], [1, 0]]",
+        "level": 0,
+        "closed_at": ago(closed),
+        "closed_by": "Ada",
+        "opened_at": None if opened is None else ago(opened),
+    }
+
+
+def entry(who, days):
+    return {"at": ago(days), "who": who, "action": "send", "done": 1}
+
+
+def session(id, began, ended):
+    return {
+        "id": id,
+        "operator": "Ada",
+        "role": "viewer",
+        "address": "here",
+        "began_at": ago(began),
+        "ended_at": None if ended is None else ago(ended),
+    }
+
+
+ROWS = {
+    commands: [
+        command("old-reached", "reached", 8),
+        command("old-failed", "failed", 30),
+        command("old-open", "acknowledged", 30),
+        command("new-reached", "reached", 6),
+    ],
+    command_steps: [
+        {"command": id, "state": "queued", "at": ago(8), "by": "Ada"}
+        for id in ("old-reached", "old-reached", "old-failed", "old-open", "new-reached")
+    ],
+    closures: [closure("old", 9, 8), closure("closed", 99, None), closure("new", 9, 6)],
+    emergency_stops: [stop("old", 9, 8), stop("in-force", 9, None), stop("new", 9, 6)],
+    observations: [
+        seen("rejected", "SetObject", "rejected", 9, 8),
+        seen("rejected lately", "SetObject", "rejected", 9, 1),
+        seen("on the map", "SetObject", "accepted", 99, 98),
+        seen("waits", "SetObject", "pending", 99),
+        seen("old image", "SendImage", "accepted", 4, 3),
+        seen("other old image", "SendImage", "rejected", 4, 3),
+        seen("new image", "SendImage", "accepted", 1, 1),
+        seen("image reviewed lately", "SendImage", "accepted", 4, 1),
+        seen("image that waits", "SendImage", "pending", 99),
+    ],
+    audit: [entry("old", 8), entry("new", 6)],
+    sessions: [session("old", 9, 8), session("open", 99, None), session("new", 9, 6)],
+}
+KEPT = {
+    commands.c.id: {"old-open", "new-reached"},
+    command_steps.c.command: {"old-open", "new-reached"},
+    closures.c.id: {"closed", "new"},
+    emergency_stops.c.id: {"in-force", "new"},
+    observations.c.object: {
+        "rejected lately",
+        "on the map",
+        "waits",
+        "new image",
+        "image reviewed lately",
+        "image that waits",
+    },
+    audit.c.who: {"new"},
+    sessions.c.id: {"open", "new"},
+}
+
+
+def fill(connection):
+    for table, rows in ROWS.items():
+        connection.execute(insert(table), rows)
+
+
+def left(connection):
+    return {column: set(connection.scalars(select(column))) for column in KEPT}
+
+
+async def test_what_is_too_old_goes_and_all_else_stays(database, settings):
+    await database.run(fill)
+    await Retention(database, lambda: settings, lambda: NOW).prune()
+    assert await database.run(left) == KEPT
+
+
+async def test_nothing_goes_before_the_times_that_hold_without_settings(database, site):
+    await database.run(fill)
+    count = await database.run(rows)
+    await Retention(database, lambda: site.settings, lambda: ago(0) + 50 * DAY).prune()
+    assert await database.run(rows) == count
+    await Retention(database, lambda: site.settings, lambda: ago(0) + 370 * DAY).prune()
+    assert set((await database.run(left))[commands.c.id]) == {"old-open"}
+
+
+def rows(connection):
+    return {t.name: connection.scalar(select(func.count()).select_from(t)) for t in metadata.sorted_tables}
+
+
+async def test_it_goes_in_pieces_between_which_others_have_the_database(database, settings, monkeypatch):
+    monkeypatch.setattr(
+        retention, "kept", lambda s: [retention.Kept("positions", 7.0, trajectories.forget, 100)]
+    )
+    fixes = [Fix("r1", at, SendPos(x, 0.0, 0.5, 1.0)) for at, x in times()]
+    await database.run(trajectories.add, fixes)
+    pruning = asyncio.create_task(Retention(database, lambda: settings, lambda: NOW).prune())
+    counts = set()
+    while not pruning.done():
+        counts.add(len(await database.run(trajectories.read, Wanted(), 5000, None)))
+        await asyncio.sleep(0.01)
+    assert len(counts & {452, 352, 252, 152, 52}) >= 2
+    found = await database.run(trajectories.read, Wanted(), 5000, None)
+    assert [place.x for place in found] == [2.0, 3.0]
+
+
+def times():
+    yield from ((ago(8) + n, 1.0) for n in range(550))
+    yield ago(6), 2.0
+    yield NOW, 3.0
+
+
+@pytest.mark.parametrize("kind", ["sqlite"], indirect=True)
+async def test_the_gateway_does_it_by_the_settings_of_its_site(database, site, settings, monkeypatch):
+    monkeypatch.setattr(gateway, "PRUNE_INTERVAL", 0.01)
+    monkeypatch.setattr(gateway.time, "time", lambda: NOW)
+    await database.run(fill)
+    maps = SiteMaps(replace(site, settings=settings))
+    fleet = Fleet(maps, database)
+    work = gateway.Gateway(fleet, Gate(database, LimitSettings(), may_be_open=True)).works()["prune"]
+    pruning = asyncio.create_task(work())
+    async with asyncio.timeout(10):
+        while "prune" not in fleet.tally.beats:
+            await asyncio.sleep(0.01)
+    pruning.cancel()
+    assert await database.run(left) == KEPT

@@ -1,0 +1,98 @@
+"""Positions as a table of numbers say the same as positions in rows."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from robot_bridge.messages import (
+    POSITION_FLAGS,
+    POSITION_NUMBERS,
+    POSITION_TEXTS,
+    RobotReport,
+    SendPos,
+)
+from robot_bridge.position_columns import frame
+from robot_bridge.robots import Robots
+
+places = st.floats(-1e5, 1e5)
+maybe = st.none() | places
+poses = st.builds(
+    SendPos,
+    x=places,
+    y=places,
+    theta=places,
+    v=places,
+    t=maybe,
+    fix_t=maybe,
+    altitude=maybe,
+    battery=st.none() | st.floats(0, 1),
+    accuracy=st.none() | st.floats(0, 100),
+    status=st.none() | st.text(max_size=5),
+    theta_from=st.sampled_from([None, "course", "unknown"]),
+)
+fleets = st.dictionaries(st.text(min_size=1, max_size=6), st.none() | poses, min_size=1, max_size=6)
+
+
+def unpacked(data: bytes):
+    """Return the head's params and, of each robot, what is known, as the guide says that it is read."""
+    begin = 4 + int.from_bytes(data[:4], "little")
+    assert begin % 8 == 0
+    head = json.loads(data[4:begin])
+    assert (head["jsonrpc"], head["method"]) == ("2.0", "positions")
+    params = head["params"]
+    table = np.frombuffer(data, "<f8", offset=begin).reshape(len(params["columns"]), len(params["robots"]))
+    robots = {}
+    for name, values in zip(params["robots"], table.T.tolist(), strict=True):
+        told = dict(zip(params["columns"], values, strict=True))
+        known = {column: value for column, value in told.items() if not math.isnan(value)}
+        texts = {column: params["words"][int(known[column])] for column in POSITION_TEXTS if column in known}
+        robots[name] = {**known, **texts}
+    return params, robots
+
+
+def fleet_of(poses):
+    robots = Robots()
+    for number, (name, pose) in enumerate(poses.items()):
+        robots.ready(name, number, "sql" if number % 2 else "websocket", 10.0)
+        if pose is not None:
+            robots.observe(name, pose, "websocket", 10.0 + number)
+        if number % 3 == 0:
+            robots.assign(name, f"command-{number}")
+            robots.measured(name, 0.0123456)
+    return robots
+
+
+@given(fleets, st.floats(10.0, 60.0))
+def test_it_says_of_each_robot_what_the_rows_say(poses, now):
+    robots = fleet_of(poses)
+    _, found = unpacked(frame(1.0, robots.changed(-1), now))
+    for report in robots.reports(now):
+        told = {k: v for k, v in dataclasses.asdict(report).items() if v is not None and k != "robot"}
+        told["state"] = told["state"].value
+        assert found[report.robot].keys() == told.keys()
+        for name, value in told.items():
+            expected = value if isinstance(value, str) else pytest.approx(float(value), abs=0.00051)
+            assert found[report.robot][name] == expected
+
+
+def test_its_columns_are_the_fields_of_a_report():
+    fields = [field.name for field in dataclasses.fields(RobotReport)]
+    assert sorted([*POSITION_NUMBERS, *POSITION_FLAGS, *POSITION_TEXTS, "robot"]) == sorted(fields)
+
+
+def test_what_no_robot_has_said_takes_no_column():
+    params, _ = unpacked(frame(1.0, fleet_of({"a": None}).changed(-1), 12.0))
+    assert sorted(params["columns"]) == ["age", "command", "latency", "link", "state", "stopped"]
+
+
+def test_a_place_keeps_every_digit():
+    x = 640420.123456789 / 3
+    _, found = unpacked(frame(1.0, fleet_of({"a": SendPos(x, -x, math.pi, 0.1)}).changed(-1), 12.0))
+    assert (found["a"]["x"], found["a"]["y"], found["a"]["theta"]) == (x, -x, math.pi)

@@ -1,0 +1,143 @@
+"""Conflicts and giving way, held against a simulation in small steps of time."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from robot_bridge.traffic.conflicts import conflicts_of, find_conflicts
+from robot_bridge.traffic.giving_way import give_way
+from robot_bridge.traffic.movement import Movement, driving, standing
+
+STEP = 0.01
+
+
+def simulated(one: Movement, two: Movement, limit: float, now: float, until: float):
+    """Return the spans in which the two are nearer than ``limit``, looked at every hundredth of a second."""
+    times = np.arange(now, until, STEP)
+    near = np.hypot(*(one.at(times) - two.at(times)).T) < limit
+    edges = np.flatnonzero(np.diff(near.astype(int)))
+    return times, near, times[edges + 1]
+
+
+def random_movement(random, name: str, now: float) -> Movement:
+    points = random.uniform(0, 30, (random.integers(2, 6), 2)).round(2)
+    way = driving(name, points, random.uniform(0.5, 3.0), now + random.uniform(0, 5), random.uniform(0.2, 1))
+    return way.waiting(random.uniform(0, 40), random.uniform(0, 6)) if random.random() < 0.4 else way
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_conflicts_are_those_of_a_simulation(seed):
+    random = np.random.default_rng(seed)
+    now, margin = 100.0, 0.5
+    one, two = random_movement(random, "a", now), random_movement(random, "b", now)
+    limit = one.radius + two.radius + margin
+    found = conflicts_of(one, two, margin, now)
+    last = max(one.ends, two.ends) + 3
+    times, near, _ = simulated(one, two, limit, now, last)
+    inside = np.zeros(len(times), bool)
+    for conflict in found:
+        inside |= (times >= conflict.begins) & (times <= conflict.ends)
+    # They differ by a step of the simulation at each beginning and end.
+    assert (inside != near).sum() <= 2 * len(found) + 2
+    for conflict in found:
+        during = (times >= conflict.begins) & (times <= conflict.ends)
+        apart = np.hypot(*(one.at(times) - two.at(times)).T)
+        if during.any():
+            assert conflict.metres <= apart[during].min() + 1e-6
+            assert conflict.metres == pytest.approx(apart[during].min(), abs=0.1)
+            middle = (one.at([conflict.nearest_at]) + two.at([conflict.nearest_at]))[0] / 2
+            assert conflict.place == pytest.approx(tuple(middle))
+            assert conflict.stations[0] == pytest.approx(one.station_at(conflict.begins))
+
+
+def test_two_on_one_lane_meet_head_on_halfway():
+    east = driving("a", [(0, 0), (40, 0)], 1.0, 0.0, 0.5)
+    west = driving("b", [(40, 0), (0, 0)], 1.0, 0.0, 0.5)
+    (met,) = find_conflicts([east, west], 0.5, 0.0)
+    assert (met.kind, met.place, met.metres) == ("head-on", (20.0, 0.0), pytest.approx(0.0))
+    assert (met.begins, met.ends) == (pytest.approx(19.25), pytest.approx(20.75))
+
+
+def test_those_who_pass_a_crossing_one_after_the_other_have_no_conflict():
+    east = driving("a", [(0, 0), (20, 0)], 1.0, 0.0, 0.5)
+    north = driving("b", [(10, -20), (10, 10)], 1.0, 0.0, 0.5)
+    assert find_conflicts([east, north], 0.5, 0.0) == []
+    (met,) = find_conflicts([east, driving("b", [(10, -10), (10, 10)], 1.0, 0.0, 0.5)], 0.5, 0.0)
+    assert (met.kind, met.place) == ("crossing", pytest.approx((10.0, 0.0)))
+
+
+def test_who_stands_in_the_way_is_the_other_and_stays_for_good():
+    there = standing("a", (10, 0), 0.0, 0.5)
+    (met,) = find_conflicts([there, driving("b", [(0, 0), (10, 0)], 1.0, 0.0, 0.5)], 0.0, 0.0)
+    assert (met.robot, met.other, met.kind) == ("b", "a", "standing")
+    assert (met.begins, met.ends) == (pytest.approx(9.0), math.inf)
+
+
+def test_a_faster_robot_that_comes_from_behind_follows():
+    slow = driving("a", [(10, 0), (50, 0)], 0.5, 0.0, 0.5)
+    fast = driving("b", [(0, 0), (50, 0)], 2.0, 0.0, 0.5)
+    found = find_conflicts([slow, fast], 0.0, 0.0)
+    assert found[0].kind == "following"
+    assert found[0].begins == pytest.approx(6.0)
+
+
+def test_two_that_stand_are_no_conflict_and_what_is_over_is_none():
+    near = [standing("a", (0, 0), 0.0, 1.0), standing("b", (0.5, 0), 0.0, 1.0)]
+    assert find_conflicts(near, 1.0, 0.0) == []
+    north = driving("b", [(10, -10), (10, 10)], 1.0, 0.0, 0.5)
+    ways = [driving("a", [(0, 0), (20, 0)], 1.0, 0.0, 0.5), north]
+    assert find_conflicts(ways, 0.5, 12.0) == []
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_who_gives_way_meets_nobody_in_a_simulation(seed):
+    random = np.random.default_rng(1000 + seed)
+    now, margin = 0.0, 0.5
+    others = [random_movement(random, f"o{k}", now) for k in range(3)]
+    mine = driving("me", random.uniform(0, 30, (4, 2)), 1.5, now, 0.5)
+    wait = give_way(mine, others, margin, now)
+    if wait is None:
+        return
+    assert wait.movement.ends == pytest.approx(mine.ends + wait.seconds)
+    last = max([wait.movement.ends, *(other.ends for other in others)]) + 2
+    for other in others:
+        _, near, _ = simulated(wait.movement, other, 0.5 + other.radius + margin - 0.02, now, last)
+        assert not near.any()
+
+
+def test_most_random_conflicts_can_be_waited_out():
+    resolved = tried = 0
+    for seed in range(40):
+        random = np.random.default_rng(1000 + seed)
+        others = [random_movement(random, f"o{k}", 0.0) for k in range(3)]
+        mine = driving("me", random.uniform(0, 30, (4, 2)), 1.5, 0.0, 0.5)
+        if find_conflicts([mine, others[0]], 0.5, 0.0):
+            tried += 1
+            resolved += give_way(mine, others[:1], 0.5, 0.0) is not None
+    assert tried >= 5
+    assert resolved >= tried // 2
+
+
+def test_the_wait_at_a_crossing_is_as_short_as_can_be_and_before_it():
+    east = driving("a", [(0, 0), (20, 0)], 1.0, 0.0, 0.5)
+    north = driving("b", [(10, -10), (10, 10)], 1.0, 0.0, 0.5)
+    wait = give_way(east, [north], 0.5, 0.0)
+    assert wait is not None
+    assert 5.0 < wait.station < 8.8
+    # Who has right of way is 1.5 m beyond the crossing when the other is 1.5·√2 m short of its line.
+    assert 1.5 < wait.seconds < 2.5
+
+
+def test_head_on_in_a_lane_without_room_is_not_waited_out():
+    east = driving("a", [(0, 0), (40, 0)], 1.0, 0.0, 0.5)
+    west = driving("b", [(40, 0), (0, 0)], 1.0, 0.0, 0.5)
+    assert give_way(east, [west], 0.5, 0.0) is None
+
+
+def test_nothing_in_the_way_is_no_wait():
+    east = driving("a", [(0, 0), (40, 0)], 1.0, 0.0, 0.5)
+    wait = give_way(east, [standing("b", (20, 5), 0.0, 0.5)], 0.5, 0.0)
+    assert (wait.movement, wait.seconds) == (east, 0.0)
