@@ -3,6 +3,10 @@
 
 def classFactory(iface):  # noqa: N802 - the name that QGIS calls
     """Return the plugin; ``iface`` is QGIS's QgisInterface, or None under qgis_process."""
+    from .plugin.language import Language
+
+    # Before the rest of the plugin is imported: its modules hold texts.
+    language = Language()
     from .plugin.supervisor import FleetSupervisor
 
-    return FleetSupervisor(iface)
+    return FleetSupervisor(iface, language)

@@ -8,6 +8,7 @@ import threading
 from qgis.PyQt.QtCore import QObject, QThread
 
 from .errors import NotSentError
+from .language import tr
 from .websocket_library import websocket_library
 from .wire.addresses import Credentials, check_address
 from .wire.client import DeskClient
@@ -30,11 +31,18 @@ class Connection(QObject):
         self._worker: _Worker | None = None
         self._ending: list[_Worker] = []
         self._mailbox = Mailbox()
+        self.rate = 10.0
+        """How many times a second positions are asked for at most, by links that are opened from now on."""
 
     @property
     def is_open(self) -> bool:
         """Whether a link is wanted, be it up or not."""
         return self._worker is not None
+
+    @property
+    def is_ending(self) -> bool:
+        """Whether a link that was given up still has its thread."""
+        return bool(self._ending)
 
     def open(self, url: str, operator: str, credentials: Credentials | None = None) -> None:
         """Connect to the gateway at ``url`` and stay connected until :meth:`close`.
@@ -49,7 +57,7 @@ class Connection(QObject):
         self.close()
         self._mailbox = Mailbox()
         self._mailbox.put_link(LinkStatus(Phase.CONNECTING))
-        client = DeskClient(url, operator, self._mailbox, library, credentials=credentials)
+        client = DeskClient(url, operator, self._mailbox, library, self.rate, credentials)
         self._worker = _Worker(client, self._mailbox)
         self._worker.start()
 
@@ -68,7 +76,7 @@ class Connection(QObject):
         :raises NotSentError: when no link is wanted.
         """
         if self._worker is None or not self._worker.submit(order):
-            raise NotSentError("The desk is not connected to a gateway. Press Connect first.")
+            raise NotSentError(tr("The desk is not connected to a gateway. Press Connect first."))
 
     def take(self) -> News:
         """Return what arrived since the last call."""
@@ -130,8 +138,12 @@ class _Worker(QThread):
             self._mailbox.put_link(
                 LinkStatus(
                     Phase.FAILED,
-                    f"The connection stopped on an internal fault ({type(error).__name__}: {error}). "
-                    "Press Connect to try again and report this text.",
+                    tr(
+                        "The connection stopped on an internal fault ({name}: {error}). Press Connect to "
+                        "try again and report this text.",
+                        name=type(error).__name__,
+                        error=error,
+                    ),
                 )
             )
 

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from qgis.core import QgsApplication
+from qgis.core import QgsApplication, QgsProject
 
+from .expressions.functions import ExpressionFunctions
+from .expressions.robots_now import FleetNow
 from .processing.provider import FleetProvider
+from .sites.surface_store import SurfaceStore
 
 
 class FleetSupervisor:
@@ -13,12 +16,15 @@ class FleetSupervisor:
     ``initProcessing`` is all that ``qgis_process`` calls; ``initGui`` adds what needs a window.
     """
 
-    def __init__(self, iface):
+    def __init__(self, iface, language=None):
         self._iface = iface
+        self._language = language
         self._provider = None
+        self._surfaces = None
+        self._functions = None
+        self._fleet = FleetNow()
         self._window = None
-        self._roles = None
-        self._layouts = None
+        self._parts = []
 
     @property
     def window(self):
@@ -30,6 +36,8 @@ class FleetSupervisor:
         # The registry deletes a provider that it does not take, as when two copies of the plugin are loaded.
         if QgsApplication.processingRegistry().addProvider(provider):
             self._provider = provider
+        self._surfaces = SurfaceStore(QgsProject.instance())
+        self._functions = ExpressionFunctions(self._surfaces, self._fleet)
 
     def initGui(self):
         self.initProcessing()
@@ -37,23 +45,58 @@ class FleetSupervisor:
             return
         # Only here: qgis_process has no window, and needs nothing of what the window is made of.
         from .desk.layout_action import LayoutAction
+        from .desk.live_layers import LiveLayers
+        from .desk.observations.observations_action import ObservationsAction
+        from .desk.options.options_factory import OptionsFactory
+        from .desk.plans.plans_action import PlansAction
+        from .desk.replay.replay_action import ReplayAction
+        from .desk.robot_feed import RobotFeed
+        from .desk.shortcuts import Shortcuts
+        from .desk.site_drop import SiteDrop
+        from .desk.surface_action import SurfaceAction
+        from .desk.tour.tour_action import TourAction
         from .desk.window import MENU, DeskWindow
+        from .desk.window_alarms import WindowAlarms
+        from .help.help_desk import HelpDesk
+        from .locator.robot_locator import RobotLocator
         from .roles.roles_action import RolesAction
 
-        self._window = DeskWindow(self._iface)
-        self._roles = RolesAction(self._iface, MENU)
-        self._layouts = LayoutAction(self._iface, MENU)
+        iface = self._iface
+        live_layers = LiveLayers(QgsProject.instance())
+        window = self._window = DeskWindow(iface)
+        alarms = WindowAlarms(iface, window, self._surfaces)
+        self._parts = [
+            live_layers,
+            window,
+            alarms,
+            RobotFeed(window.desk, self._fleet),
+            OptionsFactory(iface, window, alarms.watch.set_limits),
+            RobotLocator(iface, self._fleet, window.go_to),
+            SiteDrop(iface, QgsProject.instance(), window.notices),
+            HelpDesk(iface, MENU, window.dock),
+            RolesAction(iface, MENU),
+            LayoutAction(iface, MENU),
+            SurfaceAction(iface, MENU, self._surfaces),
+            PlansAction(iface, MENU, window.desk),
+            ObservationsAction(iface, MENU, window.desk),
+            ReplayAction(iface, MENU, window.desk),
+            TourAction(iface, MENU, window),
+            # The last one, so that it goes first: while every action is still there.
+            Shortcuts(iface.mainWindow(), window.actions),
+        ]
 
     def unload(self):
-        if self._layouts is not None:
-            self._layouts.remove()
-            self._layouts = None
-        if self._roles is not None:
-            self._roles.remove()
-            self._roles = None
-        if self._window is not None:
-            self._window.remove()
-            self._window = None
+        while self._parts:
+            self._parts.pop().remove()
+        self._window = None
+        if self._functions is not None:
+            self._functions.remove()
+            self._functions = None
+            self._surfaces.remove()
+            self._surfaces = None
         if self._provider is not None:
             QgsApplication.processingRegistry().removeProvider(self._provider)
             self._provider = None
+        if self._language is not None:
+            self._language.remove()
+            self._language = None

@@ -12,6 +12,7 @@ import importlib.util
 from types import ModuleType
 
 from .errors import LibraryMissingError
+from .language import tr
 
 OLDEST = 14
 """The first version whose ``asyncio`` client has the interface that the connection uses."""
@@ -27,17 +28,24 @@ def websocket_library() -> ModuleType:
     library = _package(f"{__package__}.vendor.websockets") or _package("websockets")
     if library is None:
         raise LibraryMissingError(
-            "The Python package websockets is missing, which the connection to the gateway needs. Install "
-            "the plugin from its release zip, which contains it, or run 'python3 -m pip install websockets' "
-            "with the Python that QGIS uses, and restart QGIS."
+            tr(
+                "The Python package websockets is missing, which the connection to the gateway needs. "
+                "Install the plugin from its release zip, which contains it, or run 'python3 -m pip install "
+                "websockets' with the Python that QGIS uses, and restart QGIS."
+            )
         )
     version = importlib.import_module(".version", library.__name__).version
     if int(version.split(".")[0]) < OLDEST:
         raise LibraryMissingError(
-            f"The Python package websockets {version} in {library.__path__[0]} is too old for the connection "
-            f"to the gateway. Install the plugin from its release zip, which contains a newer one, or run "
-            f"'python3 -m pip install \"websockets>={OLDEST}\"' with the Python that QGIS uses, and restart "
-            "QGIS."
+            tr(
+                "The Python package websockets {version} in {path} is too old for the connection to the "
+                "gateway. Install the plugin from its release zip, which contains a newer one, or run "
+                "'python3 -m pip install \"websockets>={oldest}\"' with the Python that QGIS uses, and "
+                "restart QGIS.",
+                version=version,
+                path=library.__path__[0],
+                oldest=OLDEST,
+            )
         )
     importlib.import_module(".exceptions", library.__name__)
     return library

@@ -8,9 +8,11 @@ from qgis.PyQt.QtCore import QObject, Qt
 from qgis.PyQt.QtGui import QIcon, QKeySequence
 from qgis.PyQt.QtWidgets import QAction
 
+from ..language import tr
+
 ICONS = Path(__file__).parents[2] / "resources" / "icons"
 EMERGENCY_KEYS = ("F10", "Pause")
-"""Either is enough; QGIS uses neither."""
+"""Either is enough; QGIS uses neither. Qt reads their names in English only: they are not translated."""
 
 
 class Actions(QObject):
@@ -18,21 +20,39 @@ class Actions(QObject):
 
     def __init__(self, parent: QObject):
         super().__init__(parent)
-        self.panel = self._made("fleet_panel", "Fleet panel", "fleet.svg", checkable=True)
-        self.connect = self._made("fleet_connect", "Connect", "connect.svg", checkable=True)
-        self.select = self._made("fleet_select", "Select robot", "select.svg", checkable=True)
-        self.cone = self._made("fleet_cone_target", "Cone target", "cone.svg", checkable=True)
-        self.route = self._made("fleet_draw_route", "Draw route", "route.svg", checkable=True)
-        self.send = self._made("fleet_send", "Send", "send.svg")
-        self.cancel = self._made("fleet_cancel", "Cancel", "cancel.svg")
-        self.follow = self._made("fleet_follow", "Follow", "follow.svg", checkable=True)
-        self.abort = self._made("fleet_abort", "Abort robot", "abort.svg")
-        self.abort_all = self._made("fleet_abort_all", "ABORT ALL", "abort_all.svg")
-        self.emergency = self._made("fleet_emergency_stop", "EMERGENCY STOP", "emergency_stop.svg")
+        self.panel = self._made("fleet_panel", tr("Fleet panel"), "fleet.svg", checkable=True)
+        self.connect = self._made("fleet_connect", tr("Connect"), "connect.svg", checkable=True)
+        self.select = self._made("fleet_select", tr("Select robot"), "select.svg", checkable=True)
+        self.cone = self._made("fleet_cone_target", tr("Cone target"), "cone.svg", checkable=True)
+        self.route = self._made("fleet_draw_route", tr("Draw route"), "route.svg", checkable=True)
+        self.road_route = self._made(
+            "fleet_road_route", tr("Route on roads"), "route_on_roads.svg", checkable=True
+        )
+        self.closures = self._made("fleet_close_road", tr("Close road"), "close_road.svg", checkable=True)
+        self.start = self._made("fleet_start_position", tr("Start position"), "start.svg", checkable=True)
+        self.coordinates = self._made("fleet_coordinates", tr("Coordinates …"), "coordinates.svg")
+        self.from_layer = self._made("fleet_from_layer", tr("Take from layer"), "from_layer.svg")
+        self.undo = self._made("fleet_undo", tr("Undo"), "undo.svg")
+        self.redo = self._made("fleet_redo", tr("Redo"), "redo.svg")
+        self.reverse = self._made("fleet_reverse_route", tr("Turn route round"), "reverse.svg")
+        self.send = self._made("fleet_send", tr("Send"), "send.svg")
+        self.enqueue = self._made("fleet_enqueue", tr("Add to queue"), "enqueue.svg")
+        self.override = self._made("fleet_override", tr("Override …"), "override.svg")
+        self.send_map = self._made("fleet_send_map", tr("Send map"), "send_map.svg")
+        self.cancel = self._made("fleet_cancel", tr("Cancel"), "cancel.svg")
+        self.follow = self._made("fleet_follow", tr("Follow"), "follow.svg", checkable=True)
+        self.follow_all = self._made(
+            "fleet_follow_all", tr("Keep all in view"), "follow_all.svg", checkable=True
+        )
+        self.abort = self._made("fleet_abort", tr("Abort robot"), "abort.svg")
+        self.abort_all = self._made("fleet_abort_all", tr("ABORT ALL"), "abort_all.svg")
+        self.emergency = self._made("fleet_emergency_stop", tr("EMERGENCY STOP"), "emergency_stop.svg")
         self.emergency.setShortcuts([QKeySequence(key) for key in EMERGENCY_KEYS])
         self.emergency.setShortcutContext(Qt.ShortcutContext.ApplicationShortcut)
         self.emergency.setAutoRepeat(False)
-        self.clear_emergency = self._made("fleet_clear_emergency", "Clear emergency stop …", "cancel.svg")
+        self.clear_emergency = self._made("fleet_clear_emergency", tr("Clear emergency stop …"), "cancel.svg")
+        self.off_toolbar = (self.undo, self.redo, self.reverse, self.override, self.send_map)
+        """In the menu, and beside the draft where they belong to it."""
         self._explain()
 
     def all(self) -> list[QAction]:
@@ -42,10 +62,22 @@ class Actions(QObject):
             self.connect,
             self.select,
             self.cone,
+            self.road_route,
             self.route,
+            self.start,
+            self.coordinates,
+            self.from_layer,
+            self.undo,
+            self.redo,
+            self.reverse,
             self.send,
+            self.enqueue,
+            self.override,
             self.cancel,
+            self.send_map,
+            self.closures,
             self.follow,
+            self.follow_all,
             self.abort,
             self.abort_all,
             self.emergency,
@@ -58,23 +90,61 @@ class Actions(QObject):
         return action
 
     def _explain(self) -> None:
-        self.panel.setToolTip("Show or hide the fleet panel")
-        self.connect.setToolTip("Connect to the gateway, or disconnect")
-        self.select.setToolTip("Select a robot by a click on the map")
+        self.panel.setToolTip(tr("Show or hide the fleet panel"))
+        self.connect.setToolTip(tr("Connect to the gateway, or disconnect"))
+        self.select.setToolTip(
+            tr(
+                "Select robots on the map: click one or drag a rectangle, with Shift to add, with Ctrl to "
+                "take away; double click goes there"
+            )
+        )
         self.cone.setToolTip(
-            "Set a cone target for the selected robot: click, then Enter or Send; Esc cancels"
+            tr("Set a cone target for the selected robot: click, then Enter or Send; Esc cancels")
         )
         self.route.setToolTip(
-            "Draw a route for the selected robot: click its points, Backspace takes the last one back, "
-            "Enter or Send sends, Esc cancels"
+            tr(
+                "Draw a route for the selected robot: click its points, drag points or lines to change it, "
+                "Backspace takes the last one back, Enter or Send sends, Esc cancels"
+            )
         )
-        self.send.setToolTip("Send what is drawn on the map to its robot")
-        self.cancel.setToolTip("Take what is drawn off the map; nothing is sent")
-        self.follow.setToolTip("Keep the selected robot in view")
-        self.abort.setToolTip("The selected robot gives up its task at once")
-        self.abort_all.setToolTip("Every robot gives up its task, at once and without a question")
+        self.start.setToolTip(
+            tr(
+                "Tell the selected robot where it stands: click, or drag to where it points; then Enter or "
+                "Send"
+            )
+        )
+        self.coordinates.setToolTip(tr("Type or paste coordinates in any CRS in place of a click"))
+        self.from_layer.setToolTip(
+            tr("Make the draft of what is selected in the active layer: a point, a line, or many points")
+        )
+        self.undo.setToolTip(tr("Take the last change of the draft back (Ctrl+Z over the map)"))
+        self.redo.setToolTip(tr("Make the change again that was taken back (Ctrl+Shift+Z over the map)"))
+        self.reverse.setToolTip(tr("Let the route begin at its end (R over the map)"))
+        self.enqueue.setToolTip(
+            tr("Put what is drawn at the end of its robot's queue, instead of sending it")
+        )
+        self.override.setToolTip(tr("Let a draft be sent in spite of what the checks found; asks why"))
+        self.send_map.setToolTip(tr("Send the selected robots the map of the whole site now"))
+        self.road_route.setToolTip(
+            tr(
+                "Route along the roads for the selected robot: the way to the mouse is shown, a click takes "
+                "it; Backspace takes the last leg back, Enter or Send sends, Esc cancels"
+            )
+        )
+        self.closures.setToolTip(
+            tr("Close a road for every robot by a click on it, or open a closed one again")
+        )
+        self.send.setToolTip(tr("Send what is drawn on the map to its robot"))
+        self.cancel.setToolTip(tr("Take what is drawn off the map; nothing is sent"))
+        self.follow.setToolTip(tr("Keep the selected robots in view"))
+        self.follow_all.setToolTip(tr("Keep every robot in view"))
+        self.abort.setToolTip(tr("Every selected robot gives up its task at once"))
+        self.abort_all.setToolTip(tr("Every robot gives up its task, at once and without a question"))
         self.emergency.setToolTip(
-            f"Every robot stops now, and none can be sent anywhere until a supervisor clears it "
-            f"({' or '.join(EMERGENCY_KEYS)})"
+            tr(
+                "Every robot stops now, and none can be sent anywhere until a supervisor clears it "
+                "({emergency_keys})",
+                emergency_keys=" or ".join(EMERGENCY_KEYS),
+            )
         )
-        self.clear_emergency.setToolTip("Let robots be sent again; takes a supervisor, and asks first")
+        self.clear_emergency.setToolTip(tr("Let robots be sent again; takes a supervisor, and asks first"))

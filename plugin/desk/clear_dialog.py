@@ -6,6 +6,7 @@ from qgis.PyQt.QtCore import Qt, pyqtSignal
 from qgis.PyQt.QtWidgets import QDialog, QDialogButtonBox, QLabel, QLineEdit, QVBoxLayout, QWidget
 
 from ...robot_bridge.messages import EmergencyReport
+from ..language import tr
 from .emergency_banner import in_words
 
 
@@ -17,18 +18,18 @@ class ClearDialog(QDialog):
     def __init__(self, report: EmergencyReport, parent: QWidget | None = None):
         super().__init__(parent)
         self.setObjectName("fleet_clear_dialog")
-        self.setWindowTitle("Clear the emergency stop?")
+        self.setWindowTitle(tr("Clear the emergency stop?"))
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self._stop = report.stop or ""
         self._reason = QLineEdit()
         self._reason.setObjectName("fleet_clear_reason")
-        self._reason.setPlaceholderText("Why robots may drive again, for the log")
+        self._reason.setPlaceholderText(tr("Why robots may drive again, for the log"))
         self._reason.setMaxLength(500)
         buttons = QDialogButtonBox()
-        clear = buttons.addButton("Clear emergency stop", QDialogButtonBox.ButtonRole.AcceptRole)
+        clear = buttons.addButton(tr("Clear emergency stop"), QDialogButtonBox.ButtonRole.AcceptRole)
         clear.setObjectName("fleet_clear_confirm")
         clear.setAutoDefault(False)
-        keep = buttons.addButton("Keep it in force", QDialogButtonBox.ButtonRole.RejectRole)
+        keep = buttons.addButton(tr("Keep it in force"), QDialogButtonBox.ButtonRole.RejectRole)
         keep.setObjectName("fleet_clear_keep")
         keep.setDefault(True)
         buttons.accepted.connect(self.accept)
@@ -37,7 +38,10 @@ class ClearDialog(QDialog):
         rows = QVBoxLayout(self)
         for text in (
             in_words(report, asked=False, connected=True),
-            "Cleared, robots can be sent again. None sets off by itself: what they were doing was aborted.",
+            tr(
+                "Cleared, robots can be sent again. None sets off by itself: what they were doing was "
+                "aborted."
+            ),
         ):
             label = QLabel(text)
             label.setWordWrap(True)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from qgis.PyQt.QtGui import QColor
+from qgis.PyQt.QtGui import QColor, QPalette
+from qgis.PyQt.QtWidgets import QApplication
 
 from ...robot_bridge.messages import CommandState, RobotState
 
@@ -29,3 +30,15 @@ ROUTE = QColor("#FFE14D")
 CONE = QColor("#F26A1B")
 SELECTED = QColor("#FFE14D")
 REFUSED = QColor("#E53935")
+DARK = 128
+"""Lightness of a background below which letters have to be paler."""
+
+
+def is_dark() -> bool:
+    """Tell whether lists have a dark background now."""
+    return QApplication.palette().color(QPalette.ColorRole.Base).lightness() < DARK
+
+
+def for_letters(colour: QColor) -> QColor:
+    """Return a colour as letters of a list take it: paler on a dark background."""
+    return colour.lighter(175) if is_dark() else colour

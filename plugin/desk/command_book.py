@@ -2,22 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 
 from ...robot_bridge.messages import Abort, CommandReport, CommandState, SetPath, SetPosEnd
+from ..language import tr
 
 UNDER_WAY = (CommandState.QUEUED, CommandState.DELIVERED, CommandState.ACKNOWLEDGED)
-MOST_COMMANDS = 1000
+MOST_COMMANDS = 2000
 
 
 class CommandBook:
-    """Commands by id, in the order in which they were first heard of."""
+    """Commands by id. Whatever order they are told in, the newest of a robot is the one asked for last."""
 
     def __init__(self) -> None:
         self._reports: dict[str, CommandReport] = {}
+        self._under_way: dict[str, CommandReport] = {}
+        self._reached: dict[str, CommandReport] = {}
 
     def __len__(self) -> int:
         return len(self._reports)
+
+    def __iter__(self) -> Iterator[CommandReport]:
+        return iter(self._reports.values())
 
     def merge(self, reports: Iterable[CommandReport]) -> list[CommandReport]:
         """Take in reports and return those that told something new.
@@ -25,19 +31,29 @@ class CommandBook:
         A report with fewer steps than what is known was overtaken on its way and is passed over.
         """
         changed = []
+        late = False
+        newest = asked_at(next(reversed(self._reports.values()))) if self._reports else 0.0
         for report in reports:
             known = self._reports.get(report.command)
             if known is not None and (len(report.steps) < len(known.steps) or report == known):
                 continue
+            if known is None:
+                late, newest = late or asked_at(report) < newest, max(newest, asked_at(report))
             self._reports[report.command] = report
             changed.append(report)
-        for command in list(self._reports)[: max(0, len(self._reports) - MOST_COMMANDS)]:
-            del self._reports[command]
-        return changed
+        if late:
+            # What was asked for before this desk came is told after what came since.
+            self._reports = dict(sorted(self._reports.items(), key=lambda item: asked_at(item[1])))
+        self._forget_oldest()
+        if changed:
+            self._look_through()
+        return [report for report in changed if report.command in self._reports]
 
     def clear(self) -> None:
         """Forget every command."""
         self._reports.clear()
+        self._under_way.clear()
+        self._reached.clear()
 
     def get(self, command: str) -> CommandReport | None:
         """Return a command, None if it is not known."""
@@ -45,25 +61,69 @@ class CommandBook:
 
     def under_way(self) -> list[CommandReport]:
         """Return what robots are doing: of each the newest target or path that is not finished."""
-        newest: dict[str, CommandReport] = {}
-        for report in self._reports.values():
-            if report.state in UNDER_WAY and report.op != Abort.__name__:
-                newest[report.robot] = report
-        return list(newest.values())
+        return list(self._under_way.values())
 
     def task_of(self, robot: str) -> CommandReport | None:
         """Return what ``robot`` is doing, None if nothing is known of it."""
-        return next((report for report in self.under_way() if report.robot == robot), None)
+        return self._under_way.get(robot)
+
+    def reached_by(self, robot: str) -> CommandReport | None:
+        """Return the target or path that ``robot`` reached last, None if nothing is known of one."""
+        return self._reached.get(robot)
+
+    def of(self, robot: str, most: int) -> list[CommandReport]:
+        """Return the newest commands of a robot, newest first."""
+        found = [report for report in reversed(self._reports.values()) if report.robot == robot]
+        return found[:most]
+
+    def _forget_oldest(self) -> None:
+        too_many = len(self._reports) - MOST_COMMANDS
+        if too_many <= 0:
+            return
+        ended = [key for key, report in self._reports.items() if report.state not in UNDER_WAY]
+        for command in ended[:too_many]:
+            del self._reports[command]
+        for command in list(self._reports)[: max(0, len(self._reports) - 2 * MOST_COMMANDS)]:
+            del self._reports[command]
+
+    def _look_through(self) -> None:
+        self._under_way.clear()
+        self._reached.clear()
+        for report in self._reports.values():
+            if report.op != Abort.__name__:
+                if report.state in UNDER_WAY:
+                    self._under_way[report.robot] = report
+                elif report.state is CommandState.REACHED:
+                    self._reached[report.robot] = report
+
+
+def asked_at(report: CommandReport) -> float:
+    """Return when a command was asked for, seconds since 1970; 0 where that was not told."""
+    return report.steps[0].at if report.steps else 0.0
 
 
 def in_words(report: CommandReport) -> str:
     """Return what a command asks for, as in ``cone at 12.30, 40.00``."""
     if report.op == SetPosEnd.__name__:
-        what = "cone" if report.params.get("cone") else "target"
-        return f"{what} at {_metres(report.params.get('x'))}, {_metres(report.params.get('y'))}"
+        x, y = _metres(report.params.get("x")), _metres(report.params.get("y"))
+        if report.params.get("cone"):
+            return tr("cone at {x}, {y}", x=x, y=y)
+        return tr("target at {x}, {y}", x=x, y=y)
     if report.op == SetPath.__name__:
-        return f"route of {len(report.params.get('points', []))} points"
-    return {Abort.__name__: "abort"}.get(report.op, report.op)
+        return tr("route of {number} points", number=len(report.params.get("points", [])))
+    return {Abort.__name__: tr("abort")}.get(report.op, report.op)
+
+
+def place_of(report: CommandReport) -> tuple[float, float] | None:
+    """Return where a command leads to, metres in the site frame; None for one that leads nowhere."""
+    if report.op == SetPath.__name__:
+        points = report.params.get("points") or [(None, None)]
+        x, y = points[-1][:2]
+    else:
+        x, y = report.params.get("x"), report.params.get("y")
+    if isinstance(x, (int, float)) and isinstance(y, (int, float)):
+        return float(x), float(y)
+    return None
 
 
 def _metres(value: object) -> str:

@@ -20,6 +20,7 @@ from ...robot_bridge.layouts.checks import Finding, Shape, find
 from ...robot_bridge.layouts.cone import Cone
 from ...robot_bridge.sites.frame import SiteFrame
 from ..errors import PlacementError
+from ..language import tr
 from ..processing.cone_ground import read_obstacles
 from ..processing.cone_layer import CONE_FIELDS, cone_values
 from ..processing.fleet_algorithm import RESOURCES
@@ -56,7 +57,9 @@ class ConeStore:
         if layer is not None:
             return layer.crs()
         if not canvas.isValid():
-            raise PlacementError("The project has no CRS: choose one in metres, at the bottom right in QGIS.")
+            raise PlacementError(
+                tr("The project has no CRS: choose one in metres, at the bottom right in QGIS.")
+            )
         check_site_crs(canvas)
         return canvas
 
@@ -80,7 +83,12 @@ class ConeStore:
             features.append(feature)
         added, _ = layer.dataProvider().addFeatures(features)
         if not added:
-            raise PlacementError(f"The layer {layer.name()} takes no cones: make it writable, or remove it.")
+            raise PlacementError(
+                tr(
+                    "The layer {layer} takes no cones: make it writable, or remove it.",
+                    layer=layer.name(),
+                )
+            )
         layer.updateExtents()
         layer.triggerRepaint()
         return layer
@@ -114,7 +122,7 @@ class ConeStore:
 
     def _made(self, crs: QgsCoordinateReferenceSystem) -> QgsVectorLayer:
         fields = "".join(f"&field={name}:{kind}" for name, kind in CONE_FIELDS.items())
-        layer = QgsVectorLayer(f"Point?crs={crs.authid() or crs.toWkt()}{fields}", "Cones", "memory")
+        layer = QgsVectorLayer(f"Point?crs={crs.authid() or crs.toWkt()}{fields}", tr("Cones"), "memory")
         layer.loadNamedStyle(str(RESOURCES / "styles" / "cones.qml"))
         layer.setCustomProperty(MARK, "1")
         self._project.addMapLayer(layer)

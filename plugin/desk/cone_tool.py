@@ -2,24 +2,50 @@
 
 from __future__ import annotations
 
+from qgis.gui import QgsMapMouseEvent
+from qgis.PyQt.QtGui import QKeyEvent
+
+from ..language import tr
+from .commands.nudging import nudged
+from .desk import Desk
 from .draft_tool import DraftTool
 from .drafts import CONE, Draft, Point
+from .way_to_mouse import WayToMouse
 
 
 class ConeTool(DraftTool):
-    """A click puts the cone for the selected robot, another click moves it."""
+    """A click puts the cone for the selected robot, another click moves it, as do Ctrl and the arrow keys."""
 
     kind = CONE
+
+    def __init__(self, desk: Desk):
+        super().__init__(desk)
+        self._way = WayToMouse(desk)
+
+    def hovered(self, event: QgsMapMouseEvent) -> None:
+        self._way.lead_to(event, self.desk.selected, None)
+
+    def deactivate(self) -> None:
+        self._way.clear()
+        super().deactivate()
 
     def clicked(self, point: Point) -> None:
         other = self.desk.drafts.draft
         if other is not None and other.kind != CONE:
             self.desk.complained.emit(
-                f"{other.in_words()} is still on the map. Send it (Enter) or cancel it (Esc) first."
+                tr(
+                    "{in_words} is still on the map. Send it (Enter) or cancel it (Esc) first.",
+                    in_words=other.in_words(),
+                )
             )
             return
-        robot = self.desk.selected or other.robot
-        draft = Draft(robot, CONE, (point,), self.desk.checked((point,)))
-        self.desk.drafts.put(draft)
-        for text in draft.findings.refused:
-            self.desk.complained.emit(text)
+        self.put(Draft(self.desk.selected or other.robot, CONE, (point,)))
+
+    def key(self, event: QKeyEvent) -> bool:
+        draft = self.draft
+        if draft is not None:
+            to = nudged(event, self.desk, draft.points[0])
+            if to is not None:
+                self.put(Draft(draft.robot, CONE, (to,)))
+                return True
+        return super().key(event)

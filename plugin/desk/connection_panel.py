@@ -3,25 +3,39 @@
 from __future__ import annotations
 
 import getpass
+from itertools import pairwise
 
 from qgis.core import QgsSettings
 from qgis.PyQt.QtCore import Qt
-from qgis.PyQt.QtWidgets import QAction, QGridLayout, QLabel, QLineEdit, QSizePolicy, QToolButton, QWidget
+from qgis.PyQt.QtWidgets import (
+    QAction,
+    QGridLayout,
+    QHBoxLayout,
+    QLabel,
+    QLineEdit,
+    QSizePolicy,
+    QToolButton,
+    QWidget,
+)
 
 from ...robot_bridge.messages import SiteReport
+from ..language import tr
+from ..settings.connections import Connections
+from ..settings.gateway_connection import GatewayConnection
 from ..wire.addresses import DEFAULT_URL, Credentials
 from ..wire.status import LinkStatus, Phase
 from .access_fields import AccessFields
+from .connection_menu import ConnectionMenu
 
 URL_KEY = "fleet_supervisor/url"
 OPERATOR_KEY = "fleet_supervisor/operator"
 
 MARKS = {
-    Phase.CLOSED: ("#757575", "Not connected"),
-    Phase.CONNECTING: ("#E69F00", "Connecting"),
-    Phase.CONNECTED: ("#00795C", "Connected"),
-    Phase.RETRYING: ("#E69F00", "Retrying"),
-    Phase.FAILED: ("#C62828", "Failed"),
+    Phase.CLOSED: ("#757575", tr("Not connected")),
+    Phase.CONNECTING: ("#E69F00", tr("Connecting")),
+    Phase.CONNECTED: ("#00795C", tr("Connected")),
+    Phase.RETRYING: ("#E69F00", tr("Retrying")),
+    Phase.FAILED: ("#C62828", tr("Failed")),
 }
 
 
@@ -31,44 +45,27 @@ class ConnectionPanel(QWidget):
     def __init__(self, connect: QAction, parent: QWidget | None = None):
         super().__init__(parent)
         self._shown: LinkStatus | None = None
+        self._connections = Connections()
+        self._chosen: GatewayConnection | None = None
         settings = QgsSettings()
         self._url = QLineEdit(settings.value(URL_KEY, DEFAULT_URL) or DEFAULT_URL)
         self._url.setObjectName("fleet_url")
         self._url.setPlaceholderText(DEFAULT_URL)
+        self._url.returnPressed.connect(lambda: connect.isChecked() or connect.trigger())
         self._operator = QLineEdit(settings.value(OPERATOR_KEY, "") or _user())
         self._operator.setObjectName("fleet_operator")
-        self._operator.setToolTip("Who you are: it stands beside every command in every log")
-        button = QToolButton()
-        button.setObjectName("fleet_connect_button")
-        button.setDefaultAction(connect)
-        button.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
-        button.setSizePolicy(QSizePolicy.Policy.Minimum, QSizePolicy.Policy.Preferred)
-        self._url.returnPressed.connect(lambda: connect.isChecked() or connect.trigger())
+        self._operator.setToolTip(tr("Who you are: it stands beside every command in every log"))
+        self._menu = ConnectionMenu(self._connections, self._as_it_stands, self)
+        self._menu.chosen.connect(self.use)
         self._access = AccessFields()
-        self._more = QToolButton()
-        self._more.setObjectName("fleet_access_button")
-        self._more.setText("Access…")
-        self._more.setToolTip("Token and CA file, for a gateway with accounts and TLS")
-        self._more.setCheckable(True)
+        self._more = _more_button()
         self._more.toggled.connect(self._access.setVisible)
-        self._state = QLabel()
-        self._state.setObjectName("fleet_link_state")
-        self._state.setWordWrap(True)
-        self._state.setTextFormat(Qt.TextFormat.RichText)
-        self._state.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
-        grid = QGridLayout(self)
-        grid.setContentsMargins(0, 0, 0, 0)
-        grid.setHorizontalSpacing(6)
-        grid.setVerticalSpacing(4)
-        grid.addWidget(QLabel("Gateway"), 0, 0)
-        grid.addWidget(self._url, 0, 1)
-        grid.addWidget(self._more, 0, 2)
-        grid.addWidget(QLabel("Operator"), 1, 0)
-        grid.addWidget(self._operator, 1, 1)
-        grid.addWidget(button, 1, 2)
-        grid.addWidget(self._access, 2, 0, 1, 3)
-        grid.addWidget(self._state, 3, 0, 1, 3)
-        self._url.textChanged.connect(self._show_access)
+        self._state = _state_label()
+        self._lay_out(_connect_button(connect))
+        self._url.textChanged.connect(self._url_changed)
+        last = self._connections.get(self._connections.last)
+        if last is not None and last.url == self.url():
+            self.use(last)
         self._show_access()
 
     def url(self) -> str:
@@ -80,8 +77,21 @@ class ConnectionPanel(QWidget):
         return self._operator.text().strip()
 
     def credentials(self) -> Credentials:
-        """Return token and CA file; QGIS may ask for its master password to give the token that it keeps."""
+        """Return token and CA file; QGIS may ask for its master password to give the token that it keeps.
+
+        :raises FleetError: when it does not give it.
+        """
         return self._access.credentials(self.url())
+
+    def use(self, connection: GatewayConnection) -> None:
+        """Write a named connection into the fields; nothing is opened."""
+        self._url.setText(connection.url)
+        if connection.operator:
+            self._operator.setText(connection.operator)
+        self._chosen = connection
+        self._access.use(connection.auth, connection.ca_file)
+        self._menu.mark(connection.name)
+        self._show_access()
 
     def remember(self) -> None:
         """Keep URL, operator and CA file for the next session, and the token where that is wanted.
@@ -91,7 +101,8 @@ class ConnectionPanel(QWidget):
         settings = QgsSettings()
         settings.setValue(URL_KEY, self.url())
         settings.setValue(OPERATOR_KEY, self.operator())
-        self._access.remember(self.url())
+        self._connections.last = self._chosen.name if self._chosen is not None else ""
+        self._access.remember(self.url(), self.operator())
 
     def show_link(self, link: LinkStatus, site: SiteReport | None, now: float) -> None:
         """Show how the link stands at ``now`` (monotonic clock)."""
@@ -103,14 +114,79 @@ class ConnectionPanel(QWidget):
             if field.isReadOnly() != wanted:
                 field.setReadOnly(wanted)
         self._access.setEnabled(not wanted)
+        self._menu.button.setEnabled(not wanted)
         if link.wants_token and link != self._shown:
             self._more.setChecked(True)
         self._shown = link
+
+    def _as_it_stands(self) -> GatewayConnection:
+        """What the fields say, as a connection that has no name yet."""
+        return GatewayConnection("", self.url(), self.operator(), self._access.ca_file())
+
+    def _url_changed(self) -> None:
+        if self._chosen is not None and self._chosen.url != self.url():
+            # Its token is for the other gateway.
+            self._chosen = None
+            self._access.use("")
+            self._menu.mark("")
+        self._show_access()
 
     def _show_access(self) -> None:
         self._access.show_kept(self.url())
         if self.url().startswith("wss:"):
             self._more.setChecked(True)
+
+    def _lay_out(self, connect: QToolButton) -> None:
+        grid = QGridLayout(self)
+        grid.setContentsMargins(0, 0, 0, 0)
+        grid.setHorizontalSpacing(6)
+        grid.setVerticalSpacing(4)
+        for row, (text, field) in enumerate((("&Gateway", self._url), ("&Operator", self._operator))):
+            label = QLabel(text)
+            label.setBuddy(field)
+            grid.addWidget(label, row, 0)
+        where = QHBoxLayout()
+        where.setSpacing(2)
+        where.addWidget(self._url)
+        where.addWidget(self._menu.button)
+        grid.addLayout(where, 0, 1)
+        grid.addWidget(self._more, 0, 2)
+        grid.addWidget(self._operator, 1, 1)
+        grid.addWidget(connect, 1, 2)
+        grid.addWidget(self._access, 2, 0, 1, 3)
+        grid.addWidget(self._state, 3, 0, 1, 3)
+        in_order = (self._url, self._menu.button, self._more, self._operator, connect, self._access)
+        for before, after in pairwise(in_order):
+            self.setTabOrder(before, after)
+
+
+def _connect_button(connect: QAction) -> QToolButton:
+    button = QToolButton()
+    button.setObjectName("fleet_connect_button")
+    button.setDefaultAction(connect)
+    button.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
+    button.setSizePolicy(QSizePolicy.Policy.Minimum, QSizePolicy.Policy.Preferred)
+    button.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+    return button
+
+
+def _more_button() -> QToolButton:
+    button = QToolButton()
+    button.setObjectName("fleet_access_button")
+    button.setText("&Access…")
+    button.setToolTip(tr("Token and CA file, for a gateway with accounts and TLS"))
+    button.setCheckable(True)
+    button.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+    return button
+
+
+def _state_label() -> QLabel:
+    label = QLabel()
+    label.setObjectName("fleet_link_state")
+    label.setWordWrap(True)
+    label.setTextFormat(Qt.TextFormat.RichText)
+    label.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
+    return label
 
 
 def _in_words(link: LinkStatus, site: SiteReport | None, now: float) -> str:
@@ -120,7 +196,7 @@ def _in_words(link: LinkStatus, site: SiteReport | None, now: float) -> str:
         who = f" · {_escaped(link.reason)}" if link.reason else ""
         detail = f"{_escaped(site.name)}, {_escaped(site.crs)}{who}"
     if link.phase is Phase.RETRYING:
-        word = f"Retrying in {link.wait(now):.0f} s"
+        word = tr("Retrying in {wait:.0f} s", wait=link.wait(now))
     dot = f'<span style="color:{colour}">⬤</span>'
     return f"{dot} <b>{word}</b>{' · ' if detail else ''}{detail}"
 

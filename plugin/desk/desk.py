@@ -3,41 +3,58 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+import uuid
+from collections.abc import Callable, Iterable
+from dataclasses import replace
+from typing import Any
 
 from qgis.core import QgsProject
 from qgis.gui import QgsMapCanvas
 from qgis.PyQt.QtCore import QObject, QTimer, pyqtSignal
 
-from ...robot_bridge.messages import EmergencyReport, EmergencyStop, SiteReport
+from ...robot_bridge.messages import EmergencyReport, EmergencyStop, SiteReport, to_json
 from ..connection import Connection
 from ..errors import FleetError, NotSentError, PlacementError
+from ..language import tr
 from ..wire.addresses import Credentials
 from ..wire.mailbox import News
 from ..wire.outbox import Order
 from ..wire.status import LinkStatus, Phase
 from .checks import LayerCheck, check_bounds
 from .command_book import CommandBook
-from .drafts import Draft, DraftBoard, Findings, Point
+from .drafting.target_check import check_targets
+from .drafts import Draft, DraftBoard, Point, in_brief
+from .observation_book import ObservationBook
 from .orders import Orders
 from .picture import RobotPicture
 from .placement import Placement
-from .trails import Trails
+from .placement_book import PlacementBook
+from .queue_book import QueueBook
+from .road_board import RoadBoard
+from .route_preview import RoutePreview
 
-PULL_EVERY_MS = 100
+PULL_EVERY_MS = 50
 
 
 class Desk(QObject):
-    """Pulls the newest state ten times a second and passes it on; nothing in it waits for the network."""
+    """Pulls the newest state twenty times a second and passes it on; nothing in it waits for the network."""
 
     pulled = pyqtSignal()
-    """A tenth of a second went by: positions, ages and countdowns may have changed."""
+    """A twentieth of a second went by: positions, ages and countdowns may have changed."""
     site_changed = pyqtSignal()
     link_changed = pyqtSignal()
     commands_changed = pyqtSignal(list)
     selection_changed = pyqtSignal()
     emergency_changed = pyqtSignal()
     """An emergency stop was asked for, or the gateway said how one stands."""
+    queues_changed = pyqtSignal(list)
+    """The robots of whose queues something new is known."""
+    placements_changed = pyqtSignal(list)
+    """The numbers of the placed cones of which something new is known."""
+    observations_changed = pyqtSignal(list)
+    """The numbers of the observations of which something new is known."""
+    answered = pyqtSignal(object)
+    """What became of an order: the Answer."""
     failed = pyqtSignal(str)
     """Something that was asked for was not done: the text must not go unseen."""
     complained = pyqtSignal(str)
@@ -58,19 +75,26 @@ class Desk(QObject):
         self.clock = clock
         self.connection = Connection(self)
         self.picture = RobotPicture()
-        self.trails = Trails()
         self.book = CommandBook()
+        self.queues = QueueBook()
+        self.placements = PlacementBook()
+        self.observations = ObservationBook()
         self.drafts = DraftBoard(self)
         self.orders = Orders(self._submit, clock, self)
+        self.preview = RoutePreview(self._submit, clock, self)
+        self.roads = RoadBoard(self.orders.ask, clock, self)
         self.link = LinkStatus(Phase.CLOSED)
         self.site: SiteReport | None = None
         self.emergency: EmergencyReport | None = None
-        self.selected: str | None = None
+        self.selection: tuple[str, ...] = ()
         self._placement: Placement | None = None
         self._check_layers = LayerCheck(project)
         self.orders.refused.connect(self._refused)
         self.orders.accepted.connect(self.remarked)
         self.orders.slow.connect(self.failed)
+        self.roads.failed.connect(self.failed)
+        self.roads.remarked.connect(self.remarked)
+        self.preview.refused.connect(self.complained)
         self._timer = QTimer(self)
         self._timer.setInterval(PULL_EVERY_MS)
         self._timer.timeout.connect(self.pull)
@@ -83,7 +107,7 @@ class Desk(QObject):
         :raises FleetError: when the URL, the name, the token or the CA file cannot be used.
         """
         if not operator.strip():
-            raise NotSentError("The operator's name is empty. Write who you are: it stands in every log.")
+            raise NotSentError(tr("The operator's name is empty. Write who you are: it stands in every log."))
         self.connection.open(url, operator.strip(), credentials)
         self._timer.start()
         self.pull()
@@ -115,11 +139,14 @@ class Desk(QObject):
             return
         if self.site is None or site.id != self.site.id:
             self.picture.clear()
-            self.trails.clear()
             self.book.clear()
+            self.queues.clear()
+            self.placements.clear()
+            self.observations.clear()
             self.emergency = None
+            self.roads.clear()
             self.select(None)
-        self.drafts.put(None)
+        self.drafts.done()
         self.site = site
         self.picture.stale_after, self.picture.lost_after = site.stale_after, site.lost_after
         self._placement = None
@@ -127,16 +154,30 @@ class Desk(QObject):
 
     def _take_news(self, news: News) -> None:
         self.picture.merge(news.robots)
-        self.trails.extend(news.robots)
         changed = self.book.merge(news.commands.values())
         if changed:
             self.commands_changed.emit(changed)
+        self.roads.take(news.roads)
+        self._take_queues(news)
         for answer in news.answers:
-            self.orders.answered(answer)
+            if not self.preview.take(answer):
+                self.orders.answered(answer)
+                self.answered.emit(answer)
         if news.emergency is not None:
             self.emergency = news.emergency
         if news.emergency is not None or news.answers:
             self.emergency_changed.emit()
+
+    def _take_queues(self, news: News) -> None:
+        queues = self.queues.merge(news.queues)
+        if queues:
+            self.queues_changed.emit(queues)
+        placed = self.placements.merge(news.placements)
+        if placed:
+            self.placements_changed.emit(placed)
+        seen = self.observations.merge(news.observations)
+        if seen:
+            self.observations_changed.emit(seen)
 
     # --- places ---
 
@@ -146,26 +187,52 @@ class Desk(QObject):
         :raises PlacementError: when no gateway said yet which site it serves, or the CRS is not usable.
         """
         if self.site is None:
-            raise PlacementError("The site is not known yet. Connect to a gateway first.")
+            raise PlacementError(tr("The site is not known yet. Connect to a gateway first."))
         crs = self.canvas.mapSettings().destinationCrs()
         if self._placement is None or self._placement.map_crs != crs:
             self._placement = Placement(self.site, crs, self.project.transformContext())
         return self._placement
 
-    def checked(self, points: tuple[Point, ...]) -> Findings:
-        """Check points in the site frame against the site and the project's layers.
+    def checked(self, draft: Draft) -> Draft:
+        """Return a draft with what is found when it is held against site, layers and other robots' targets.
+
+        An override holds for what was found when it was given: it is gone when something else is found.
 
         :raises PlacementError: as :meth:`placement`.
+        :raises FleetError: when a layer cannot be read.
         """
         placement = self.placement()
-        return check_bounds(points, self.site) + self._check_layers(points, placement)
+        found = check_bounds(draft.points, self.site) + self._check_layers(draft, placement)
+        found += check_targets(draft, self.book.under_way(), self.queues)
+        override = draft.override if found.overridable == draft.findings.overridable else None
+        return replace(draft, findings=found, override=override)
+
+    def put_draft(self, draft: Draft) -> None:
+        """Check a draft, make it the one on the map, and say what speaks against it.
+
+        :raises FleetError: as :meth:`checked`; what was on the map stays then.
+        """
+        draft = self.checked(draft)
+        self.drafts.put(draft)
+        if draft.findings.faults:
+            self.complained.emit(in_brief(draft.findings.faults))
 
     # --- what the operator does ---
 
+    @property
+    def selected(self) -> str | None:
+        """The robot that drafts are made for: of several selected ones the last. None without any."""
+        return self.selection[-1] if self.selection else None
+
     def select(self, robot: str | None) -> None:
-        """Select a robot, None for none."""
-        if robot != self.selected:
-            self.selected = robot
+        """Select a robot alone, None for none."""
+        self.select_all([] if robot is None else [robot])
+
+    def select_all(self, robots: Iterable[str]) -> None:
+        """Select these robots and no others; the last of them is the one that drafts are made for."""
+        selection = tuple(dict.fromkeys(robots))
+        if selection != self.selection:
+            self.selection = selection
             self.selection_changed.emit()
 
     def send_draft(self) -> None:
@@ -173,20 +240,31 @@ class Desk(QObject):
         draft = self.drafts.draft
         if draft is None:
             self.complained.emit(
-                "There is nothing to send. Select a robot, then set a cone target or draw a route on the map."
+                tr(
+                    "There is nothing to send. Select a robot, then set a cone target or draw a route on "
+                    "the map."
+                )
             )
             return
-        if self._try(lambda: self.orders.send(draft)):
-            self.drafts.put(None)
+        try:
+            renewed = self.checked(draft)
+        except FleetError as error:
+            self.failed.emit(tr("{in_words} was not sent: {error}", in_words=draft.in_words(), error=error))
+            return
+        if renewed != draft:
+            # Since it was drawn a robot has been sent there, or a layer has changed.
+            self.drafts.renew(renewed)
+        if self._try(lambda: self.orders.send(renewed)):
+            self.drafts.done()
 
     def abort_selected(self) -> None:
-        """Ask the selected robot to give up its task."""
-        if self.selected is None:
+        """Ask every selected robot to give up its task."""
+        if not self.selection:
             self.complained.emit(
-                "No robot is selected, so none was aborted. Select it in the table or on the map."
+                tr("No robot is selected, so none was aborted. Select it in the table or on the map.")
             )
-            return
-        self._try(lambda: self.orders.abort(self.selected))
+        for robot in self.selection:
+            self._try(lambda robot=robot: self.orders.abort(robot))
 
     def abort_all(self) -> None:
         """Ask every robot to give up its task, at once and without a question."""
@@ -200,6 +278,38 @@ class Desk(QObject):
     def clear_emergency(self, stop: str, reason: str) -> None:
         """Ask for the emergency stop ``stop`` to be cleared; the gateway lets supervisors only."""
         self._try(lambda: self.orders.clear_emergency(stop, reason))
+
+    def close_road(self, place: Point, reach: float, reason: str, seconds: float | None) -> None:
+        """Ask for the road at ``place`` to be closed, for ``seconds`` or until it is opened."""
+        self._try(lambda: self.roads.close(place, reach, reason, seconds))
+
+    def open_road(self, closure: str) -> None:
+        """Ask for a closed road to be opened."""
+        self._try(lambda: self.roads.open(closure))
+
+    def resolve_conflict(self, robot: str, other: str) -> None:
+        """Ask for ``robot`` to give way to ``other``."""
+        self._try(lambda: self.roads.resolve(robot, other))
+
+    def ask(self, request: Any, words: str) -> str:
+        """Ask the gateway for ``request``, which is ``words`` to the operator, and return the order's key.
+
+        What becomes of it comes with :attr:`answered`.
+
+        :raises NotSentError: when it cannot be sent.
+        """
+        order = Order(str(uuid.uuid4()), request.method, to_json(request), self.clock())
+        self.orders.ask(order, words)
+        return order.key
+
+    def inquire(self, request: Any) -> str:
+        """Ask the gateway for what it knows, without a word to the operator, and return the order's key.
+
+        :raises NotSentError: when it cannot be sent.
+        """
+        order = Order(str(uuid.uuid4()), request.method, to_json(request), self.clock())
+        self._submit(order)
+        return order.key
 
     def _try(self, action: Callable[[], object]) -> bool:
         try:
@@ -215,13 +325,17 @@ class Desk(QObject):
             return
         if order.method != EmergencyStop.method or not self.connection.is_open:
             raise NotSentError(
-                "the desk is not connected to a gateway. Connect first; to stop a robot now use the robot's "
-                "own emergency stop."
+                tr(
+                    "the desk is not connected to a gateway. Connect first; to stop a robot now use the "
+                    "robot's own emergency stop."
+                )
             )
         self.connection.submit(order)
         self.failed.emit(
-            "EMERGENCY STOP is NOT sent yet: the link is down. It is sent as soon as that is back; use the "
-            "robots' own emergency stops now."
+            tr(
+                "EMERGENCY STOP is NOT sent yet: the link is down. It is sent as soon as that is back; use "
+                "the robots' own emergency stops now."
+            )
         )
 
     def _refused(self, text: str, draft: Draft | None) -> None:

@@ -4,28 +4,32 @@ from __future__ import annotations
 
 from qgis.gui import QgsDockWidget
 from qgis.PyQt.QtCore import Qt
-from qgis.PyQt.QtGui import QFont
 from qgis.PyQt.QtWidgets import (
     QAction,
     QFrame,
     QGridLayout,
     QHBoxLayout,
-    QLabel,
     QPushButton,
     QSizePolicy,
     QSplitter,
+    QTabWidget,
     QToolButton,
     QVBoxLayout,
     QWidget,
 )
 
+from ..language import tr
 from .actions import Actions
-from .command_log import CommandLog
+from .command_log.log_panel import CommandLog
+from .conflict_panel import ConflictPanel
 from .connection_panel import ConnectionPanel
 from .desk import Desk
 from .draft_panel import DraftPanel
 from .emergency_banner import EmergencyBanner
-from .robot_table import RobotTable
+from .queues.queue_edits import QueueEdits
+from .queues.queue_panel import QueuePanel
+from .robots.robot_details import RobotDetails
+from .robots.robot_panel import RobotPanel
 
 STOP_STYLE = (
     "QPushButton { background: #C62828; color: white; font-weight: bold; border: 1px solid #8E0000;"
@@ -44,14 +48,18 @@ EMERGENCY_STYLE = (
 class FleetDock(QgsDockWidget):
     """Lays the parts out so that a panel of 420 pixels shows all of them uncut."""
 
-    def __init__(self, desk: Desk, actions: Actions, parent: QWidget | None = None):
+    def __init__(self, desk: Desk, actions: Actions, edits: QueueEdits, parent: QWidget | None = None):
         super().__init__("Fleet", parent)
         self.setObjectName("fleet_dock")
         self._desk = desk
         self.connection_panel = ConnectionPanel(actions.connect)
-        self.table = RobotTable(desk)
+        self.robots = RobotPanel(desk)
+        self.table = self.robots.table
+        self.details = RobotDetails(desk, self.table.positions)
         self.log = CommandLog(desk)
+        self.queue_panel = QueuePanel(desk, edits)
         self.draft_panel = DraftPanel(desk, actions)
+        self.conflict_panel = ConflictPanel(desk)
         body = QWidget()
         rows = QVBoxLayout(body)
         rows.setContentsMargins(8, 6, 8, 8)
@@ -83,23 +91,20 @@ class FleetDock(QgsDockWidget):
         rows = QVBoxLayout(part)
         rows.setContentsMargins(0, 0, 0, 0)
         rows.setSpacing(6)
-        rows.addWidget(self.table, 1)
+        rows.addWidget(self.robots, 1)
         rows.addLayout(_tools(actions))
         rows.addWidget(self.draft_panel)
+        rows.addWidget(self.conflict_panel)
         return part
 
     def _lower(self) -> QWidget:
-        part = QWidget()
-        rows = QVBoxLayout(part)
-        rows.setContentsMargins(0, 2, 0, 0)
-        rows.setSpacing(3)
-        title = QLabel("Commands")
-        font = QFont(title.font())
-        font.setBold(True)
-        title.setFont(font)
-        rows.addWidget(title)
-        rows.addWidget(self.log, 1)
-        return part
+        self.tabs = QTabWidget()
+        self.tabs.setObjectName("fleet_tabs")
+        self.tabs.setDocumentMode(True)
+        self.tabs.addTab(self.log, tr("Commands"))
+        self.tabs.addTab(self.queue_panel, tr("Queue"))
+        self.tabs.addTab(self.details, tr("Robot"))
+        return self.tabs
 
     def _show_link(self) -> None:
         self.connection_panel.show_link(self._desk.link, self._desk.site, self._desk.clock())
@@ -110,8 +115,8 @@ def _tools(actions: Actions) -> QGridLayout:
     grid.setSpacing(4)
     for column, action in enumerate((actions.select, actions.follow, actions.abort)):
         grid.addWidget(tool_button(action), 0, 2 * column, 1, 2)
-    for column, action in enumerate((actions.cone, actions.route)):
-        grid.addWidget(tool_button(action), 1, 3 * column, 1, 3)
+    for column, action in enumerate((actions.cone, actions.road_route, actions.route)):
+        grid.addWidget(tool_button(action), 1, 2 * column, 1, 2)
     for column in range(6):
         grid.setColumnStretch(column, 1)
     return grid

@@ -2,14 +2,25 @@
 
 from __future__ import annotations
 
-from qgis.PyQt.QtCore import Qt
-from qgis.PyQt.QtWidgets import QHBoxLayout, QLabel, QSizePolicy, QToolButton, QVBoxLayout, QWidget
+from collections.abc import Sequence
 
+from qgis.PyQt.QtCore import Qt
+from qgis.PyQt.QtWidgets import (
+    QAction,
+    QHBoxLayout,
+    QLabel,
+    QSizePolicy,
+    QToolButton,
+    QVBoxLayout,
+    QWidget,
+)
+
+from ..language import tr
 from .actions import Actions
 from .desk import Desk
-from .drafts import Draft
+from .drafts import TARGETS, Draft, in_brief
 
-NOTHING = "Select a robot, choose Cone target or Draw route, and click on the map."
+NOTHING = tr("Select a robot, choose Cone target or Draw route, and click on the map.")
 
 
 class DraftPanel(QWidget):
@@ -25,20 +36,17 @@ class DraftPanel(QWidget):
         self._text.setTextFormat(Qt.TextFormat.PlainText)
         self._text.setMinimumHeight(2 * self._text.fontMetrics().lineSpacing() + 2)
         self._text.setAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignTop)
-        buttons = QHBoxLayout()
-        buttons.setSpacing(4)
-        for action in (actions.send, actions.cancel):
-            button = QToolButton()
-            button.setObjectName(f"{action.objectName()}_button")
-            button.setDefaultAction(action)
-            button.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
-            button.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
-            buttons.addWidget(button, 2 if action is actions.send else 1)
         rows = QVBoxLayout(self)
         rows.setContentsMargins(0, 0, 0, 0)
         rows.setSpacing(4)
         rows.addWidget(self._text)
-        rows.addLayout(buttons)
+        self._changes = QWidget()
+        changes = _row((actions.undo, actions.redo, actions.reverse, actions.override))
+        self._changes.setLayout(changes)
+        rows.addWidget(self._changes)
+        rows.addLayout(_row((actions.send, actions.enqueue, actions.cancel)))
+        self._actions = actions
+        self._changes.hide()
         desk.drafts.changed.connect(self._show)
         desk.remarked.connect(self._remarked)
 
@@ -49,13 +57,48 @@ class DraftPanel(QWidget):
     def _show(self) -> None:
         draft = self._desk.drafts.draft
         self._text.setText(_in_words(draft) if draft is not None else self._remark or NOTHING)
-        self._text.setStyleSheet("color: #C62828;" if draft is not None and draft.findings.refused else "")
+        changes = (self._actions.undo, self._actions.redo, self._actions.override)
+        self._changes.setVisible(any(action.isEnabled() for action in changes))
+        self._text.setStyleSheet("color: #C62828;" if draft is not None and draft.findings.faults else "")
+
+
+def _row(actions: Sequence[QAction]) -> QHBoxLayout:
+    buttons = QHBoxLayout()
+    buttons.setContentsMargins(0, 0, 0, 0)
+    buttons.setSpacing(4)
+    for action in actions:
+        button = QToolButton()
+        button.setObjectName(f"{action.objectName()}_button")
+        button.setDefaultAction(action)
+        button.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
+        button.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+        buttons.addWidget(button)
+    return buttons
 
 
 def _in_words(draft: Draft) -> str:
-    if draft.findings.refused:
-        return f"{draft.in_words()}. Not to be sent: {draft.fault}"
+    if draft.override:
+        return tr(
+            "{in_words}. OVERRIDDEN: {override}. Enter or Send sends it.",
+            in_words=draft.in_words(),
+            override=draft.override,
+        )
+    if draft.findings.faults:
+        found = in_brief(draft.findings.faults)
+        hint = tr(" Override… sends it all the same, where your role may.") if draft.can_be_overridden else ""
+        return tr(
+            "{in_words}. Not to be sent: {found}{hint}",
+            in_words=draft.in_words(),
+            found=found,
+            hint=hint,
+        )
     if draft.fault:
         return f"{draft.in_words()}: {draft.fault}."
     warnings = f" {' '.join(draft.findings.warnings)}" if draft.findings.warnings else ""
-    return f"{draft.in_words()}.{warnings} Enter or Send sends it."
+    if draft.kind == TARGETS:
+        return tr(
+            "{in_words}.{warnings} Add to queue lets them be placed one after the other.",
+            in_words=draft.in_words(),
+            warnings=warnings,
+        )
+    return tr("{in_words}.{warnings} Enter or Send sends it.", in_words=draft.in_words(), warnings=warnings)

@@ -2,21 +2,30 @@
 
 from __future__ import annotations
 
-from qgis.core import QgsPointXY
-from qgis.gui import QgsMapMouseEvent, QgsMapTool
-from qgis.PyQt.QtCore import QPoint, Qt
-from qgis.PyQt.QtGui import QKeyEvent
+from qgis.core import QgsCoordinateReferenceSystem, QgsPointXY
+from qgis.gui import QgsMapMouseEvent, QgsMapTool, QgsSnapIndicator
+from qgis.PyQt.QtCore import QEvent, QObject, QPoint, Qt
+from qgis.PyQt.QtGui import QKeyEvent, QKeySequence
 from qgis.PyQt.QtWidgets import QApplication
 
 from ..errors import FleetError
+from ..language import tr
 from .desk import Desk
+from .drafting.place_text import read_place
 from .drafts import Draft, Point
+from .placement import Placement
 
 SEND_KEYS = (Qt.Key.Key_Return, Qt.Key.Key_Enter)
+UNDO, REDO = QKeySequence.StandardKey.Undo, QKeySequence.StandardKey.Redo
+PASTE = QKeySequence.StandardKey.Paste
+PASTED_IN = "EPSG:4326"
 
 
 class DraftTool(QgsMapTool):
-    """A tool that makes a draft. Nothing but Enter sends it: no click, no double click, no leaving."""
+    """A tool that makes a draft. Nothing but Enter sends it: no click, no double click, no leaving.
+
+    Clicks snap as QGIS's snapping settings say.
+    """
 
     kind = ""
 
@@ -24,16 +33,22 @@ class DraftTool(QgsMapTool):
         super().__init__(desk.canvas)
         self.desk = desk
         self._pressed_at: QPoint | None = None
+        self._snapped: QgsSnapIndicator | None = None
         self.setCursor(Qt.CursorShape.CrossCursor)
 
     def activate(self) -> None:
         super().activate()
+        # No longer than the tool is in hand: its marker must not outlive the canvas.
+        self._snapped = QgsSnapIndicator(self.canvas())
+        self.canvas().installEventFilter(self)
         self.canvas().setFocus()
         if self.desk.selected is None:
-            self.desk.complained.emit("Select a robot first, in the table or on the map.")
+            self.desk.complained.emit(tr("Select a robot first, in the table or on the map."))
 
     def deactivate(self) -> None:
         self._pressed_at = None
+        self._snapped = None
+        self.canvas().removeEventFilter(self)
         if self.draft is not None:
             self.desk.drafts.point_at(None)
         super().deactivate()
@@ -47,17 +62,23 @@ class DraftTool(QgsMapTool):
     def canvasPressEvent(self, event: QgsMapMouseEvent) -> None:
         self._pressed_at = event.pos()
 
+    def canvasMoveEvent(self, event: QgsMapMouseEvent) -> None:
+        event.snapPoint()
+        if self._snapped is not None:
+            self._snapped.setMatch(event.mapPointMatch())
+        self.hovered(event)
+
     def canvasReleaseEvent(self, event: QgsMapMouseEvent) -> None:
         # The second click of a double click comes without a press and so is no click of its own.
         pressed, self._pressed_at = self._pressed_at, None
         if pressed is None:
             return
-        if (event.pos() - pressed).manhattanLength() > QApplication.startDragDistance():
+        if self.is_drag(pressed, event.pos()):
             return
         if event.button() == Qt.MouseButton.RightButton:
             self.desk.drafts.put(None)
         elif event.button() == Qt.MouseButton.LeftButton:
-            self._try_click(event.mapPoint())
+            self._try_click(event.snapPoint())
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
         if event.key() in SEND_KEYS:
@@ -67,12 +88,34 @@ class DraftTool(QgsMapTool):
         elif event.key() == Qt.Key.Key_Escape:
             self.desk.drafts.put(None)
             event.ignore()
-        elif event.key() in (Qt.Key.Key_Backspace, Qt.Key.Key_Delete):
-            self.back()
+        elif self.key(event):
             # An ignored event tells QGIS that the tool took it; else it deletes the selected features.
             event.ignore()
         else:
             super().keyPressEvent(event)
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        # QGIS's own Undo and Paste are about layers; over the map a tool that draws comes first.
+        if event.type() == QEvent.Type.ShortcutOverride and _is_ours(event):
+            event.accept()
+        return False
+
+    def hovered(self, event: QgsMapMouseEvent) -> None:
+        """Take in that the mouse moved; the event's map point is snapped."""
+
+    def key(self, event: QKeyEvent) -> bool:
+        """Take in a key; false for one that means nothing here."""
+        if event.matches(UNDO):
+            self._undo(self.desk.drafts.undo(), tr("There is nothing to take back."))
+        elif event.matches(REDO):
+            self._undo(self.desk.drafts.redo(), tr("There is nothing to do again."))
+        elif event.matches(PASTE):
+            self.paste()
+        elif event.key() in (Qt.Key.Key_Backspace, Qt.Key.Key_Delete):
+            self.back()
+        else:
+            return False
+        return True
 
     def clicked(self, point: Point) -> None:
         """Take in a click at a point of the site frame."""
@@ -82,14 +125,58 @@ class DraftTool(QgsMapTool):
         """Take back the last click."""
         self.desk.drafts.put(None)
 
-    def _try_click(self, map_point: QgsPointXY) -> None:
-        if self.desk.selected is None and self.draft is None:
-            self.desk.complained.emit(
-                "No robot is selected, so there is nobody to send there. Select one in the table or on the "
-                "map."
-            )
-            return
+    def paste(self) -> None:
+        """Take what the clipboard holds, ``lat, lon`` in WGS 84, for a click there."""
         try:
+            self._check_robot()
+            lon, lat = read_place(QApplication.clipboard().text(), geographic=True)
+            self.desk.placement()
+            wgs84 = QgsCoordinateReferenceSystem(PASTED_IN)
+            placement = Placement(self.desk.site, wgs84, self.desk.project.transformContext())
+            self.clicked(placement.to_site(QgsPointXY(lon, lat)))
+        except FleetError as error:
+            self.desk.complained.emit(str(error))
+
+    def take(self, point: Point) -> None:
+        """Take a point of the site frame, from wherever, for a click there."""
+        try:
+            self._check_robot()
+            self.clicked(point)
+        except FleetError as error:
+            self.desk.complained.emit(str(error))
+
+    def put(self, draft: Draft) -> None:
+        """Check a draft and make it the one.
+
+        :raises FleetError: when it cannot be checked.
+        """
+        self.desk.put_draft(draft)
+
+    @staticmethod
+    def is_drag(pressed: QPoint, now: QPoint) -> bool:
+        """Tell whether the mouse went further than in a click."""
+        return (now - pressed).manhattanLength() > QApplication.startDragDistance()
+
+    def _try_click(self, map_point: QgsPointXY) -> None:
+        try:
+            self._check_robot()
             self.clicked(self.desk.placement().to_site(map_point))
         except FleetError as error:
             self.desk.complained.emit(str(error))
+
+    def _check_robot(self) -> None:
+        if self.desk.selected is None and self.draft is None:
+            raise FleetError(
+                tr(
+                    "No robot is selected, so there is nobody to send there. Select one in the table or on "
+                    "the map."
+                )
+            )
+
+    def _undo(self, done: bool, otherwise: str) -> None:
+        if not done:
+            self.desk.remarked.emit(otherwise)
+
+
+def _is_ours(event: QKeyEvent) -> bool:
+    return any(event.matches(key) for key in (UNDO, REDO, PASTE))

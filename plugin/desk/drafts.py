@@ -2,67 +2,149 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+import math
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import Any
 
 from qgis.PyQt.QtCore import QObject, pyqtSignal
 
-from ...robot_bridge.messages import SetPath, SetPosEnd, to_json
+from ...robot_bridge.messages import SetPath, SetPosEnd, SetPosIni, to_json
+from ..language import tr
 
 Point = tuple[float, float]
+
+CONE = "cone"
+ROUTE = "route"
+START = "start"
+TARGETS = "targets"
+
+MOST_STEPS = 100
+"""Drafts that can be come back to."""
 
 
 @dataclass(frozen=True)
 class Findings:
-    """What a check of a draft found: ``refused`` forbids sending it, ``warnings`` do not."""
+    """What a check of a draft found.
+
+    ``refused`` forbids sending it. ``overridable`` does so until somebody overrides it, who says why.
+    ``warnings`` do not.
+    """
 
     refused: tuple[str, ...] = ()
     warnings: tuple[str, ...] = ()
+    overridable: tuple[str, ...] = ()
 
     def __add__(self, other: Findings) -> Findings:
-        return Findings(self.refused + other.refused, self.warnings + other.warnings)
+        return Findings(
+            self.refused + other.refused,
+            self.warnings + other.warnings,
+            self.overridable + other.overridable,
+        )
+
+    @property
+    def faults(self) -> tuple[str, ...]:
+        """All that speaks against sending it."""
+        return self.refused + self.overridable
 
 
 @dataclass(frozen=True)
 class Draft:
-    """A cone target (one point) or a route (its points), metres in the site frame, for one robot.
+    """A cone target or start position (one point), a route (its points) or several cone targets.
 
-    ``robot`` is the one that was selected when the draft was begun; another selection does not change it.
+    Points are metres in the site frame. ``robot`` is the one that was selected when the draft was begun:
+    another selection does not change it. ``legs`` says how many of a route's points each click brought: one,
+    or a way along the roads. ``note`` is what the operator is told of such ways. ``theta`` is the heading of
+    a start position. ``names`` are those of several targets. ``override`` says why it is sent in spite of
+    what can be overridden.
     """
 
     robot: str
     kind: str
     points: tuple[Point, ...]
     findings: Findings = field(default_factory=Findings)
+    legs: tuple[int, ...] = ()
+    note: str = ""
+    theta: float | None = None
+    names: tuple[str, ...] = ()
+    override: str | None = None
+
+    def with_leg(self, points: tuple[Point, ...], note: str = "") -> Draft:
+        """Return the route with another leg, unchecked."""
+        notes = " + ".join(text for text in (self.note, note) if text)
+        legs = (*self.legs, len(points))
+        return Draft(self.robot, self.kind, self.points + points, legs=legs, note=notes)
+
+    def without_last_leg(self) -> Draft | None:
+        """Return the route without its last leg, unchecked; None where nothing is left."""
+        left = self.points[: -self.legs[-1]] if self.legs else ()
+        if not left:
+            return None
+        note = self.note.rpartition(" + ")[0] if self.legs[-1] > 1 else self.note
+        return Draft(self.robot, self.kind, left, legs=self.legs[:-1], note=note)
 
     @property
     def fault(self) -> str | None:
         """Why it cannot be sent, None if it can."""
         if self.kind == ROUTE and len(self.points) < 2:
-            return "a route needs at least two points: click the next one"
-        return " ".join(self.findings.refused) or None
+            return tr("a route needs at least two points: click the next one")
+        return in_brief(self.findings.refused if self.override else self.findings.faults) or None
+
+    @property
+    def can_be_overridden(self) -> bool:
+        """Tell whether nothing but an override is wanting."""
+        return bool(self.findings.overridable) and replace(self, override="all").fault is None
+
+    @property
+    def outline(self) -> tuple[Point, ...]:
+        """What is drawn: the points, and one ahead of a start position that has a heading."""
+        if self.theta is None:
+            return self.points
+        ((x, y),) = self.points
+        return ((x, y), (x + math.cos(self.theta), y + math.sin(self.theta)))
 
     def message(self) -> tuple[str, dict[str, Any]]:
         """Return the operation and its parameters."""
+        x, y = self.points[0]
         if self.kind == CONE:
-            (x, y) = self.points[0]
             return SetPosEnd.__name__, to_json(SetPosEnd(x, y, cone=True))
+        if self.kind == START:
+            return SetPosIni.__name__, to_json(SetPosIni(x, y, self.theta))
         return SetPath.__name__, to_json(SetPath(list(self.points)))
 
     def in_words(self) -> str:
         """Return what would be sent to whom."""
         if self.kind == CONE:
-            return f"Cone for {self.robot} at {self.points[0][0]:.2f}, {self.points[0][1]:.2f} m"
-        return f"Route for {self.robot}: {len(self.points)} points, {_length(self.points):.1f} m"
-
-
-CONE = "cone"
-ROUTE = "route"
+            return tr("Cone for {robot} at {place}", robot=self.robot, place=_place(self.points[0]))
+        if self.kind == START:
+            turned = (
+                ""
+                if self.theta is None
+                else tr(
+                    ", theta {degrees:.0f}°",
+                    degrees=math.degrees(self.theta),
+                )
+            )
+            return tr(
+                "Start position of {robot} at {place}{turned}",
+                robot=self.robot,
+                place=_place(self.points[0]),
+                turned=turned,
+            )
+        if self.kind == TARGETS:
+            return tr("{points} cones for {robot}", points=len(self.points), robot=self.robot)
+        told = tr("; along the roads {note}", note=self.note) if self.note else ""
+        return tr(
+            "Route for {robot}: {points} points, {length:.1f} m{told}",
+            robot=self.robot,
+            points=len(self.points),
+            length=_length(self.points),
+            told=told,
+        )
 
 
 class DraftBoard(QObject):
-    """Holds the one draft that there can be and tells who shows it when it changes."""
+    """Holds the one draft that there can be, tells who shows it when it changes, and takes changes back."""
 
     changed = pyqtSignal()
     pointed = pyqtSignal()
@@ -71,17 +153,69 @@ class DraftBoard(QObject):
         super().__init__(parent)
         self.draft: Draft | None = None
         self.cursor: Point | None = None
+        self._before: list[Draft | None] = []
+        self._after: list[Draft | None] = []
 
     def put(self, draft: Draft | None) -> None:
         """Make ``draft`` the one, None for no draft."""
-        self.draft = draft
-        self.cursor = None
-        self.changed.emit()
+        if draft is not None or self.draft is not None:
+            self._before = [*self._before, self.draft][-MOST_STEPS:]
+            self._after = []
+        self._show(draft)
+
+    def renew(self, draft: Draft) -> None:
+        """Put ``draft`` in place of the present one, of which it differs in what was found or overridden."""
+        self._show(draft)
+
+    def done(self) -> None:
+        """Take the draft away for good: it was sent, or belongs to another site."""
+        self._before, self._after = [], []
+        self._show(None)
+
+    @property
+    def can_undo(self) -> bool:
+        """Tell whether there is a draft from before."""
+        return bool(self._before)
+
+    @property
+    def can_redo(self) -> bool:
+        """Tell whether something was taken back."""
+        return bool(self._after)
+
+    def undo(self) -> bool:
+        """Go back to the draft from before the last change; false when there is none."""
+        return self._go(self._before, self._after)
+
+    def redo(self) -> bool:
+        """Make the change again that was taken back last; false when there is none."""
+        return self._go(self._after, self._before)
 
     def point_at(self, cursor: Point | None) -> None:
         """Say where the mouse is, in the site frame, for the preview of the next leg."""
         self.cursor = cursor
         self.pointed.emit()
+
+    def _go(self, here: list[Draft | None], there: list[Draft | None]) -> bool:
+        if not here:
+            return False
+        there.append(self.draft)
+        self._show(here.pop())
+        return True
+
+    def _show(self, draft: Draft | None) -> None:
+        self.draft = draft
+        self.cursor = None
+        self.changed.emit()
+
+
+def in_brief(texts: tuple[str, ...], most: int = 3) -> str:
+    """Return the first of ``texts`` and how many more there are: of a whole layer there may be hundreds."""
+    more = len(texts) - most
+    return " ".join([*texts[:most], *([tr("And {more} more.", more=more)] if more > 0 else [])])
+
+
+def _place(point: Point) -> str:
+    return tr("{point:.2f}, {point2:.2f} m", point=point[0], point2=point[1])
 
 
 def _length(points: tuple[Point, ...]) -> float:

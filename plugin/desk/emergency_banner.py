@@ -8,6 +8,7 @@ from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtWidgets import QAction, QFrame, QGridLayout, QLabel, QToolButton, QWidget
 
 from ...robot_bridge.messages import EmergencyReport
+from ..language import tr
 from ..wire.status import Phase
 from .desk import Desk
 
@@ -65,30 +66,55 @@ def in_words(report: EmergencyReport | None, asked: bool, connected: bool) -> st
     lines = []
     if asked:
         lines.append(
-            "EMERGENCY STOP asked for. The gateway has not confirmed it yet: watch the robots, and use their "
-            "own emergency stops."
+            tr(
+                "EMERGENCY STOP asked for. The gateway has not confirmed it yet: watch the robots, and use "
+                "their own emergency stops."
+            )
         )
     if report is not None and report.in_force:
-        since = f" since {time.strftime('%H:%M:%S', time.localtime(report.at))}" if report.at else ""
+        since = (
+            tr(
+                " since {time}",
+                time=time.strftime("%H:%M:%S", time.localtime(report.at)),
+            )
+            if report.at
+            else ""
+        )
         reason = f" ({report.reason})" if report.reason else ""
-        lines.append(f"EMERGENCY STOP in force{since}, by {report.by}{reason}")
+        lines.append(
+            tr(
+                "EMERGENCY STOP in force{since}, by {by}{reason}",
+                since=since,
+                by=report.by,
+                reason=reason,
+            )
+        )
         lines += _counts(report)
         if not connected:
-            lines.append("The link to the gateway is down: this is what it said last.")
+            lines.append(tr("The link to the gateway is down: this is what it said last."))
     return "\n".join(lines)
 
 
 def _counts(report: EmergencyReport) -> list[str]:
-    lines = [f"{report.acknowledged} of {report.robots} robots acknowledged, {report.standing} seen to stand"]
+    lines = [
+        tr(
+            "{acknowledged} of {robots} robots acknowledged, {standing} seen to stand",
+            acknowledged=report.acknowledged,
+            robots=report.robots,
+            standing=report.standing,
+        )
+    ]
     if report.waiting:
-        lines.append(f"No answer from {_names(report.waiting)}")
+        lines.append(tr("No answer from {names}", names=_names(report.waiting)))
     if report.refused:
-        lines.append(f"REFUSED by {_names(report.refused)}")
+        lines.append(tr("REFUSED by {names}", names=_names(report.refused)))
     if not report.stored:
-        lines.append("Not stored yet: the gateway cannot write its database, so robots on SQL are not told.")
+        lines.append(
+            tr("Not stored yet: the gateway cannot write its database, so robots on SQL are not told.")
+        )
     return lines
 
 
 def _names(names: list[str]) -> str:
     more = len(names) - MOST_NAMES
-    return ", ".join(names[:MOST_NAMES]) + (f" and {more} more" if more > 0 else "")
+    return ", ".join(names[:MOST_NAMES]) + (tr(" and {more} more", more=more) if more > 0 else "")

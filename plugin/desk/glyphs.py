@@ -6,39 +6,78 @@ from qgis.PyQt.QtCore import QPointF, QRectF, Qt
 from qgis.PyQt.QtGui import QBrush, QColor, QIcon, QPainter, QPainterPath, QPen, QPixmap, QPolygonF
 
 from ...robot_bridge.messages import RobotState
-from .colours import CASING, CONE, PAPER, STATE_COLOURS
+from .colours import CASING, CONE, PAPER, SELECTED, STATE_COLOURS
 from .picture import STATES
 
 CELL = 36
 """Width and height of the square that a robot's drawing fits in at any heading."""
+HEADINGS = 90
+"""Directions that robots are drawn in; between them nobody sees a difference."""
+MARK_SIZE = 1.4
+RING, OTHER_RING, TARGET, CONE_TARGET = range(4)
+MARKS = 4
 
 
-def robot_atlas(pixel_ratio: float) -> QPixmap:
-    """Return every robot drawing in one picture, a cell each of ``CELL`` logical pixels.
+def robot_atlas(pixel_ratio: float, size: float = 1.0) -> QPixmap:
+    """Return every robot drawing in one picture, a cell each of :func:`cell` device pixels.
 
-    The columns are :data:`~.picture.STATES`; in the first row the robot points along +x, in the second its
-    heading is not known. The picture is made for ``pixel_ratio`` device pixels per logical one.
+    The rows are :data:`~.picture.STATES`. In column k the robot points k / :data:`HEADINGS` of a turn
+    clockwise from +x; in the last column its heading is not known. ``size`` 1 is the drawing as it is.
     """
-    side = round(CELL * pixel_ratio)
-    atlas = QPixmap(side * len(STATES), side * 2)
-    atlas.fill(QColor(0, 0, 0, 0))
+    side = cell(pixel_ratio, size)
+    atlas = _transparent(side * (HEADINGS + 1), side * len(STATES))
     painter = QPainter(atlas)
     painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-    for row, with_heading in enumerate((True, False)):
-        for column, state in enumerate(STATES):
+    for row, state in enumerate(STATES):
+        for column in range(HEADINGS + 1):
             painter.save()
             painter.translate((column + 0.5) * side, (row + 0.5) * side)
             painter.scale(side / CELL, side / CELL)
-            draw_robot(painter, state, with_heading)
+            if column < HEADINGS:
+                painter.rotate(column * 360.0 / HEADINGS)
+            draw_robot(painter, state, column < HEADINGS)
             painter.restore()
     painter.end()
     return atlas
 
 
+def cell(pixel_ratio: float, size: float = 1.0) -> int:
+    """Return the device pixels along a side of the square that a robot of ``size`` fits in."""
+    return round(CELL * size * pixel_ratio)
+
+
+def mark_atlas(pixel_ratio: float, size: float = 1.0) -> QPixmap:
+    """Return the marks, a cell each: the ring of the selected robot that commands go to, that of others
+    selected with it, a target, and a cone target, both with their spot in the middle."""
+    side = cell(pixel_ratio, MARK_SIZE * size)
+    atlas = _transparent(side * MARKS, side)
+    painter = QPainter(atlas)
+    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+    middle = CELL * MARK_SIZE / 2
+    painter.scale(side / (2 * middle), side / (2 * middle))
+    for column, (radius, colour, width) in enumerate(
+        ((18.0, SELECTED, 3.0), (16.0, SELECTED, 1.6), (4.0, PAPER, 2.2), (4.0, PAPER, 2.2))
+    ):
+        centre = QPointF((2 * column + 1) * middle, middle)
+        painter.setBrush(Qt.BrushStyle.NoBrush)
+        for pen in (_pen(CASING, width + 2.4), _pen(colour, width)):
+            painter.setPen(pen)
+            painter.drawEllipse(centre, radius, radius)
+        if column == CONE_TARGET:
+            draw_cone(painter, centre)
+    painter.end()
+    return atlas
+
+
+def _transparent(width: int, height: int) -> QPixmap:
+    pixmap = QPixmap(width, height)
+    pixmap.fill(QColor(0, 0, 0, 0))
+    return pixmap
+
+
 def state_icon(state: RobotState) -> QIcon:
     """Return the drawing of a robot in ``state``, pointing up, for tables and legends."""
-    pixmap = QPixmap(64, 64)
-    pixmap.fill(QColor(0, 0, 0, 0))
+    pixmap = _transparent(64, 64)
     painter = QPainter(pixmap)
     painter.setRenderHint(QPainter.RenderHint.Antialiasing)
     painter.translate(32, 32)
@@ -85,8 +124,9 @@ def draw_cone(painter: QPainter, foot: QPointF, size: float = 22.0) -> None:
     painter.drawPolygon(body)
     painter.drawRoundedRect(base, 1.6, 1.6)
     painter.setBrush(QBrush(PAPER))
-    painter.drawPolygon(QPolygonF([QPointF(-4.8, -8.6), QPointF(-3.7, -12.4), QPointF(3.7, -12.4),
-                                   QPointF(4.8, -8.6)]))
+    painter.drawPolygon(
+        QPolygonF([QPointF(-4.8, -8.6), QPointF(-3.7, -12.4), QPointF(3.7, -12.4), QPointF(4.8, -8.6)])
+    )
     painter.restore()
 
 
@@ -122,6 +162,4 @@ def _cross(painter: QPainter, colour: QColor) -> None:
 
 
 def _pen(colour: QColor, width: float) -> QPen:
-    return QPen(
-        colour, width, Qt.PenStyle.SolidLine, Qt.PenCapStyle.RoundCap, Qt.PenJoinStyle.RoundJoin
-    )
+    return QPen(colour, width, Qt.PenStyle.SolidLine, Qt.PenCapStyle.RoundCap, Qt.PenJoinStyle.RoundJoin)

@@ -9,6 +9,7 @@ from qgis.PyQt.QtWidgets import QAction, QMenu
 
 from ...robot_bridge.layouts.catalogue import LAYOUTS
 from ...robot_bridge.layouts.layout import Layout
+from ..language import tr
 from .actions import ICONS
 from .layout_tool import LayoutTool
 
@@ -19,11 +20,13 @@ class LayoutAction:
     def __init__(self, iface: QgisInterface, menu: str):
         self._iface, self._menu = iface, menu
         window = iface.mainWindow()
-        self.action = QAction(QIcon(str(ICONS / "cone_layout.svg")), "Place cone layout", window)
+        self.action = QAction(QIcon(str(ICONS / "cone_layout.svg")), tr("Place cone layout"), window)
         self.action.setObjectName("fleet_cone_layout")
         self.action.setToolTip(
-            "Place a cone layout: it is shown under the cursor, the wheel turns it (Shift: finely), a click "
-            "places it, Esc ends; nothing is sent to robots"
+            tr(
+                "Place a cone layout: it is shown under the cursor, the wheel turns it (Shift: finely), a "
+                "click places it, Esc ends; nothing is sent to robots"
+            )
         )
         self.tool = LayoutTool(iface.mapCanvas(), QgsProject.instance(), self._say)
         self._layouts = QMenu(window)
@@ -51,4 +54,4 @@ class LayoutAction:
 
     def _say(self, text: str, complaint: bool) -> None:
         level = Qgis.MessageLevel.Warning if complaint else Qgis.MessageLevel.Info
-        self._iface.messageBar().pushMessage("Cone layout", text, level)
+        self._iface.messageBar().pushMessage(tr("Cone layout"), text, level)

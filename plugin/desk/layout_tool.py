@@ -16,6 +16,7 @@ from ...robot_bridge.layouts.cone import Cone
 from ...robot_bridge.layouts.layout import Layout
 from ...robot_bridge.layouts.placing import placed
 from ..errors import FleetError
+from ..language import tr
 from .cone_store import ConeStore
 from .placement import transformed
 
@@ -131,12 +132,24 @@ class LayoutTool(QgsMapTool):
         if findings:
             wrong = len({finding.cone for finding in findings})
             self._say(
-                f"{wrong} of {len(cones)} cones should not stand there: {findings[0].text} "
-                f"All are in the layer {layer.name()}.",
+                tr(
+                    "{wrong} of {cones} cones should not stand there: {text} All are in the layer {layer}.",
+                    wrong=wrong,
+                    cones=len(cones),
+                    text=findings[0].text,
+                    layer=layer.name(),
+                ),
                 True,
             )
         else:
-            self._say(f"{len(cones)} cones are in the layer {layer.name()}.", False)
+            self._say(
+                tr(
+                    "{cones} cones are in the layer {layer}.",
+                    cones=len(cones),
+                    layer=layer.name(),
+                ),
+                False,
+            )
 
     def _try(self, action: Callable[[], None]) -> None:
         try:

@@ -71,6 +71,11 @@ class NoticeLabel(QLabel):
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         self.setFixedHeight(self.heightForWidth(max(200, bar.width() - BESIDE_TEXT)))
 
+    def show_text(self, text: str) -> None:
+        """Show another text."""
+        self.setText(f"{TITLE}: {text}")
+        self.setFixedHeight(self.heightForWidth(self.width()))
+
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
         self.setFixedHeight(self.heightForWidth(self.width()))

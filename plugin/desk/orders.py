@@ -11,7 +11,7 @@ from qgis.PyQt.QtCore import QObject, pyqtSignal
 from ...robot_bridge.messages import Abort, AbortAll, ClearEmergencyStop, EmergencyStop, Send, to_json
 from ..errors import NotSentError
 from ..wire.outbox import Answer, Order
-from .drafts import Draft
+from .drafts import TARGETS, Draft
 
 SLOW_AFTER = 5.0
 
@@ -53,8 +53,13 @@ class Orders(QObject):
         """
         if draft.fault:
             raise NotSentError(f"{draft.in_words()} was not sent: {draft.fault}")
+        if draft.kind == TARGETS:
+            raise NotSentError(
+                f"{draft.in_words()} were not sent: several targets are driven to one after the other. Press "
+                "Add to queue."
+            )
         op, params = draft.message()
-        return self._command(draft.robot, op, params, draft.in_words(), draft)
+        return self._command(draft.robot, op, params, draft.in_words(), draft, draft.override)
 
     def abort(self, robot: str) -> str:
         """Ask one robot to give up its task and return the command's id.
@@ -99,6 +104,10 @@ class Orders(QObject):
         order = Order(str(uuid.uuid4()), ClearEmergencyStop.method, params, self._clock())
         return self._put(order, "Clear emergency stop")
 
+    def ask(self, order: Order, words: str) -> None:
+        """Ask for something else, which is ``words`` to the operator; raises NotSentError."""
+        self._put(order, words)
+
     def answered(self, answer: Answer) -> None:
         """Take in what became of an order."""
         pending = self._pending.pop(answer.order.key, None)
@@ -109,8 +118,14 @@ class Orders(QObject):
             return
         result = answer.result or {}
         commands = result.get("commands")
-        if "in_force" in result:
+        if "text" in result:
+            self.accepted.emit(f"{pending.words}: {result['text']}")
+        elif "closure" in result:
+            self.accepted.emit(f"{pending.words}: done")
+        elif "in_force" in result:
             self.accepted.emit(f"{pending.words}: {'in force' if result['in_force'] else 'done'}")
+        elif result.keys() & {"revision", "queues", "placements", "tasks"}:
+            self.accepted.emit(f"{pending.words}: done")
         elif commands is None:
             self.accepted.emit(f"{pending.words}: queued")
         else:
@@ -127,9 +142,18 @@ class Orders(QObject):
                     "arrived. It is repeated when the link is back; it is never done twice."
                 )
 
-    def _command(self, robot: str, op: str, params: dict, words: str, draft: Draft | None) -> str:
+    def _command(
+        self,
+        robot: str,
+        op: str,
+        params: dict,
+        words: str,
+        draft: Draft | None,
+        override: str | None = None,
+    ) -> str:
         command = str(uuid.uuid4())
-        order = Order(command, Send.method, to_json(Send(command, robot, op, params)), self._clock())
+        send = Send(command, robot, op, params, override=override)
+        order = Order(command, Send.method, to_json(send), self._clock())
         return self._put(order, words, draft)
 
     def _put(self, order: Order, words: str, draft: Draft | None = None) -> str:

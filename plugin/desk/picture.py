@@ -2,51 +2,58 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from ...robot_bridge.liveness import liveness
-from ...robot_bridge.messages import RobotReport, RobotState
-from ..wire.mailbox import Sighting
+from ...robot_bridge.messages import RobotReport, RobotState, robot_report
+from ..wire.sightings import STATES, Sightings
 
-STATES = (RobotState.FRESH, RobotState.STALE, RobotState.LOST, RobotState.OFFLINE)
+__all__ = ["STATES", "RobotArrays", "RobotPicture", "RobotView"]
+
+_FRESH, _STALE, _LOST, _OFFLINE = range(len(STATES))
+Numbers = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
 class RobotView:
-    """One robot at one moment: the newest report, its state now and its age in seconds now."""
+    """One robot at one moment: what was told of it last, its state now and its age in seconds now."""
 
-    report: RobotReport
+    name: str
+    told: dict[str, Any]
     state: RobotState
     age: float
 
-    @property
-    def name(self) -> str:
-        """The robot's name."""
-        return self.report.robot
+    @cached_property
+    def report(self) -> RobotReport:
+        """The newest report."""
+        return robot_report(self.told)
 
     @property
     def has_pose(self) -> bool:
         """Whether the robot ever said where it is."""
-        return self.report.x is not None and self.report.y is not None
+        return self.told.get("x") is not None and self.told.get("y") is not None
 
 
 @dataclass(frozen=True)
 class RobotArrays:
-    """The robots that have a pose, as arrays of one row each.
+    """The robots at one moment, as arrays of one row each; a robot keeps its row until the site changes.
 
-    ``xy`` (n, 2) metres in the site frame, ``theta`` (n,) radians in the site frame, NaN where not known,
-    ``state`` (n,) index into :data:`STATES`.
+    ``xy`` (n, 2) metres in the site frame, ``theta`` (n,) radians in the site frame, ``v`` (n,) metres a
+    second, ``accuracy`` (n,) metres, each NaN where not known; ``state`` (n,) index into :data:`STATES`;
+    ``age`` (n,) seconds since the last message.
     """
 
     names: list[str]
-    xy: npt.NDArray[np.float64]
-    theta: npt.NDArray[np.float64]
+    xy: Numbers
+    theta: Numbers
+    v: Numbers
+    accuracy: Numbers
     state: npt.NDArray[np.intp]
+    age: Numbers
 
 
 class RobotPicture:
@@ -59,53 +66,92 @@ class RobotPicture:
     def __init__(self, stale_after: float = 3.0, lost_after: float = 10.0):
         self.stale_after = stale_after
         self.lost_after = lost_after
-        self._seen: dict[str, Sighting] = {}
+        self.generation = 0
+        """Counts how often everything was forgotten: rows of another generation are other robots."""
+        self.revision = 0
+        """Counts how often something was taken in."""
+        self._seen = Sightings()
+        self._by_name: list[int] = []
 
     def __len__(self) -> int:
         return len(self._seen)
 
-    def merge(self, sightings: Mapping[str, Sighting]) -> None:
+    def merge(self, sightings: Sightings) -> None:
         """Take in newer sightings; one that arrived before what is known is passed over."""
-        for name, sighting in sightings.items():
-            known = self._seen.get(name)
-            if known is None or sighting.received >= known.received:
-                self._seen[name] = sighting
+        if len(sightings):
+            self._seen.merge(sightings)
+            self.revision += 1
 
     def clear(self) -> None:
         """Forget every robot."""
-        self._seen.clear()
+        self._seen = Sightings()
+        self._by_name = []
+        self.generation += 1
+        self.revision += 1
+
+    def row(self, name: str) -> int | None:
+        """Return the row of robot ``name`` in the arrays, None if it is not known."""
+        return self._seen.row(name)
 
     def view(self, name: str, now: float) -> RobotView | None:
         """Return robot ``name`` as it is to be shown at ``now`` (monotonic clock), None if not known."""
-        sighting = self._seen.get(name)
-        return self._aged(sighting, now) if sighting is not None else None
+        row = self._seen.row(name)
+        return None if row is None else self.views(now, [row])[0]
 
-    def views(self, now: float) -> list[RobotView]:
-        """Return every robot as it is to be shown at ``now``, by name."""
-        return [self._aged(self._seen[name], now) for name in sorted(self._seen)]
+    def views(self, now: float, rows: list[int] | None = None) -> list[RobotView]:
+        """Return the robots in ``rows``, or every one by name, as they are to be shown at ``now``."""
+        rows = self._sorted() if rows is None else rows
+        state, age = self._aged(now, rows)
+        return [
+            RobotView(self._seen.names[row], self._seen.told(row), STATES[code], seconds)
+            for row, code, seconds in zip(rows, state.tolist(), age.tolist(), strict=True)
+        ]
 
     def arrays(self, now: float) -> RobotArrays:
-        """Return every robot with a pose at ``now``, by name."""
-        shown = [view for view in self.views(now) if view.has_pose]
-        poses = [(v.report.x, v.report.y, _number(v.report.theta)) for v in shown]
-        table = np.array(poses, dtype=np.float64).reshape(-1, 3)
-        state = np.array([STATES.index(v.state) for v in shown], dtype=np.intp)
-        return RobotArrays([v.name for v in shown], table[:, :2], table[:, 2], state)
-
-    def _aged(self, sighting: Sighting, now: float) -> RobotView:
-        report = sighting.report
-        age = report.age + max(0.0, now - sighting.received)
-        return RobotView(report, self._state(report, age), age)
-
-    def _state(self, report: RobotReport, age: float) -> RobotState:
-        if report.state in (RobotState.LOST, RobotState.OFFLINE):
-            # The gateway may know more than the age tells, such as a link closed in good order.
-            return report.state
-        here = liveness(
-            age, ended_in_order=report.stopped, stale_after=self.stale_after, lost_after=self.lost_after
+        """Return every robot at ``now``, those that never said where they are with NaN for a place."""
+        seen = self._seen
+        state, age = self._aged(now, slice(None))
+        return RobotArrays(
+            names=list(seen.names),
+            xy=np.column_stack([seen.column("x"), seen.column("y")]),
+            theta=seen.column("theta").copy(),
+            v=seen.column("v").copy(),
+            accuracy=seen.column("accuracy").copy(),
+            state=state,
+            age=age,
         )
-        return report.state if here is RobotState.FRESH else here
 
+    def column(self, name: str) -> Numbers:
+        """Return (n,) of one of :data:`~.sightings.COLUMNS` of every robot, NaN where nothing was told."""
+        return self._seen.column(name).copy()
 
-def _number(value: float | None) -> float:
-    return math.nan if value is None else value
+    def texts(self, name: str) -> list[str]:
+        """Return what every robot told last as the text ``name``, empty where nothing."""
+        places, words = self._seen.texts(name)
+        # What is not known points behind the last word.
+        found = [*words, ""]
+        return [found[place] for place in np.nan_to_num(places, nan=len(words)).astype(np.intp).tolist()]
+
+    def told(self, row: int) -> dict[str, Any]:
+        """Return what was told last of the robot in ``row``, as it came."""
+        return self._seen.told(row)
+
+    def by_name(self) -> list[int]:
+        """Return every row, in the order of the robots' names."""
+        return self._sorted()
+
+    def _sorted(self) -> list[int]:
+        names = self._seen.names
+        if len(self._by_name) != len(names):
+            self._by_name = sorted(range(len(names)), key=names.__getitem__)
+        return self._by_name
+
+    def _aged(self, now: float, rows: list[int] | slice) -> tuple[npt.NDArray[np.intp], Numbers]:
+        """Return states and ages, as :func:`~.robot_bridge.liveness.liveness` says for each robot."""
+        told = self._seen.column("state")[rows]
+        ended_in_order = self._seen.column("stopped")[rows] == 1.0
+        age = self._seen.column("age")[rows] + np.maximum(0.0, now - self._seen.column("received")[rows])
+        silent = np.where(age < self.lost_after, _STALE, _LOST)
+        here = np.where(age < self.stale_after, told, np.where(ended_in_order, _OFFLINE, silent))
+        # The gateway may know more than the age tells, such as a link closed in good order.
+        return np.where((told == _LOST) | (told == _OFFLINE), told, here).astype(np.intp), age

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import struct
-
 import numpy as np
 import numpy.typing as npt
 from qgis.core import (
@@ -12,18 +10,16 @@ from qgis.core import (
     QgsCoordinateTransform,
     QgsCoordinateTransformContext,
     QgsCsException,
-    QgsGeometry,
     QgsPointXY,
 )
 
 from ...robot_bridge.messages import SiteReport
 from ...robot_bridge.sites.frame import SiteFrame
 from ..errors import PlacementError
+from ..language import tr
+from ..sites.many_points import moved_together
 
 Points = npt.NDArray[np.float64]
-
-_LINE_HEADER = struct.Struct("<BII")
-_LINE_STRING = 2
 
 
 class Placement:
@@ -41,8 +37,12 @@ class Placement:
         self.site_crs = QgsCoordinateReferenceSystem(site.crs)
         if not self.site_crs.isValid():
             raise PlacementError(
-                f"The site {site.name} is in the CRS {site.crs}, which this QGIS does not know: its robots "
-                "cannot be placed on the map. Correct crs in the site's site.toml, or update QGIS."
+                tr(
+                    "The site {name} is in the CRS {crs}, which this QGIS does not know: its robots cannot "
+                    "be placed on the map. Correct crs in the site's site.toml, or update QGIS.",
+                    name=site.name,
+                    crs=site.crs,
+                )
             )
         self.map_crs = map_crs
         self.frame = SiteFrame(site.crs, site.origin, site.rotation)
@@ -73,20 +73,12 @@ def transformed(xy: Points, transform: QgsCoordinateTransform) -> Points:
 
     :raises PlacementError: when a point has no place in the target CRS.
     """
-    if len(xy) == 0 or transform.isShortCircuited():
-        return np.asarray(xy, dtype=np.float64).reshape(-1, 2)
-    geometry = QgsGeometry()
-    # A line string of one point is none, so the first point goes twice.
-    line = np.concatenate([xy[:1], xy])
-    geometry.fromWkb(_LINE_HEADER.pack(1, _LINE_STRING, len(line)) + line.astype("<f8").tobytes())
     try:
-        geometry.transform(transform)
+        out = moved_together(xy, transform)
     except QgsCsException as error:
         raise _out_of_reach(transform.sourceCrs(), transform.destinationCrs(), error) from error
-    wkb = bytes(geometry.asWkb())
-    out = np.frombuffer(wkb, dtype="<f8", offset=_LINE_HEADER.size).reshape(-1, 2)[1:]
     if not np.isfinite(out).all():
-        raise _out_of_reach(transform.sourceCrs(), transform.destinationCrs(), "not a finite place")
+        raise _out_of_reach(transform.sourceCrs(), transform.destinationCrs(), tr("not a finite place"))
     return out
 
 
@@ -94,6 +86,11 @@ def _out_of_reach(
     source: QgsCoordinateReferenceSystem, target: QgsCoordinateReferenceSystem, error: object
 ) -> PlacementError:
     return PlacementError(
-        f"A position in {source.authid()} has no place in {target.authid()} ({error}). Choose the site's CRS "
-        "as the project's CRS (bottom right in the QGIS window)."
+        tr(
+            "A position in {crs} has no place in {target} ({error}). Choose the site's CRS as the "
+            "project's CRS (bottom right in the QGIS window).",
+            crs=source.authid(),
+            target=target.authid(),
+            error=error,
+        )
     )

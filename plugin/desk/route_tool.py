@@ -2,22 +2,71 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from qgis.gui import QgsMapMouseEvent
+from qgis.PyQt.QtCore import QEvent, QObject, Qt
+from qgis.PyQt.QtGui import QKeyEvent
 
-from ..errors import PlacementError
+from ..errors import FleetError, PlacementError
+from .commands.nudging import nudged
+from .commands.route_drag import RouteDrag
+from .commands.route_handles import RouteHandles, middle
+from .desk import Desk
 from .draft_tool import DraftTool
+from .drafting import route_editing
 from .drafts import ROUTE, Draft, Point
+
+BACKWARD, FORWARD = ("<", ","), (">", ".")
 
 
 class RouteTool(DraftTool):
-    """Each click adds a point to the route of the robot that was selected at the first click."""
+    """Each click adds a point to the route of the robot that was selected at the first click.
+
+    A vertex is dragged; a leg that is dragged gets a vertex there. The vertex in hand, under the mouse or
+    chosen by ``<`` and ``>``, is deleted by Delete and moved by Ctrl and the arrow keys; Insert puts one
+    before it; R turns the route round.
+    """
 
     kind = ROUTE
 
+    def __init__(self, desk: Desk):
+        super().__init__(desk)
+        self._handles = RouteHandles(desk)
+        self._drag = RouteDrag(desk, self._handles)
+        self._vertex: int | None = None
+        desk.drafts.changed.connect(self._let_go)
+
+    def deactivate(self) -> None:
+        self._drag.give_up()
+        self._let_go()
+        super().deactivate()
+
+    def canvasPressEvent(self, event: QgsMapMouseEvent) -> None:
+        super().canvasPressEvent(event)
+        if event.button() == Qt.MouseButton.LeftButton and self.draft is not None:
+            self._drag.press(self.draft, event.pos())
+
     def canvasMoveEvent(self, event: QgsMapMouseEvent) -> None:
+        if self._drag.holds and self._pressed_at is not None:
+            if self._drag.moves or self.is_drag(self._pressed_at, event.pos()):
+                self._drag.move(event)
+            return
+        self._take_hold(event)
+        super().canvasMoveEvent(event)
+
+    def canvasReleaseEvent(self, event: QgsMapMouseEvent) -> None:
+        moves, changed = self._drag.moves, self._drag.release()
+        if not moves:
+            super().canvasReleaseEvent(event)
+            return
+        self._pressed_at = None
+        if changed is not None:
+            self._try(lambda: self.put(changed))
+
+    def hovered(self, event: QgsMapMouseEvent) -> None:
         if self.draft is None:
+            return
+        if self._vertex is not None:
+            self.desk.drafts.point_at(None)
             return
         try:
             self.desk.drafts.point_at(self.desk.placement().to_site(event.mapPoint()))
@@ -25,26 +74,111 @@ class RouteTool(DraftTool):
             # A place the site frame cannot express has no preview; a click there says why.
             self.desk.drafts.point_at(None)
 
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        # The canvas keeps keys from its tools while a mouse button is down.
+        if event.type() == QEvent.Type.KeyPress and self._drag.holds:
+            if event.key() == Qt.Key.Key_Escape:
+                self._drag.give_up()
+                self._pressed_at = None
+            return True
+        return super().eventFilter(watched, event)
+
+    def key(self, event: QKeyEvent) -> bool:
+        draft, vertex = self.draft, self._vertex
+        if draft is None or self._drag.holds:
+            return super().key(event)
+        if event.text() in (*BACKWARD, *FORWARD):
+            self._step(draft, -1 if event.text() in BACKWARD else 1)
+        elif event.key() == Qt.Key.Key_R:
+            self._try(lambda: self.put(route_editing.turned_round(draft)))
+        elif vertex is None:
+            return super().key(event)
+        elif event.key() == Qt.Key.Key_Delete:
+            self._try(lambda: self._put_or_end(route_editing.deleted(draft, vertex)))
+        elif event.key() == Qt.Key.Key_Insert:
+            self._insert(draft, vertex)
+        elif not self._nudge(event, draft, vertex):
+            return super().key(event)
+        return True
+
     def clicked(self, point: Point) -> None:
         draft = self.draft
         if draft is None:
             draft = Draft(self.desk.selected, ROUTE, ())
-        elif self.desk.selected not in (None, draft.robot):
-            self.desk.complained.emit(
-                f"The route on the map is for {draft.robot}, but {self.desk.selected} is selected. Send it "
-                f"(Enter) or cancel it (Esc) first, or select {draft.robot} again."
-            )
-            return
-        self._put(draft, (*draft.points, point))
+        if self.is_for_selected(draft):
+            self.put(draft.with_leg((point,)))
 
     def back(self) -> None:
-        if self.draft is not None and len(self.draft.points) > 1:
-            self._put(self.draft, self.draft.points[:-1])
+        draft = self.draft
+        if draft is not None:
+            self._put_or_end(draft.without_last_leg())
         else:
             self.desk.drafts.put(None)
 
-    def _put(self, draft: Draft, points: tuple[Point, ...]) -> None:
-        draft = replace(draft, points=points, findings=self.desk.checked(points))
-        self.desk.drafts.put(draft)
-        for text in draft.findings.refused:
-            self.desk.complained.emit(text)
+    def is_for_selected(self, draft: Draft) -> bool:
+        """Tell whether the draft is for the robot that is selected; say so where it is for another."""
+        if self.desk.selected in (None, draft.robot):
+            return True
+        self.desk.complained.emit(
+            f"The route on the map is for {draft.robot}, but {self.desk.selected} is selected. Send it "
+            f"(Enter) or cancel it (Esc) first, or select {draft.robot} again."
+        )
+        return False
+
+    def _put_or_end(self, draft: Draft | None) -> None:
+        if draft is None:
+            self.desk.drafts.put(None)
+        else:
+            self.put(draft)
+
+    def _take_hold(self, event: QgsMapMouseEvent) -> None:
+        draft = self.draft
+        if draft is not None:
+            try:
+                vertex = self._handles.vertex_at(draft, event.pos())
+                if vertex != self._vertex:
+                    self._hold(draft, vertex)
+            except PlacementError:
+                self._let_go()
+
+    def _hold(self, draft: Draft, vertex: int | None) -> None:
+        self._vertex = vertex
+        self._handles.mark(draft, vertex)
+
+    def _let_go(self) -> None:
+        self._vertex = None
+        self._handles.mark(None, None)
+
+    def _step(self, draft: Draft, by: int) -> None:
+        found = route_editing.vertices(draft)
+        if found:
+            here = found.index(self._vertex) if self._vertex in found else (-1 if by > 0 else 0)
+            self._try(lambda: self._hold(draft, found[(here + by) % len(found)]))
+
+    def _insert(self, draft: Draft, vertex: int) -> None:
+        if vertex == 0:
+            self.desk.complained.emit("This is the first vertex: another is put before one that comes later.")
+            return
+        self._try(lambda: self.put(route_editing.inserted(draft, vertex, middle(draft, vertex))))
+        self._hold_again(vertex)
+
+    def _nudge(self, event: QKeyEvent, draft: Draft, vertex: int) -> bool:
+        try:
+            to = nudged(event, self.desk, draft.points[vertex])
+            if to is None:
+                return False
+            self.put(route_editing.moved(draft, vertex, to))
+        except FleetError as error:
+            self.desk.complained.emit(str(error))
+        self._hold_again(vertex)
+        return True
+
+    def _hold_again(self, vertex: int) -> None:
+        if self.draft is not None and vertex in route_editing.vertices(self.draft):
+            self._hold(self.draft, vertex)
+
+    def _try(self, change) -> None:
+        try:
+            change()
+        except FleetError as error:
+            self.desk.complained.emit(str(error))

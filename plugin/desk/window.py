@@ -11,13 +11,21 @@ from ..errors import FleetError
 from ..wire.status import Phase
 from .actions import Actions
 from .clear_dialog import ClearDialog
+from .closure_tool import ClosureTool
+from .commands.draft_commands import DraftCommands
+from .commands.start_tool import StartTool
 from .cone_tool import ConeTool
 from .desk import Desk
 from .dock import FleetDock
-from .live_view import LiveView
+from .live.following import Whom
+from .live.live_view import LiveView
+from .live.select_tool import SelectTool
 from .notices import Notices
+from .queues.queue_edits import QueueEdits
+from .queues.queue_marks import QueueMarks
+from .road_layers import RoadLayers
+from .road_route_tool import RoadRouteTool
 from .route_tool import RouteTool
-from .select_tool import SelectTool
 
 MENU = "Fleet Supervisor"
 
@@ -35,14 +43,21 @@ class DeskWindow(QObject):
         self.actions = Actions(self)
         self.notices = Notices(iface.messageBar(), self)
         self.view = LiveView(self.desk, self)
-        self.dock = FleetDock(self.desk, self.actions, iface.mainWindow())
+        self.queue_edits = QueueEdits(self.desk, self)
+        self.queue_marks = QueueMarks(self.desk)
+        self.dock = FleetDock(self.desk, self.actions, self.queue_edits, iface.mainWindow())
+        self.road_layers = RoadLayers(self.desk, self)
         self.toolbar: QToolBar = iface.addToolBar("Fleet Supervisor")
         self.toolbar.setObjectName("fleet_toolbar")
         self._tools = {
-            self.actions.select: SelectTool(self.desk, self.view.overlay),
+            self.actions.select: SelectTool(self.desk, self.view),
             self.actions.cone: ConeTool(self.desk),
+            self.actions.road_route: RoadRouteTool(self.desk),
             self.actions.route: RouteTool(self.desk),
+            self.actions.start: StartTool(self.desk),
+            self.actions.closures: ClosureTool(self.desk, iface.mainWindow()),
         }
+        self.draft_commands = DraftCommands(self.desk, self.queue_edits, self.actions, iface.mainWindow())
         self._wire_actions()
         self._place()
 
@@ -53,6 +68,9 @@ class DeskWindow(QObject):
             self._put_away(tool)
             tool.deleteLater()
         self._tools.clear()
+        self.draft_commands.remove()
+        self.queue_marks.remove()
+        self.road_layers.remove()
         self.view.remove()
         self.notices.withdraw()
         for action in self.actions.all():
@@ -64,11 +82,17 @@ class DeskWindow(QObject):
         self.dock.deleteLater()
         self.deleteLater()
 
+    def go_to(self, robot: str) -> None:
+        """Select a robot alone and show where it is."""
+        self.desk.select(robot)
+        self.view.zoom_to(robot)
+
     def _place(self) -> None:
         for action in self.actions.all():
             self._iface.addPluginToMenu(MENU, action)
-            self.toolbar.addAction(action)
-            if action in (self.actions.connect, self.actions.cancel, self.actions.follow):
+            if action not in self.actions.off_toolbar:
+                self.toolbar.addAction(action)
+            if action in (self.actions.connect, self.actions.cancel, self.actions.follow_all):
                 self.toolbar.addSeparator()
         self._iface.addDockWidget(Qt.DockWidgetArea.RightDockWidgetArea, self.dock)
 
@@ -82,16 +106,26 @@ class DeskWindow(QObject):
         actions.connect.triggered.connect(self._connect_or_not)
         actions.send.triggered.connect(desk.send_draft)
         actions.cancel.triggered.connect(lambda: desk.drafts.put(None))
-        actions.follow.toggled.connect(self.view.follow)
+        actions.follow.toggled.connect(lambda on: self._follow(Whom.SELECTED, on))
+        actions.follow_all.toggled.connect(lambda on: self._follow(Whom.ALL, on))
         actions.abort.triggered.connect(desk.abort_selected)
         actions.abort_all.triggered.connect(desk.abort_all)
         actions.emergency.triggered.connect(desk.emergency_stop)
         actions.clear_emergency.triggered.connect(self._ask_to_clear)
         desk.emergency_changed.connect(self._show_emergency)
-        self.dock.table.zoom_wanted.connect(self._zoom_to)
+        self.dock.table.zoom_wanted.connect(self.view.zoom_to)
+        self.dock.log.place_wanted.connect(self.view.show_place)
         desk.failed.connect(self.notices.error)
         desk.complained.connect(self.notices.warning)
         desk.link_changed.connect(self._show_link)
+
+    def _follow(self, whom: Whom, on: bool) -> None:
+        if on:
+            other = self.actions.follow_all if whom is Whom.SELECTED else self.actions.follow
+            other.setChecked(False)
+            self.view.follow(whom)
+        elif self.view.following is whom:
+            self.view.follow(Whom.NOBODY)
 
     def _put_away(self, tool: QgsMapTool) -> None:
         canvas = self._iface.mapCanvas()
@@ -138,9 +172,3 @@ class DeskWindow(QObject):
             dialog = ClearDialog(report, self._iface.mainWindow())
             dialog.confirmed.connect(self.desk.clear_emergency)
             dialog.open()
-
-    def _zoom_to(self, robot: str) -> None:
-        try:
-            self.view.zoom_to(robot)
-        except FleetError as error:
-            self.notices.error(error)

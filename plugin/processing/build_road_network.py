@@ -12,6 +12,7 @@ from qgis.core import (
 )
 
 from ...robot_bridge.roads.network import Network
+from ..language import tr
 from .errors import shown_by_processing
 from .fleet_algorithm import FleetAlgorithm, fields_of
 from .road_source import (
@@ -41,21 +42,21 @@ _EDGE = {
 }
 _NODE = {"node": "int8", "ends": "int8", "part": "int8"}
 NUMBERS = {
-    "EDGE_COUNT": "Edges",
-    "NODE_COUNT": "Nodes",
-    "PART_COUNT": "Parts that are not connected",
-    "REPAIR_COUNT": "Repairs",
-    WARNING_COUNT: "Warnings",
+    "EDGE_COUNT": tr("Edges"),
+    "NODE_COUNT": tr("Nodes"),
+    "PART_COUNT": tr("Parts that are not connected"),
+    "REPAIR_COUNT": tr("Repairs"),
+    WARNING_COUNT: tr("Warnings"),
 }
 
 
 class BuildRoadNetwork(FleetAlgorithm):
     """Makes edges and nodes of road centrelines."""
 
-    GROUP = ("roads", "Roads")
+    GROUP = ("roads", tr("Roads"))
     NAME = "buildroadnetwork"
-    TITLE = "Build road network"
-    SUMMARY = (
+    TITLE = tr("Build road network")
+    SUMMARY = tr(
         "Splits road centrelines where they meet, passes over and under at bridges, and repairs on request."
     )
     ICON = "build_road_network.svg"
@@ -77,8 +78,8 @@ class BuildRoadNetwork(FleetAlgorithm):
         for parameter in (roads, repair_parameter(), tolerance, *others):
             self.addParameter(parameter)
         for name, title, kind in (
-            (EDGES, "Edges", QgsProcessing.SourceType.TypeVectorLine),
-            (NODES, "Nodes", QgsProcessing.SourceType.TypeVectorPoint),
+            (EDGES, tr("Edges"), QgsProcessing.SourceType.TypeVectorLine),
+            (NODES, tr("Nodes"), QgsProcessing.SourceType.TypeVectorPoint),
         ):
             self.addParameter(QgsProcessingParameterFeatureSink(name, title, kind))
         for name, title in NUMBERS.items():
@@ -108,7 +109,15 @@ class BuildRoadNetwork(FleetAlgorithm):
                     return {}
         parts = len(set(network.parts.tolist()))
         figures = (len(network), len(network.nodes), parts, len(repairs), len(reading.warnings))
-        feedback.pushInfo(f"{figures[0]} edges, {figures[1]} nodes, {parts} parts, {len(repairs)} repairs")
+        feedback.pushInfo(
+            tr(
+                "{edges} edges, {nodes} nodes, {parts} parts, {repairs} repairs",
+                edges=figures[0],
+                nodes=figures[1],
+                parts=parts,
+                repairs=len(repairs),
+            )
+        )
         return {**made, **dict(zip(NUMBERS, figures, strict=True))}
 
 

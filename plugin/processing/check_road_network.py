@@ -13,6 +13,7 @@ from qgis.core import (
 
 from ...robot_bridge.roads.findings import REPAIRED, Kind, count_by_kind, find
 from ...robot_bridge.roads.network import build_network
+from ..language import tr
 from .errors import shown_by_processing
 from .fleet_algorithm import FleetAlgorithm, fields_of
 from .road_source import TOLERANCE, WARNING_COUNT, RoadSource, road_parameters
@@ -22,22 +23,22 @@ FINDINGS = "FINDINGS"
 _FIELDS = {"kind": "string", "repairable": "int8", "feature": "int8", "text": "string"}
 _COUNTS = {kind: f"{kind.value.upper().replace(' ', '_').replace('-', '_')}_COUNT" for kind in Kind}
 _TITLES = {
-    Kind.GAP: "Gaps",
-    Kind.OVERSHOOT: "Overshoots",
-    Kind.DUPLICATE: "Roads drawn twice",
-    Kind.DEAD_END: "Dead ends",
-    Kind.PART: "Parts of their own",
-    Kind.ONE_WAY: "Edges without a way back",
+    Kind.GAP: tr("Gaps"),
+    Kind.OVERSHOOT: tr("Overshoots"),
+    Kind.DUPLICATE: tr("Roads drawn twice"),
+    Kind.DEAD_END: tr("Dead ends"),
+    Kind.PART: tr("Parts of their own"),
+    Kind.ONE_WAY: tr("Edges without a way back"),
 }
 
 
 class CheckRoadNetwork(FleetAlgorithm):
     """Shows gaps, overshoots, duplicates, dead ends, parts and one-way traps of a road network."""
 
-    GROUP = ("roads", "Roads")
+    GROUP = ("roads", tr("Roads"))
     NAME = "checkroadnetwork"
-    TITLE = "Check road network"
-    SUMMARY = (
+    TITLE = tr("Check road network")
+    SUMMARY = tr(
         "Finds gaps, overshoots, duplicates, dead ends, separate parts and one-way traps in road centrelines."
     )
     ICON = "check_road_network.svg"
@@ -57,11 +58,11 @@ class CheckRoadNetwork(FleetAlgorithm):
         for parameter in road_parameters():
             self.addParameter(parameter)
         points = QgsProcessing.SourceType.TypeVectorPoint
-        self.addParameter(QgsProcessingParameterFeatureSink(FINDINGS, "Findings", points))
-        self.addOutput(QgsProcessingOutputNumber("FINDING_COUNT", "Findings"))
+        self.addParameter(QgsProcessingParameterFeatureSink(FINDINGS, tr("Findings"), points))
+        self.addOutput(QgsProcessingOutputNumber("FINDING_COUNT", tr("Findings")))
         for kind, name in _COUNTS.items():
             self.addOutput(QgsProcessingOutputNumber(name, _TITLES[kind]))
-        self.addOutput(QgsProcessingOutputNumber(WARNING_COUNT, "Warnings"))
+        self.addOutput(QgsProcessingOutputNumber(WARNING_COUNT, tr("Warnings")))
 
     def prepareAlgorithm(self, parameters, context, feedback):
         self._fields = fields_of(_FIELDS)
@@ -91,7 +92,7 @@ class CheckRoadNetwork(FleetAlgorithm):
             if count:
                 feedback.pushInfo(f"{name}: {count}")
         if not findings:
-            feedback.pushInfo("Nothing is odd in this network.")
+            feedback.pushInfo(tr("Nothing is odd in this network."))
         numbers = {_COUNTS[kind]: counts[kind.value] for kind in Kind}
         return {
             FINDINGS: source,

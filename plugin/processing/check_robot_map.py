@@ -15,6 +15,7 @@ from qgis.core import (
 )
 
 from ...robot_bridge.robotmap.checks import CHECKS, Finding, Limits, SegmentTable, Severity
+from ..language import tr
 from .errors import shown_by_processing
 from .fleet_algorithm import FleetAlgorithm, fields_of
 from .map_file import MAP, MapPlace, file_problem, map_parameters, map_place, read_map_file
@@ -23,16 +24,16 @@ from .sinks import fill, lines
 FINDINGS = "FINDINGS"
 _FIELDS = {"kind": "string", "severity": "string", "obstacle": "int8", "text": "string"}
 _LIMITS = {
-    "GAP": ("Longest gap that was not meant [m]", "gap", 0.0),
-    "SLIVER": ("Narrowest ring that is an obstacle [m]", "sliver", 0.0),
-    "ROBOT_WIDTH": ("Width of the robot, for unreachable pockets [m]", "robot_width", 0.05),
-    "POCKET": ("Smallest unreachable pocket [m²]", "pocket", 0.0),
+    "GAP": (tr("Longest gap that was not meant [m]"), "gap", 0.0),
+    "SLIVER": (tr("Narrowest ring that is an obstacle [m]"), "sliver", 0.0),
+    "ROBOT_WIDTH": (tr("Width of the robot, for unreachable pockets [m]"), "robot_width", 0.05),
+    "POCKET": (tr("Smallest unreachable pocket [m²]"), "pocket", 0.0),
 }
 NUMBERS = {
-    "FINDING_COUNT": "Findings",
-    "ERROR_COUNT": "Errors",
-    "WARNING_COUNT": "Warnings",
-    "INFO_COUNT": "Worth knowing",
+    "FINDING_COUNT": tr("Findings"),
+    "ERROR_COUNT": tr("Errors"),
+    "WARNING_COUNT": tr("Warnings"),
+    "INFO_COUNT": tr("Worth knowing"),
 }
 
 
@@ -40,8 +41,8 @@ class CheckRobotMap(FleetAlgorithm):
     """Checks a robot map and shows each finding at its place."""
 
     NAME = "checkrobotmap"
-    TITLE = "Check robot map"
-    SUMMARY = (
+    TITLE = tr("Check robot map")
+    SUMMARY = tr(
         "Finds turned outlines, gaps, slivers, repeats, overlaps and unreachable pockets in a robot map."
     )
     ICON = "check_robot_map.svg"
@@ -71,7 +72,9 @@ class CheckRobotMap(FleetAlgorithm):
             number.setFlags(number.flags() | QgsProcessingParameterDefinition.Flag.FlagAdvanced)
             self.addParameter(number)
         self.addParameter(
-            QgsProcessingParameterFeatureSink(FINDINGS, "Findings", QgsProcessing.SourceType.TypeVectorLine)
+            QgsProcessingParameterFeatureSink(
+                FINDINGS, tr("Findings"), QgsProcessing.SourceType.TypeVectorLine
+            )
         )
         for name, title in NUMBERS.items():
             self.addOutput(QgsProcessingOutputNumber(name, title))
@@ -126,7 +129,7 @@ def _reported(findings: list[Finding], feedback) -> dict[str, int]:
     for (severity, kind), count in sorted(counts.items()):
         feedback.pushInfo(f"{severity}: {kind}: {count}")
     if not findings:
-        feedback.pushInfo("Nothing is odd in this map.")
+        feedback.pushInfo(tr("Nothing is odd in this map."))
     by_severity = Counter(finding.severity for finding in findings)
     figures = (len(findings), *(by_severity[severity] for severity in Severity))
     return dict(zip(NUMBERS, figures, strict=True))

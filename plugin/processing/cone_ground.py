@@ -21,6 +21,7 @@ from qgis.core import (
 from ...robot_bridge.layouts.checks import Finding, Shape, find
 from ...robot_bridge.layouts.cone import Cone
 from ...robot_bridge.sites.frame import SiteFrame
+from ..language import tr
 from ..sites.feature_filter import FeatureFilter
 from ..sites.ground_reading import read_areas
 from ..sites.obstacle_source import ObstacleSource, obstacle_sources
@@ -38,18 +39,23 @@ def ground_parameters() -> list[QgsProcessingParameterDefinition]:
     kinds = QgsProcessing.SourceType
     return [
         QgsProcessingParameterMultipleLayers(
-            SURFACES, "Surfaces to stand on (default: not checked)", kinds.TypeVectorPolygon, optional=True
+            SURFACES,
+            tr("Surfaces to stand on (default: not checked)"),
+            kinds.TypeVectorPolygon,
+            optional=True,
         ),
         QgsProcessingParameterString(
-            ALLOWED, "Classes of surface that are allowed, such as asphalt (default: all)", optional=True
+            ALLOWED, tr("Classes of surface that are allowed, such as asphalt (default: all)"), optional=True
         ),
         QgsProcessingParameterMultipleLayers(
-            OBSTACLES, "Obstacles to keep away from", kinds.TypeVectorAnyGeometry, optional=True
+            OBSTACLES, tr("Obstacles to keep away from"), kinds.TypeVectorAnyGeometry, optional=True
         ),
         QgsProcessingParameterNumber(
-            OBSTACLE_DISTANCE, "Distance to obstacles [m]", _REAL, 0.5, minValue=0.0
+            OBSTACLE_DISTANCE, tr("Distance to obstacles [m]"), _REAL, 0.5, minValue=0.0
         ),
-        QgsProcessingParameterNumber(CONE_DISTANCE, "Distance between cones [m]", _REAL, 0.5, minValue=0.0),
+        QgsProcessingParameterNumber(
+            CONE_DISTANCE, tr("Distance between cones [m]"), _REAL, 0.5, minValue=0.0
+        ),
     ]
 
 
@@ -102,7 +108,11 @@ class Ground:
         if unknown and reading.complete:
             there = ", ".join(sorted({area.label or "(none)" for area in reading.items})) or "none"
             feedback.pushWarning(
-                f"No surface is of class {', '.join(sorted(unknown))}: the layers have {there}."
+                tr(
+                    "No surface is of class {classes}: the layers have {classes_there}.",
+                    classes=", ".join(sorted(unknown)),
+                    classes_there=there,
+                )
             )
         return [
             Shape(area.rings, area.label)
@@ -120,16 +130,24 @@ def read_obstacles(sources: Sequence[ObstacleSource], site: SitePlacing, feedbac
         for feature in source.features.getFeatures():
             if feedback.isCanceled():
                 return shapes
-            name, notes = f"{source.name}, feature {feature.id()}", []
+            name, notes = tr("{name}, feature {id}", name=source.name, id=feature.id()), []
             if counts.keeps(feature, notes) and not feature.geometry().isNull():
                 try:
                     parts, found = _parts(placing.to_metres(feature.geometry()), name)
                 except PlacingError as error:
-                    parts, found = [], [f"cannot be transformed into the site's CRS ({error})"]
+                    parts, found = (
+                        [],
+                        [
+                            tr(
+                                "cannot be transformed into the site's CRS ({error})",
+                                error=error,
+                            )
+                        ],
+                    )
                 shapes += parts
                 notes += found
             for note in notes:
-                feedback.pushWarning(f"Layer {name}: {note}")
+                feedback.pushWarning(tr("Layer {name}: {note}", name=name, note=note))
     return shapes
 
 
@@ -148,11 +166,11 @@ def _parts(geometry: QgsGeometry, name: str) -> tuple[list[Shape], list[str]]:
 def _say(findings: Sequence[Finding], unchecked: bool, feedback: QgsFeedback) -> None:
     if unchecked:
         feedback.pushInfo(
-            "No layer of surfaces is given: whether the cones stand on the road is not checked."
+            tr("No layer of surfaces is given: whether the cones stand on the road is not checked.")
         )
     for kind, count in sorted(Counter(finding.kind.value for finding in findings).items()):
         feedback.pushInfo(f"{kind}: {count}")
     for finding in findings:
         feedback.pushWarning(finding.text)
     if not findings:
-        feedback.pushInfo("Nothing is wrong with the places of the cones.")
+        feedback.pushInfo(tr("Nothing is wrong with the places of the cones."))

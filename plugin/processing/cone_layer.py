@@ -20,6 +20,7 @@ from qgis.core import (
 
 from ...robot_bridge.layouts.checks import Finding
 from ...robot_bridge.layouts.cone import Cone
+from ..language import tr
 from ..sites.site_crs import site_crs_for
 from .cone_ground import Ground
 from .errors import ParameterError
@@ -43,19 +44,21 @@ _FINDINGS = {"kind": "string", "cone": "string", "text": "string"}
 
 def site_crs_parameter() -> QgsProcessingParameterDefinition:
     """Return the parameter of the CRS that the cones get."""
-    title = "Site CRS, in metres (default: the project's, else the line's or the layer's)"
+    title = tr("Site CRS, in metres (default: the project's, else the line's or the layer's)")
     return QgsProcessingParameterCrs(SITE_CRS, title, optional=True)
 
 
 def add_layers(algorithm) -> None:
     """Add the outputs to ``algorithm``."""
     points = QgsProcessing.SourceType.TypeVectorPoint
-    algorithm.addParameter(QgsProcessingParameterFeatureSink(CONES, "Cones", points))
+    algorithm.addParameter(QgsProcessingParameterFeatureSink(CONES, tr("Cones"), points))
     algorithm.addParameter(
-        QgsProcessingParameterFeatureSink(FINDINGS, "Findings", points, optional=True, createByDefault=True)
+        QgsProcessingParameterFeatureSink(
+            FINDINGS, tr("Findings"), points, optional=True, createByDefault=True
+        )
     )
-    algorithm.addOutput(QgsProcessingOutputNumber(CONE_COUNT, "Cones"))
-    algorithm.addOutput(QgsProcessingOutputNumber(FINDING_COUNT, "Findings"))
+    algorithm.addOutput(QgsProcessingOutputNumber(CONE_COUNT, tr("Cones")))
+    algorithm.addOutput(QgsProcessingOutputNumber(FINDING_COUNT, tr("Findings")))
 
 
 class ConeSetup:
@@ -72,7 +75,7 @@ class ConeSetup:
             [source.sourceCrs()] if source is not None else [],
         )
         if not self.crs.isValid():
-            raise ParameterError("The CRS of the site is not known: give SITE_CRS, such as EPSG:32633.")
+            raise ParameterError(tr("The CRS of the site is not known: give SITE_CRS, such as EPSG:32633."))
 
     def write(self, algorithm, parameters, context, cones: Sequence[Cone], layout: str, feedback) -> dict:
         """Check and write ``cones``; return the outputs, none after a cancel."""
@@ -91,7 +94,7 @@ class ConeSetup:
                 made[name] = source
                 fill(sink, fields, rows[name], feedback)
         algorithm.remember(made)
-        feedback.pushInfo(f"{len(cones)} cones")
+        feedback.pushInfo(tr("{cones} cones", cones=len(cones)))
         return {**made, CONE_COUNT: len(cones), FINDING_COUNT: len(findings)}
 
 

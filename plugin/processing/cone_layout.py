@@ -22,6 +22,7 @@ from qgis.core import (
 from ...robot_bridge.layouts.catalogue import LAYOUTS
 from ...robot_bridge.layouts.cone import Cone
 from ...robot_bridge.layouts.placing import along, placed
+from ..language import tr
 from ..sites.parts import parts_of
 from .cone_ground import ground_parameters
 from .cone_layer import STYLES, ConeSetup, add_layers, site_crs_parameter, theta_of
@@ -37,10 +38,12 @@ _WHOLE = QgsProcessingParameterNumber.Type.Integer
 class ConeLayout(FleetAlgorithm):
     """Places the cones of a standard layout."""
 
-    GROUP = ("cones", "Cones")
+    GROUP = ("cones", tr("Cones"))
     NAME = "conelayout"
-    TITLE = "Cone layout"
-    SUMMARY = "Places a standard cone layout at a point and heading or along a line, and checks every cone."
+    TITLE = tr("Cone layout")
+    SUMMARY = tr(
+        "Places a standard cone layout at a point and heading or along a line, and checks every cone."
+    )
     ICON = "cone_layout.svg"
     TAGS = ("cone", "slalom", "lane change", "ISO 3888", "ISO 4138", "Formula Student", "skid pad", "moose")
     STYLES = STYLES
@@ -61,25 +64,27 @@ class ConeLayout(FleetAlgorithm):
     def initAlgorithm(self, configuration=None):
         for parameter in (
             QgsProcessingParameterEnum(
-                LAYOUT, "Layout", list(LAYOUTS), defaultValue=next(iter(LAYOUTS)), usesStaticStrings=True
+                LAYOUT, tr("Layout"), list(LAYOUTS), defaultValue=next(iter(LAYOUTS)), usesStaticStrings=True
             ),
             QgsProcessingParameterString(
-                DIMENSIONS, "Dimensions other than the standard's, as name=value; ...", optional=True
+                DIMENSIONS, tr("Dimensions other than the standard's, as name=value; ..."), optional=True
             ),
-            QgsProcessingParameterPoint(POINT, "Place of the layout's origin", optional=True),
-            QgsProcessingParameterNumber(HEADING, "Heading, clockwise from north [degrees]", _REAL, 0.0),
+            QgsProcessingParameterPoint(POINT, tr("Place of the layout's origin"), optional=True),
+            QgsProcessingParameterNumber(HEADING, tr("Heading, clockwise from north [degrees]"), _REAL, 0.0),
             QgsProcessingParameterFeatureSource(
                 LINE,
-                "Line to lie along, instead of a place",
+                tr("Line to lie along, instead of a place"),
                 [QgsProcessing.SourceType.TypeVectorLine],
                 optional=True,
             ),
             QgsProcessingParameterNumber(
-                LINE_ID, "Id of the line's feature (default: the only one)", _WHOLE, optional=True
+                LINE_ID, tr("Id of the line's feature (default: the only one)"), _WHOLE, optional=True
             ),
-            QgsProcessingParameterNumber(START, "Begin so far along the line [m]", _REAL, 0.0),
-            QgsProcessingParameterBoolean(REVERSE, "Against the direction of the line", defaultValue=False),
-            QgsProcessingParameterString(PREFIX, "Ids begin with (default: the layout)", optional=True),
+            QgsProcessingParameterNumber(START, tr("Begin so far along the line [m]"), _REAL, 0.0),
+            QgsProcessingParameterBoolean(
+                REVERSE, tr("Against the direction of the line"), defaultValue=False
+            ),
+            QgsProcessingParameterString(PREFIX, tr("Ids begin with (default: the layout)"), optional=True),
             *ground_parameters(),
             site_crs_parameter(),
         ):
@@ -89,8 +94,11 @@ class ConeLayout(FleetAlgorithm):
     def checkParameterValues(self, parameters, context):
         given = [name for name in (POINT, LINE) if parameters.get(name) not in (None, "")]
         if len(given) != 1:
-            how = "Both POINT and LINE are" if given else "Neither POINT nor LINE is"
-            return False, f"{how} given: give the place of the layout, or a line that it lies along."
+            how = tr("Both POINT and LINE are") if given else tr("Neither POINT nor LINE is")
+            return False, tr(
+                "{how} given: give the place of the layout, or a line that it lies along.",
+                how=how,
+            )
         return super().checkParameterValues(parameters, context)
 
     def prepareAlgorithm(self, parameters, context, feedback):
@@ -116,7 +124,7 @@ class ConeLayout(FleetAlgorithm):
             point = self.parameterAsPoint(parameters, POINT, context, self._setup.crs)
             theta = theta_of(self.parameterAsDouble(parameters, HEADING, context))
             if not all(map(math.isfinite, (point.x(), point.y(), theta))):
-                raise ParameterError("POINT or HEADING is not finite: give numbers.")
+                raise ParameterError(tr("POINT or HEADING is not finite: give numbers."))
             return placed(cones, point.x(), point.y(), theta)
         points = self._points(parameters, context)
         if self.parameterAsBool(parameters, REVERSE, context):
@@ -131,10 +139,21 @@ class ConeLayout(FleetAlgorithm):
             request.setFilterFid(self.parameterAsInt(parameters, LINE_ID, context))
         features = list(self._line.getFeatures(request.setLimit(2)))
         if len(features) != 1:
-            found = f"no feature {wanted}" if wanted not in (None, "") else "not exactly one feature"
+            found = (
+                tr(
+                    "no feature {wanted}",
+                    wanted=wanted,
+                )
+                if wanted not in (None, "")
+                else tr("not exactly one feature")
+            )
             raise ParameterError(
-                f"The layer {self._line.sourceName()} has {found}: choose one line by LINE_ID, or select "
-                "it and tick 'Selected features only'."
+                tr(
+                    "The layer {sourcename} has {found}: choose one line by LINE_ID, or select it and tick "
+                    "'Selected features only'.",
+                    sourcename=self._line.sourceName(),
+                    found=found,
+                )
             )
         geometry = QgsGeometry(features[0].geometry())
         transform = QgsCoordinateTransform(
@@ -143,12 +162,22 @@ class ConeLayout(FleetAlgorithm):
         try:
             geometry.transform(transform)
         except QgsCsException as error:
-            raise ParameterError(f"The line cannot be transformed into the site's CRS ({error}).") from error
+            raise ParameterError(
+                tr(
+                    "The line cannot be transformed into the site's CRS ({error}).",
+                    error=error,
+                )
+            ) from error
         lines = parts_of(geometry).lines
         if len(lines) != 1:
             raise ParameterError(
-                f"The feature {features[0].id()} of {self._line.sourceName()} has {len(lines)} lines: split "
-                "it, or choose one that has one."
+                tr(
+                    "The feature {id} of {sourcename} has {lines} lines: split it, or choose one that has "
+                    "one.",
+                    id=features[0].id(),
+                    sourcename=self._line.sourceName(),
+                    lines=len(lines),
+                )
             )
         return lines[0]
 
@@ -166,6 +195,10 @@ def dimensions_in(text: str) -> dict[str, float]:
                 values[name] = float(number)
         except ValueError as error:
             raise ParameterError(
-                f"DIMENSIONS has {part!r}, which is not name=value with a number: write such as spacing=15."
+                tr(
+                    "DIMENSIONS has {part!r}, which is not name=value with a number: write such as "
+                    "spacing=15.",
+                    part=part,
+                )
             ) from error
     return values

@@ -7,6 +7,7 @@ from contextlib import contextmanager
 
 from qgis.core import QgsProcessingException
 
+from ...robot_bridge.assignment.errors import AssignmentError
 from ...robot_bridge.layouts.errors import LayoutsError
 from ...robot_bridge.roads.errors import RoadsError
 from ...robot_bridge.robotmap.errors import RobotMapError
@@ -22,5 +23,5 @@ def shown_by_processing() -> Iterator[None]:
     """Turn errors of the plugin and of the bridge into what Processing shows without a traceback."""
     try:
         yield
-    except (FleetError, RobotMapError, RoadsError, LayoutsError) as error:
+    except (FleetError, RobotMapError, RoadsError, LayoutsError, AssignmentError) as error:
         raise QgsProcessingException(str(error)) from error

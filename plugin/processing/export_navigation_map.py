@@ -22,6 +22,7 @@ from qgis.core import (
     QgsProcessingParameterString,
 )
 
+from ..language import tr
 from ..sites.feature_filter import FeatureFilter
 from .errors import ParameterError, shown_by_processing
 from .fleet_algorithm import FleetAlgorithm
@@ -62,8 +63,8 @@ class ExportNavigationMap(FleetAlgorithm):
     """Writes a robot map as Nav2 grids and masks, GeoJSON, GeoPackage and pictures."""
 
     NAME = "exportnavigationmap"
-    TITLE = "Export navigation map"
-    SUMMARY = "Writes a robot map as Nav2 occupancy grid and masks, GeoJSON, GeoPackage, SVG or PNG."
+    TITLE = tr("Export navigation map")
+    SUMMARY = tr("Writes a robot map as Nav2 occupancy grid and masks, GeoJSON, GeoPackage, SVG or PNG.")
     HELP = HELP
     ICON = "export_navigation_map.svg"
     TAGS = (
@@ -85,9 +86,9 @@ class ExportNavigationMap(FleetAlgorithm):
         for parameter in _parameters():
             self.addParameter(parameter)
         for name in MADE:
-            self.addOutput(QgsProcessingOutputFile(name.upper(), f"File of format {name}"))
-        self.addOutput(QgsProcessingOutputNumber("FILE_COUNT", "Files"))
-        self.addOutput(QgsProcessingOutputNumber("WARNING_COUNT", "Warnings"))
+            self.addOutput(QgsProcessingOutputFile(name.upper(), tr("File of format {name}", name=name)))
+        self.addOutput(QgsProcessingOutputNumber("FILE_COUNT", tr("Files")))
+        self.addOutput(QgsProcessingOutputNumber("WARNING_COUNT", tr("Warnings")))
 
     def checkParameterValues(self, parameters, context):
         # Before QGIS's own checks, which say that a value is wrong and not why.
@@ -110,7 +111,7 @@ class ExportNavigationMap(FleetAlgorithm):
             for number, format in enumerate(formats):
                 if feedback.isCanceled():
                     return {}
-                feedback.setProgressText(f"Making {format}")
+                feedback.setProgressText(tr("Making {format}", format=format))
                 made[format] = export.files(format)
                 feedback.setProgress(90.0 * (number + 1) / len(formats))
             if feedback.isCanceled():
@@ -143,7 +144,7 @@ class ExportNavigationMap(FleetAlgorithm):
         wanted = [name for name in ("keepout", "speed") if name in formats]
         if wanted and export.place.is_local:
             export.warnings.append(
-                "The coordinates of the keepout and speed layers are taken as the map's own metres."
+                tr("The coordinates of the keepout and speed layers are taken as the map's own metres.")
             )
         if "keepout" in wanted:
             source, counted = self._layer(parameters, KEEPOUTS, context)
@@ -162,7 +163,11 @@ class ExportNavigationMap(FleetAlgorithm):
         source = self.parameterAsSource(parameters, name, context)
         if source is None:
             raise ParameterError(
-                f"{name} {parameters.get(name)} cannot be opened: check the file and the layer's name."
+                tr(
+                    "{parameter} {layer} cannot be opened: check the file and the layer's name.",
+                    parameter=name,
+                    layer=parameters.get(name),
+                )
             )
         return source, filter_in(self, parameters, name, context)
 
@@ -173,7 +178,11 @@ class ExportNavigationMap(FleetAlgorithm):
         for format, names in needed.items():
             for name in names:
                 if format in formats and not parameters.get(name):
-                    return f"FORMATS has {format}, which needs {name}: give it, or leave {format} out."
+                    return tr(
+                        "FORMATS has {format}, which needs {name}: give it, or leave {format} out.",
+                        format=format,
+                        name=name,
+                    )
         return ""
 
 
@@ -183,31 +192,31 @@ def _parameters() -> list[QgsProcessingParameterDefinition]:
         robot_map,
         QgsProcessingParameterEnum(
             FORMATS,
-            "Formats",
+            tr("Formats"),
             options=list(MADE),
             allowMultiple=True,
             defaultValue=["occupancy"],
             usesStaticStrings=True,
         ),
-        QgsProcessingParameterNumber(RESOLUTION, "Side of a cell of grid and masks [m]", _REAL, 0.05),
+        QgsProcessingParameterNumber(RESOLUTION, tr("Side of a cell of grid and masks [m]"), _REAL, 0.05),
         QgsProcessingParameterEnum(
             INSIDE,
-            "Inside of obstacles in the occupancy grid",
+            tr("Inside of obstacles in the occupancy grid"),
             options=[UNKNOWN, OCCUPIED],
             defaultValue=UNKNOWN,
             usesStaticStrings=True,
         ),
-        QgsProcessingParameterNumber(DRIVES_OVER, "Robots drive over what is lower than [m]", _REAL, 0.0),
-        QgsProcessingParameterFeatureSource(KEEPOUTS, "Keepout areas", _POLYGONS, optional=True),
+        QgsProcessingParameterNumber(DRIVES_OVER, tr("Robots drive over what is lower than [m]"), _REAL, 0.0),
+        QgsProcessingParameterFeatureSource(KEEPOUTS, tr("Keepout areas"), _POLYGONS, optional=True),
         QgsProcessingParameterFeatureSource(
-            SPEED_AREAS, "Areas with a speed limit", _POLYGONS, optional=True
+            SPEED_AREAS, tr("Areas with a speed limit"), _POLYGONS, optional=True
         ),
         QgsProcessingParameterExpression(
-            SPEED, "Speed limit of each area [m/s]", parentLayerParameterName=SPEED_AREAS, optional=True
+            SPEED, tr("Speed limit of each area [m/s]"), parentLayerParameterName=SPEED_AREAS, optional=True
         ),
-        QgsProcessingParameterString(NAME, "Name of the files (default: the robot map's)", optional=True),
+        QgsProcessingParameterString(NAME, tr("Name of the files (default: the robot map's)"), optional=True),
         *place,
-        QgsProcessingParameterFolderDestination(OUTPUT, "Folder"),
+        QgsProcessingParameterFolderDestination(OUTPUT, tr("Folder")),
     ]
 
 
@@ -219,7 +228,11 @@ def _format_problem(parameters: Mapping[str, Any]) -> str:
         return ""
     unknown = [name for name in given if name not in MADE]
     if unknown or not given:
-        return f"FORMATS is {', '.join(map(str, unknown)) or 'empty'}: choose of {', '.join(MADE)}."
+        return tr(
+            "FORMATS is {formats}: choose of {known}.",
+            formats=", ".join(map(str, unknown)) or "empty",
+            known=", ".join(MADE),
+        )
     return ""
 
 
@@ -236,15 +249,25 @@ def _number_problem(parameters: Mapping[str, Any]) -> str:
                 continue
             number = math.nan
         if not math.isfinite(number) or number < 0 or (positive and number == 0):
-            wanted = "above 0, such as 0.05" if positive else "of 0 or more"
-            return f"{name} is {value}: give a number of metres {wanted}."
+            wanted = tr("above 0, such as 0.05") if positive else tr("of 0 or more")
+            return tr(
+                "{name} is {value}: give a number of metres {wanted}.",
+                name=name,
+                value=value,
+                wanted=wanted,
+            )
     return ""
 
 
 def _name(given: str, source: Path) -> str:
     name = given.strip() or source.stem
     if Path(name).name != name or name.startswith("."):
-        raise ParameterError(f"NAME {name!r} is no file's name: leave out folders and leading dots.")
+        raise ParameterError(
+            tr(
+                "NAME {name!r} is no file's name: leave out folders and leading dots.",
+                name=name,
+            )
+        )
     return name
 
 
@@ -254,15 +277,24 @@ def _write(made: Mapping[str, Files], folder: Path, source: Path, feedback) -> N
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise OutputError(
-            f"The folder {folder} cannot be made: {error.strerror or error}. Choose another OUTPUT."
+            tr(
+                "The folder {folder} cannot be made: {reason}. Choose another OUTPUT.",
+                folder=folder,
+                reason=error.strerror or error,
+            )
         ) from error
     files = {folder / name: content for part in made.values() for name, content in part.items()}
     for target in files:
         if target.exists() and target.samefile(source):
-            raise OutputError(f"{target} is the robot map itself: choose another NAME or OUTPUT.")
+            raise OutputError(
+                tr(
+                    "{target} is the robot map itself: choose another NAME or OUTPUT.",
+                    target=target,
+                )
+            )
     for target, content in files.items():
         write_whole(target, content)
-        feedback.pushInfo(f"{target}: {len(content)} bytes")
+        feedback.pushInfo(tr("{target}: {content} bytes", target=target, content=len(content)))
 
 
 def _results(made: Mapping[str, Files], folder: Path, warnings: int) -> dict[str, Any]:

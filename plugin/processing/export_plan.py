@@ -19,6 +19,7 @@ from qgis.core import (
 
 from ...robot_bridge.robotmap.builder import Window
 from ...robot_bridge.robotmap.shaping import Shaping
+from ..language import tr
 from ..sites.errors import LayerTypeError
 from ..sites.obstacle_source import ObstacleSource, obstacle_sources
 from ..sites.placing import SitePlacing
@@ -133,9 +134,10 @@ def unopened_layer(parameters: Parameters, context: QgsProcessingContext) -> str
     values = parameters.get(OBSTACLES)
     for value in values if isinstance(values, (list, tuple)) else [values]:
         if isinstance(value, str) and QgsProcessingUtils.mapLayerFromString(value, context) is None:
-            return (
-                f"The obstacle layer {value} cannot be opened: check the file, and the layer's name after "
-                "'|layername='."
+            return tr(
+                "The obstacle layer {layer} cannot be opened: check the file, and the layer's name "
+                "after '|layername='.",
+                layer=value,
             )
     return ""
 
@@ -153,7 +155,12 @@ def obstacle_layers(
     layers = algorithm.parameterAsLayerList(parameters, OBSTACLES, context)
     for layer in layers:
         if not isinstance(layer, QgsVectorLayer):
-            raise LayerTypeError(f"The layer {layer.name()} is no vector layer: leave it out.")
+            raise LayerTypeError(
+                tr(
+                    "The layer {layer} is no vector layer: leave it out.",
+                    layer=layer.name(),
+                )
+            )
     return layers
 
 
@@ -170,7 +177,10 @@ def site_crs(
     chosen = algorithm.parameterAsCrs(parameters, SITE_CRS, context)
     if parameters.get(SITE_CRS) and not chosen.isValid():
         raise ParameterError(
-            f"SITE_CRS {parameters[SITE_CRS]} is no CRS that QGIS knows: write a code such as EPSG:32633."
+            tr(
+                "SITE_CRS {crs} is no CRS that QGIS knows: write a code such as EPSG:32633.",
+                crs=parameters[SITE_CRS],
+            )
         )
     project = context.project()
     project_crs = project.crs() if project is not None else QgsCoordinateReferenceSystem()
@@ -186,7 +196,12 @@ def default_height(
     """
     height = algorithm.parameterAsDouble(parameters, DEFAULT_HEIGHT, context)
     if not 0 <= height < math.inf:
-        raise ParameterError(f"DEFAULT_HEIGHT is {height}: give a number of metres of 0 or more.")
+        raise ParameterError(
+            tr(
+                "DEFAULT_HEIGHT is {height}: give a number of metres of 0 or more.",
+                height=height,
+            )
+        )
     return height
 
 
@@ -195,5 +210,11 @@ def _target(algorithm, parameters: Parameters, context) -> Path:
     for layer in obstacle_layers(algorithm, parameters, context):
         path = QgsProviderRegistry.instance().decodeUri(layer.providerType(), layer.source()).get("path")
         if path and target.exists() and Path(path).exists() and target.samefile(path):
-            raise OutputError(f"OUTPUT {target} is the file of the layer {layer.name()}: choose another one.")
+            raise OutputError(
+                tr(
+                    "OUTPUT {target} is the file of the layer {layer}: choose another one.",
+                    target=target,
+                    layer=layer.name(),
+                )
+            )
     return target

@@ -16,6 +16,7 @@ from ...robot_bridge.robotmap.builder import Window, build_map
 from ...robot_bridge.robotmap.errors import RobotMapError
 from ...robot_bridge.robotmap.model import RobotMap
 from ..errors import FleetError
+from ..language import tr
 from ..sites.reading import Reading
 from .errors import shown_by_processing
 from .export_help import HELP
@@ -39,11 +40,11 @@ from .obstacle_outlines import obstacle_outlines
 from .whole_file import write_whole
 
 NUMBERS = {
-    "OBSTACLE_COUNT": "Obstacles",
-    "SEGMENT_COUNT": "Segments",
-    "BYTES": "Size of the file [bytes]",
-    "BYTES_PER_M2": "Compactness [bytes/m²]",
-    "WARNING_COUNT": "Warnings",
+    "OBSTACLE_COUNT": tr("Obstacles"),
+    "SEGMENT_COUNT": tr("Segments"),
+    "BYTES": tr("Size of the file [bytes]"),
+    "BYTES_PER_M2": tr("Compactness [bytes/m²]"),
+    "WARNING_COUNT": tr("Warnings"),
 }
 
 
@@ -51,8 +52,8 @@ class ExportRobotMap(FleetAlgorithm):
     """Exports the obstacles in a window as a map that robots read (paper 1, section III)."""
 
     NAME = "exportrobotmap"
-    TITLE = "Export robot map"
-    SUMMARY = "Writes the obstacles of line and polygon layers inside a window as a map that robots read."
+    TITLE = tr("Export robot map")
+    SUMMARY = tr("Writes the obstacles of line and polygon layers inside a window as a map that robots read.")
     HELP = HELP
     ICON = "export_robot_map.svg"
     TAGS = ("obstacle", "navigation", "segments", "partial map", "qgis_process")
@@ -60,7 +61,7 @@ class ExportRobotMap(FleetAlgorithm):
     def initAlgorithm(self, configuration=None):
         for parameter in (
             QgsProcessingParameterMultipleLayers(
-                OBSTACLES, "Obstacle layers", QgsProcessing.SourceType.TypeVectorAnyGeometry
+                OBSTACLES, tr("Obstacle layers"), QgsProcessing.SourceType.TypeVectorAnyGeometry
             ),
             *window_parameters(),
             *value_parameters(),
@@ -68,7 +69,7 @@ class ExportRobotMap(FleetAlgorithm):
             *shaping_parameters(),
             *format_parameters(),
             QgsProcessingParameterFileDestination(
-                OUTPUT, "Robot map", "Robot map, text (*.txt);;Robot map, binary (*.rmap)"
+                OUTPUT, tr("Robot map"), tr("Robot map, text (*.txt);;Robot map, binary (*.rmap)")
             ),
         ):
             self.addParameter(parameter)
@@ -120,28 +121,30 @@ class ExportRobotMap(FleetAlgorithm):
 def value_parameters() -> list[QgsProcessingParameterDefinition]:
     """Return the parameters that say what a feature is."""
     base = QgsProcessingParameterExpression(
-        BASE_EXPRESSION, "Where each feature begins above the ground [m] (default: on it)", optional=True
+        BASE_EXPRESSION, tr("Where each feature begins above the ground [m] (default: on it)"), optional=True
     )
     base.setHelp(
-        'Such as "clearance" of arches, or 2.2 for signs; the height of a feature counts from there. The '
-        "upper height of the robot's plane leaves out what begins above it."
+        tr(
+            'Such as "clearance" of arches, or 2.2 for signs; the height of a feature counts from there. '
+            "The upper height of the robot's plane leaves out what begins above it."
+        )
     )
     return [
         QgsProcessingParameterExpression(
-            HEIGHT_EXPRESSION, "Height of each feature [m] (default: its field height)", optional=True
+            HEIGHT_EXPRESSION, tr("Height of each feature [m] (default: its field height)"), optional=True
         ),
         base,
         QgsProcessingParameterNumber(
             DEFAULT_HEIGHT,
-            "Height where none is known, marked as estimated [m]",
+            tr("Height where none is known, marked as estimated [m]"),
             QgsProcessingParameterNumber.Type.Double,
             3.0,
         ),
         QgsProcessingParameterExpression(
-            SEMANTICS_EXPRESSION, "Label of each feature (default: the layer's name)", optional=True
+            SEMANTICS_EXPRESSION, tr("Label of each feature (default: the layer's name)"), optional=True
         ),
         QgsProcessingParameterExpression(
-            OUTDOOR_EXPRESSION, "Whether each feature is outdoors (default: true)", optional=True
+            OUTDOOR_EXPRESSION, tr("Whether each feature is outdoors (default: true)"), optional=True
         ),
     ]
 
@@ -152,7 +155,7 @@ def _reported(reading: Reading, robot_map: RobotMap, feedback) -> int:
     for warning in warnings:
         feedback.pushWarning(warning)
     if not robot_map.obstacles:
-        feedback.pushWarning("There is no obstacle in the window: check its place and the site CRS.")
+        feedback.pushWarning(tr("There is no obstacle in the window: check its place and the site CRS."))
         return len(warnings) + 1
     return len(warnings)
 
@@ -161,10 +164,37 @@ def _report_size(window: Window, robot_map: RobotMap, text: str, content: bytes,
     border, area = robot_map.border, robot_map.border.area
     size = len(text.encode())
     feedback.pushInfo(
-        f"Window {window.width:g} m x {window.height:g} m = {area:.0f} m², from ({border.x_min:.2f}, "
-        f"{border.y_min:.2f}) to ({border.x_max:.2f}, {border.y_max:.2f}) in the site frame"
+        tr(
+            "Window {width:g} m x {height:g} m = {area:.0f} m², from ({x_min:.2f}, {y_min:.2f}) to "
+            "({x_max:.2f}, {y_max:.2f}) in the site frame",
+            width=window.width,
+            height=window.height,
+            area=area,
+            x_min=border.x_min,
+            y_min=border.y_min,
+            x_max=border.x_max,
+            y_max=border.y_max,
+        )
     )
-    feedback.pushInfo(f"{len(robot_map.obstacles)} obstacles, {robot_map.segment_count} segments")
-    feedback.pushInfo(f"{size} bytes of text, {size / area:.2f} bytes/m² (paper 1: about 3 bytes/m² as text)")
+    feedback.pushInfo(
+        tr(
+            "{obstacles} obstacles, {segment_count} segments",
+            obstacles=len(robot_map.obstacles),
+            segment_count=robot_map.segment_count,
+        )
+    )
+    feedback.pushInfo(
+        tr(
+            "{size} bytes of text, {ratio:.2f} bytes/m² (paper 1: about 3 bytes/m² as text)",
+            size=size,
+            ratio=size / area,
+        )
+    )
     if len(content) != size:
-        feedback.pushInfo(f"{len(content)} bytes in binary, {len(content) / area:.2f} bytes/m²")
+        feedback.pushInfo(
+            tr(
+                "{size} bytes in binary, {ratio:.2f} bytes/m²",
+                size=len(content),
+                ratio=len(content) / area,
+            )
+        )

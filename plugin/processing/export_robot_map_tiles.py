@@ -23,6 +23,7 @@ from qgis.core import (
 from ...robot_bridge.robotmap.errors import RobotMapError
 from ...robot_bridge.robotmap.index import OutlineIndex
 from ..errors import FleetError
+from ..language import tr
 from .errors import shown_by_processing
 from .export_plan import OBSTACLES, unopened_layer
 from .export_robot_map import value_parameters
@@ -66,11 +67,11 @@ _FIELDS = {
     "bytes_per_m2": "double",
 }
 NUMBERS = {
-    "TILE_COUNT": "Tiles",
-    "OBSTACLE_COUNT": "Obstacles in all tiles",
-    "SEGMENT_COUNT": "Segments in all tiles",
-    "BYTES": "Size of all tiles [bytes]",
-    "WARNING_COUNT": "Warnings",
+    "TILE_COUNT": tr("Tiles"),
+    "OBSTACLE_COUNT": tr("Obstacles in all tiles"),
+    "SEGMENT_COUNT": tr("Segments in all tiles"),
+    "BYTES": tr("Size of all tiles [bytes]"),
+    "WARNING_COUNT": tr("Warnings"),
 }
 _REAL = QgsProcessingParameterNumber.Type.Double
 
@@ -79,8 +80,8 @@ class ExportRobotMapTiles(FleetAlgorithm):
     """Exports a site as many maps, in a grid or along a route."""
 
     NAME = "exportrobotmaptiles"
-    TITLE = "Export robot map tiles"
-    SUMMARY = "Writes many robot maps, in a grid or along a route, and a layer that tells which is where."
+    TITLE = tr("Export robot map tiles")
+    SUMMARY = tr("Writes many robot maps, in a grid or along a route, and a layer that tells which is where.")
     ICON = "export_robot_map_tiles.svg"
     TAGS = ("tiles", "grid", "route", "batch", "obstacle", "partial map")
     STYLES = {INDEX: "robot_map_tiles.qml"}  # noqa: RUF012
@@ -99,22 +100,28 @@ class ExportRobotMapTiles(FleetAlgorithm):
     def initAlgorithm(self, configuration=None):
         kinds = QgsProcessing.SourceType
         for parameter in (
-            QgsProcessingParameterMultipleLayers(OBSTACLES, "Obstacle layers", kinds.TypeVectorAnyGeometry),
-            QgsProcessingParameterExtent(EXTENT, "Extent of a grid (or choose a route)", optional=True),
-            QgsProcessingParameterFeatureSource(
-                ROUTE, "Route, instead of a grid", [kinds.TypeVectorLine], optional=True
+            QgsProcessingParameterMultipleLayers(
+                OBSTACLES, tr("Obstacle layers"), kinds.TypeVectorAnyGeometry
             ),
-            QgsProcessingParameterNumber(TILE_WIDTH, "Width of a tile, along x [m]", _REAL, PAPERS_SIDE_M),
-            QgsProcessingParameterNumber(TILE_HEIGHT, "Height of a tile, along y [m]", _REAL, PAPERS_SIDE_M),
-            QgsProcessingParameterNumber(OVERLAP, "What neighbouring tiles share [m]", _REAL, 10.0),
-            QgsProcessingParameterBoolean(SKIP_EMPTY, "Leave out tiles without obstacles", False),
+            QgsProcessingParameterExtent(EXTENT, tr("Extent of a grid (or choose a route)"), optional=True),
+            QgsProcessingParameterFeatureSource(
+                ROUTE, tr("Route, instead of a grid"), [kinds.TypeVectorLine], optional=True
+            ),
+            QgsProcessingParameterNumber(
+                TILE_WIDTH, tr("Width of a tile, along x [m]"), _REAL, PAPERS_SIDE_M
+            ),
+            QgsProcessingParameterNumber(
+                TILE_HEIGHT, tr("Height of a tile, along y [m]"), _REAL, PAPERS_SIDE_M
+            ),
+            QgsProcessingParameterNumber(OVERLAP, tr("What neighbouring tiles share [m]"), _REAL, 10.0),
+            QgsProcessingParameterBoolean(SKIP_EMPTY, tr("Leave out tiles without obstacles"), False),
             *frame_parameters(),
             *value_parameters(),
             profile_parameter(),
             *shaping_parameters(),
             *format_parameters(),
-            QgsProcessingParameterFolderDestination(FOLDER, "Folder of the tiles"),
-            QgsProcessingParameterFeatureSink(INDEX, "Index of the tiles", kinds.TypeVectorPolygon),
+            QgsProcessingParameterFolderDestination(FOLDER, tr("Folder of the tiles")),
+            QgsProcessingParameterFeatureSink(INDEX, tr("Index of the tiles"), kinds.TypeVectorPolygon),
         ):
             self.addParameter(parameter)
         for name, title in NUMBERS.items():
@@ -191,9 +198,16 @@ class _TileMaker:
         warnings = len(self._notes)
         obstacles, segments, size = (int(count) for count in self._counts)
         if not obstacles:
-            feedback.pushWarning("There is no obstacle in any tile: check their place and the site CRS.")
+            feedback.pushWarning(tr("There is no obstacle in any tile: check their place and the site CRS."))
             warnings += 1
-        feedback.pushInfo(f"{len(self.rows)} tiles, {segments} segments, {size} bytes")
+        feedback.pushInfo(
+            tr(
+                "{rows} tiles, {segments} segments, {size} bytes",
+                rows=len(self.rows),
+                segments=segments,
+                size=size,
+            )
+        )
         return dict(zip(NUMBERS, (len(self.rows), obstacles, segments, size, warnings), strict=True))
 
     def _make(self, tile: Tile, index: OutlineIndex, folder: TileFolder) -> None:

@@ -24,9 +24,11 @@ from ...robot_bridge.roads.engines.engine import Graph
 from ...robot_bridge.roads.network import Network
 from ...robot_bridge.roads.route import Route
 from ...robot_bridge.roads.routes import REACH, Restrictions, Router
+from ..language import tr
 from .errors import shown_by_processing
 from .fleet_algorithm import FleetAlgorithm, fields_of
 from .graph_engine import GraphEngine
+from .keepout_areas import KeepoutAreas, keepout_parameter
 from .road_source import (
     WARNING_COUNT,
     RoadReading,
@@ -44,11 +46,11 @@ QGIS = "qgis"
 _REAL = QgsProcessingParameterNumber.Type.Double
 _DRIVING = Driving()
 _LENGTHS = {
-    "LEAST_WIDTH": ("Roads at least this wide [m]", 0.0, 0.0),
-    "DISTANCE": ("Start and goal at most this far from a road [m]", REACH, 0.0),
-    "SPACING": ("Points of the path at most this far apart [m]", _DRIVING.spacing, 0.01),
-    "TURNING_RADIUS": ("Turning radius of the robot [m]", _DRIVING.turning_radius, 0.0),
-    "ROBOT_WIDTH": ("Width of the robot [m]", _DRIVING.robot_width, 0.0),
+    "LEAST_WIDTH": (tr("Roads at least this wide [m]"), 0.0, 0.0),
+    "DISTANCE": (tr("Start and goal at most this far from a road [m]"), REACH, 0.0),
+    "SPACING": (tr("Points of the path at most this far apart [m]"), _DRIVING.spacing, 0.01),
+    "TURNING_RADIUS": (tr("Turning radius of the robot [m]"), _DRIVING.turning_radius, 0.0),
+    "ROBOT_WIDTH": (tr("Width of the robot [m]"), _DRIVING.robot_width, 0.0),
 }
 _ROUTE = {
     "order": "int8",
@@ -60,11 +62,11 @@ _ROUTE = {
 }
 _PATH = {"metres": "double", "seconds": "double", "points": "int8", "tight": "int8", "engine": "string"}
 NUMBERS = {
-    "METRES": "Length of the route [m]",
-    "SECONDS": "Time on the route [s]",
-    "POINT_COUNT": "Points of the path",
-    "TIGHT_COUNT": "Corners tighter than the robot turns",
-    WARNING_COUNT: "Warnings",
+    "METRES": tr("Length of the route [m]"),
+    "SECONDS": tr("Time on the route [s]"),
+    "POINT_COUNT": tr("Points of the path"),
+    "TIGHT_COUNT": tr("Corners tighter than the robot turns"),
+    WARNING_COUNT: tr("Warnings"),
 }
 ENGINE_USED = "ENGINE_USED"
 
@@ -72,16 +74,20 @@ ENGINE_USED = "ENGINE_USED"
 class FindRoute(FleetAlgorithm):
     """Finds a way along roads between two places near them."""
 
-    GROUP = ("roads", "Roads")
+    GROUP = ("roads", tr("Roads"))
     NAME = "route"
-    TITLE = "Route on roads"
-    SUMMARY = "Finds the shortest or fastest way along road centrelines, and the path that a robot drives."
+    TITLE = tr("Route on roads")
+    SUMMARY = tr(
+        "Finds the shortest or fastest way along road centrelines, and the path that a robot drives."
+    )
     ICON = "route_on_roads.svg"
     TAGS = ("road", "route", "shortest path", "fastest", "navigation", "path")
     HELP = """
     <p>Finds the way between two places near roads: each is taken to the nearest point of a road that may be
     used. Closed roads are not used, one-way roads in their direction only; <b>surfaces</b> (names with commas
     between) and a <b>least width</b> restrict the way further.</p>
+    <p>Edges that lead through a polygon of the <b>areas that must not be driven through</b> are closed; what
+    runs along a rim is not.</p>
     <p><b>Route</b> has a line for each stretch of road, in order. <b>Path</b> is what a robot drives: points
     at most so far apart, corners rounded to the turning radius as far as robot and road are wide.
     Corners that stay tighter are counted and named in the log.</p>
@@ -95,22 +101,25 @@ class FindRoute(FleetAlgorithm):
         roads, tolerance, *others = road_parameters()
         names = [*ENGINES[:-1], QGIS, ENGINES[-1]]
         ways = QgsProcessingParameterEnum(
-            BY, "Way", options=[SHORTEST, FASTEST], defaultValue=SHORTEST, usesStaticStrings=True
+            BY, tr("Way"), options=[SHORTEST, FASTEST], defaultValue=SHORTEST, usesStaticStrings=True
         )
         engine = QgsProcessingParameterEnum(
-            ENGINE, "Engine", options=names, defaultValue=AUTOMATIC, usesStaticStrings=True
+            ENGINE, tr("Engine"), options=names, defaultValue=AUTOMATIC, usesStaticStrings=True
         )
         engine.setFlags(engine.flags() | QgsProcessingParameterDefinition.Flag.FlagAdvanced)
         for parameter in (
             roads,
-            QgsProcessingParameterPoint(START, "Start"),
-            QgsProcessingParameterPoint(GOAL, "Goal"),
+            QgsProcessingParameterPoint(START, tr("Start")),
+            QgsProcessingParameterPoint(GOAL, tr("Goal")),
             ways,
-            QgsProcessingParameterString(SURFACES, "Surfaces that may be used (default: all)", optional=True),
+            QgsProcessingParameterString(
+                SURFACES, tr("Surfaces that may be used (default: all)"), optional=True
+            ),
             *(
                 QgsProcessingParameterNumber(name, title, _REAL, value, minValue=least)
                 for name, (title, value, least) in _LENGTHS.items()
             ),
+            keepout_parameter(),
             repair_parameter(),
             tolerance,
             *others,
@@ -118,16 +127,17 @@ class FindRoute(FleetAlgorithm):
         ):
             self.addParameter(parameter)
         lines = QgsProcessing.SourceType.TypeVectorLine
-        self.addParameter(QgsProcessingParameterFeatureSink(ROUTE, "Route", lines))
-        self.addParameter(QgsProcessingParameterFeatureSink(PATH, "Path", lines))
+        self.addParameter(QgsProcessingParameterFeatureSink(ROUTE, tr("Route"), lines))
+        self.addParameter(QgsProcessingParameterFeatureSink(PATH, tr("Path"), lines))
         for name, title in NUMBERS.items():
             self.addOutput(QgsProcessingOutputNumber(name, title))
-        self.addOutput(QgsProcessingOutputString(ENGINE_USED, "Engine that was used"))
+        self.addOutput(QgsProcessingOutputString(ENGINE_USED, tr("Engine that was used")))
 
     def prepareAlgorithm(self, parameters, context, feedback):
         self._fields = fields_of(_ROUTE), fields_of(_PATH)
         with shown_by_processing():
             self._source = RoadSource(self, parameters, context)
+            self._keepouts = KeepoutAreas(self, parameters, context)
         return True
 
     def processAlgorithm(self, parameters, context, feedback):
@@ -139,6 +149,18 @@ class FindRoute(FleetAlgorithm):
                 return {}
             network, _ = network_of_roads(self, parameters, context, reading, feedback)
             router = _router(network, self.parameterAsEnumString(parameters, ENGINE, context))
+            closed, warnings = self._keepouts.edges_through(network, reading.crs, feedback)
+            for warning in warnings:
+                feedback.pushWarning(warning)
+            reading.warnings += warnings
+            if closed:
+                feedback.pushInfo(
+                    tr(
+                        "{closed} edges lead through areas to be avoided, and are closed",
+                        closed=len(closed),
+                    )
+                )
+                router.close(closed)
             feedback.setProgress(80)
             wanted = self._restrictions(parameters, context, lengths["LEAST_WIDTH"])
             route = router.route(
@@ -208,8 +230,22 @@ def _stretches(route: Route, reading: RoadReading):
 
 def _report(route: Route, path: DensePath, feedback) -> None:
     feedback.pushInfo(
-        f"{route.metres:.1f} m, {route.seconds:.1f} s, {len(path.points)} points, found by {route.engine}; "
-        f"start {route.off_start:.2f} m and goal {route.off_goal:.2f} m from the road"
+        tr(
+            "{metres:.1f} m, {seconds:.1f} s, {points} points, found by {engine}; start {off_start:.2f} m "
+            "and goal {off_goal:.2f} m from the road",
+            metres=route.metres,
+            seconds=route.seconds,
+            points=len(path.points),
+            engine=route.engine,
+            off_start=route.off_start,
+            off_goal=route.off_goal,
+        )
     )
     for x, y in path.tight.tolist():
-        feedback.pushWarning(f"The corner at ({x:.2f}, {y:.2f}) is tighter than the robot turns.")
+        feedback.pushWarning(
+            tr(
+                "The corner at ({x:.2f}, {y:.2f}) is tighter than the robot turns.",
+                x=x,
+                y=y,
+            )
+        )

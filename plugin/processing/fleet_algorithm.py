@@ -7,13 +7,15 @@ from pathlib import Path
 from qgis.core import QgsFields, QgsProcessingAlgorithm, QgsProcessingUtils, QgsVectorLayer
 from qgis.PyQt.QtGui import QIcon
 
+from ..language import tr
+
 RESOURCES = Path(__file__).parents[2] / "resources"
 
 
 class FleetAlgorithm(QgsProcessingAlgorithm):
     """An algorithm of the provider; subclasses say who they are in their class attributes."""
 
-    GROUP = ("robotmaps", "Robot maps")
+    GROUP = ("robotmaps", tr("Robot maps"))
     """Id and title of its group in the toolbox."""
     NAME = ""
     TITLE = ""

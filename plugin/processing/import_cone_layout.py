@@ -24,6 +24,7 @@ from qgis.core import (
 from ...robot_bridge.layouts.cone import Cone
 from ...robot_bridge.layouts.placing import placed
 from ...robot_bridge.layouts.table import Columns, cones_of, read_csv
+from ..language import tr
 from .cone_ground import ground_parameters
 from .cone_layer import STYLES, ConeSetup, add_layers, site_crs_parameter
 from .errors import ParameterError, shown_by_processing
@@ -32,25 +33,27 @@ from .fleet_algorithm import FleetAlgorithm
 FILE, INPUT, ORIGIN, ROTATION, NAME = "FILE", "INPUT", "ORIGIN", "ROTATION", "LAYOUT_NAME"
 X, Y = "X_FIELD", "Y_FIELD"
 _COLUMNS = {
-    X: ("x", "Column of x [m]", "x_m"),
-    Y: ("y", "Column of y [m]", "y_m"),
-    "ID_FIELD": ("id", "Column of ids", ""),
-    "ORDER_FIELD": ("order", "Column of the order of placing", ""),
-    "HEADING_FIELD": ("heading", "Column of headings, clockwise from the y axis [degrees]", ""),
-    "COLOUR_FIELD": ("colour", "Column of colours", ""),
-    "ROLE_FIELD": ("role", "Column of roles", ""),
-    "LAYOUT_FIELD": ("layout", "Column that names the layout of each row", ""),
-    "LAYOUT": ("only", "The one layout to take, by that column", ""),
+    X: ("x", tr("Column of x [m]"), "x_m"),
+    Y: ("y", tr("Column of y [m]"), "y_m"),
+    "ID_FIELD": ("id", tr("Column of ids"), ""),
+    "ORDER_FIELD": ("order", tr("Column of the order of placing"), ""),
+    "HEADING_FIELD": ("heading", tr("Column of headings, clockwise from the y axis [degrees]"), ""),
+    "COLOUR_FIELD": ("colour", tr("Column of colours"), ""),
+    "ROLE_FIELD": ("role", tr("Column of roles"), ""),
+    "LAYOUT_FIELD": ("layout", tr("Column that names the layout of each row"), ""),
+    "LAYOUT": ("only", tr("The one layout to take, by that column"), ""),
 }
 
 
 class ImportConeLayout(FleetAlgorithm):
     """Makes a layer of cones of a table or of another layer."""
 
-    GROUP = ("cones", "Cones")
+    GROUP = ("cones", tr("Cones"))
     NAME = "importconelayout"
-    TITLE = "Import cone layout"
-    SUMMARY = "Places the cones of a CSV file or a layer, turned and moved to their place, and checks them."
+    TITLE = tr("Import cone layout")
+    SUMMARY = tr(
+        "Places the cones of a CSV file or a layer, turned and moved to their place, and checks them."
+    )
     ICON = "import_cone_layout.svg"
     TAGS = ("cone", "layout", "CSV", "import")
     STYLES = STYLES
@@ -70,18 +73,18 @@ class ImportConeLayout(FleetAlgorithm):
     def initAlgorithm(self, configuration=None):
         real = QgsProcessingParameterNumber.Type.Double
         for parameter in (
-            QgsProcessingParameterFile(FILE, "CSV file", extension="csv", optional=True),
+            QgsProcessingParameterFile(FILE, tr("CSV file"), extension="csv", optional=True),
             QgsProcessingParameterFeatureSource(
-                INPUT, "Layer, instead of a file", [QgsProcessing.SourceType.TypeVector], optional=True
+                INPUT, tr("Layer, instead of a file"), [QgsProcessing.SourceType.TypeVector], optional=True
             ),
             *(
                 QgsProcessingParameterString(name, title, default, optional=True)
                 for name, (_, title, default) in _COLUMNS.items()
             ),
-            QgsProcessingParameterPoint(ORIGIN, "Where the table's 0,0 goes", optional=True),
-            QgsProcessingParameterNumber(ROTATION, "Rotation, counter-clockwise [degrees]", real, 0.0),
+            QgsProcessingParameterPoint(ORIGIN, tr("Where the table's 0,0 goes"), optional=True),
+            QgsProcessingParameterNumber(ROTATION, tr("Rotation, counter-clockwise [degrees]"), real, 0.0),
             QgsProcessingParameterString(
-                NAME, "Name (default: the layout's, else the file's)", optional=True
+                NAME, tr("Name (default: the layout's, else the file's)"), optional=True
             ),
             *ground_parameters(),
             site_crs_parameter(),
@@ -92,8 +95,8 @@ class ImportConeLayout(FleetAlgorithm):
     def checkParameterValues(self, parameters, context):
         given = [name for name in (FILE, INPUT) if parameters.get(name) not in (None, "")]
         if len(given) != 1:
-            how = "Both FILE and INPUT are" if given else "Neither FILE nor INPUT is"
-            return False, f"{how} given: give a CSV file, or a layer."
+            how = tr("Both FILE and INPUT are") if given else tr("Neither FILE nor INPUT is")
+            return False, tr("{how} given: give a CSV file, or a layer.", how=how)
         return super().checkParameterValues(parameters, context)
 
     def prepareAlgorithm(self, parameters, context, feedback):
@@ -153,8 +156,12 @@ class ImportConeLayout(FleetAlgorithm):
                 points = []
             if len(points) != 1:
                 raise ParameterError(
-                    f"Feature {feature.id()} of {self._source.sourceName()} is not one point with a place in "
-                    "the site's CRS: correct it or leave it out."
+                    tr(
+                        "Feature {id} of {sourcename} is not one point with a place in the site's CRS: "
+                        "correct it or leave it out.",
+                        id=feature.id(),
+                        sourcename=self._source.sourceName(),
+                    )
                 )
             rows.append({**_attributes(feature), "$x": points[0].x(), "$y": points[0].y()})
         head = [*self._source.fields().names(), "$x", "$y"]
@@ -162,7 +169,7 @@ class ImportConeLayout(FleetAlgorithm):
 
     def _moved(self, cones: list[Cone], parameters, context) -> list[Cone]:
         if parameters.get(ORIGIN) in (None, ""):
-            raise ParameterError("ORIGIN is not given: say where the table's 0,0 goes.")
+            raise ParameterError(tr("ORIGIN is not given: say where the table's 0,0 goes."))
         origin = self.parameterAsPoint(parameters, ORIGIN, context, self._setup.crs)
         turn = math.radians(self.parameterAsDouble(parameters, ROTATION, context))
         return placed(cones, origin.x(), origin.y(), turn)

@@ -18,6 +18,7 @@ from qgis.core import (
 
 from ...robot_bridge.robotmap.exporters.shapes import Shape, obstacle_shapes, segment_shapes
 from ...robot_bridge.robotmap.model import Border, RobotMap
+from ..language import tr
 from .errors import shown_by_processing
 from .fleet_algorithm import FleetAlgorithm, fields_of
 from .map_file import MAP, MapPlace, file_problem, map_parameters, map_place, read_map_file
@@ -52,17 +53,21 @@ _SEGMENT = {
 _BORDER = {"area_m2": "double", "obstacles": "integer", "segments": "integer", "meta": "string"}
 
 _LAYERS = {
-    AREAS: ("Obstacles that are areas", QgsWkbTypes.Type.Polygon, _OBSTACLE),
-    LINES: ("Obstacles that are lines", QgsWkbTypes.Type.MultiLineString, _OBSTACLE),
-    SEGMENTS: ("Segments", QgsWkbTypes.Type.LineString, _SEGMENT),
-    BORDER: ("Border of the map", QgsWkbTypes.Type.Polygon, _BORDER),
+    AREAS: (tr("Obstacles that are areas"), QgsWkbTypes.Type.Polygon, _OBSTACLE),
+    LINES: (tr("Obstacles that are lines"), QgsWkbTypes.Type.MultiLineString, _OBSTACLE),
+    SEGMENTS: (tr("Segments"), QgsWkbTypes.Type.LineString, _SEGMENT),
+    BORDER: (tr("Border of the map"), QgsWkbTypes.Type.Polygon, _BORDER),
 }
 _KINDS = {
     QgsWkbTypes.Type.Polygon: QgsProcessing.SourceType.TypeVectorPolygon,
     QgsWkbTypes.Type.MultiLineString: QgsProcessing.SourceType.TypeVectorLine,
     QgsWkbTypes.Type.LineString: QgsProcessing.SourceType.TypeVectorLine,
 }
-NUMBERS = {"OBSTACLE_COUNT": "Obstacles", "SEGMENT_COUNT": "Segments", "WARNING_COUNT": "Warnings"}
+NUMBERS = {
+    "OBSTACLE_COUNT": tr("Obstacles"),
+    "SEGMENT_COUNT": tr("Segments"),
+    "WARNING_COUNT": tr("Warnings"),
+}
 
 Row = tuple[QgsGeometry, Sequence[Any]]
 
@@ -71,8 +76,8 @@ class LoadRobotMap(FleetAlgorithm):
     """Turns a robot map back into layers, with every attribute that it holds."""
 
     NAME = "loadrobotmap"
-    TITLE = "Load robot map"
-    SUMMARY = "Turns a robot map, text or binary, into layers with all that the map says."
+    TITLE = tr("Load robot map")
+    SUMMARY = tr("Turns a robot map, text or binary, into layers with all that the map says.")
     ICON = "load_robot_map.svg"
     TAGS = ("load", "import", "read", "obstacle", "segments")
     STYLES = {  # noqa: RUF012
@@ -122,7 +127,13 @@ class LoadRobotMap(FleetAlgorithm):
             if feedback.isCanceled():
                 return {}
         self.remember(made)
-        feedback.pushInfo(f"{len(robot_map.obstacles)} obstacles, {robot_map.segment_count} segments")
+        feedback.pushInfo(
+            tr(
+                "{obstacles} obstacles, {segment_count} segments",
+                obstacles=len(robot_map.obstacles),
+                segment_count=robot_map.segment_count,
+            )
+        )
         figures = (len(robot_map.obstacles), robot_map.segment_count, len(robot_map.warnings))
         return {**made, **dict(zip(NUMBERS, figures, strict=True))}
 

@@ -27,6 +27,7 @@ from ...robot_bridge.robotmap.model import RobotMap
 from ...robot_bridge.robotmap.text import read_text
 from ...robot_bridge.sites.frame import SiteFrame
 from ..errors import FleetError
+from ..language import tr
 from ..sites.site_crs import check_site_crs
 from .errors import ParameterError
 from .map_window import ORIGIN, ROTATION, SITE_CRS
@@ -64,28 +65,28 @@ def layer_crs(crs: QgsCoordinateReferenceSystem) -> QgsCoordinateReferenceSystem
 def map_parameters() -> list[QgsProcessingParameterDefinition]:
     """Return the parameters that name the file and say where the map lies if it does not."""
     place = [
-        QgsProcessingParameterCrs(SITE_CRS, "Site CRS (default: as the map says)", optional=True),
+        QgsProcessingParameterCrs(SITE_CRS, tr("Site CRS (default: as the map says)"), optional=True),
         QgsProcessingParameterPoint(
-            ORIGIN, "Origin of the site frame in it (default: as the map says, else 0,0)", optional=True
+            ORIGIN, tr("Origin of the site frame in it (default: as the map says, else 0,0)"), optional=True
         ),
         QgsProcessingParameterNumber(
             ROTATION,
-            "Rotation of the site frame, counter-clockwise [degrees] (default: as the map says, else 0)",
+            tr("Rotation of the site frame, counter-clockwise [degrees] (default: as the map says, else 0)"),
             QgsProcessingParameterNumber.Type.Double,
             optional=True,
         ),
     ]
     for parameter in place:
         parameter.setFlags(parameter.flags() | QgsProcessingParameterDefinition.Flag.FlagAdvanced)
-    filters = "Robot maps (*.txt *.map *.rmap *.bin);;All files (*)"
-    return [QgsProcessingParameterFile(MAP, "Robot map, text or binary", fileFilter=filters), *place]
+    filters = tr("Robot maps (*.txt *.map *.rmap *.bin);;All files (*)")
+    return [QgsProcessingParameterFile(MAP, tr("Robot map, text or binary"), fileFilter=filters), *place]
 
 
 def file_problem(parameters: Mapping[str, Any]) -> str:
     """Return what is wrong with the file before it is opened, or nothing."""
     value = parameters.get(MAP)
     if isinstance(value, (str, Path)) and str(value) and not Path(value).is_file():
-        return f"There is no file {value}: choose a robot map (MAP)."
+        return tr("There is no file {file}: choose a robot map (MAP).", file=value)
     return ""
 
 
@@ -98,21 +99,41 @@ def read_map_file(path: Path) -> RobotMap:
         size = path.stat().st_size
         if size > LARGEST_TEXT:
             raise MapFileError(
-                f"The file {path} has {size} bytes, and a robot map at most {LARGEST_TEXT}: choose a map."
+                tr(
+                    "The file {path} has {size} bytes, and a robot map at most {largest_text}: choose a map.",
+                    path=path,
+                    size=size,
+                    largest_text=LARGEST_TEXT,
+                )
             )
         content = path.read_bytes()
         return decode(content) if content.startswith(MAGIC) else read_text(content.decode("utf-8-sig"))
     except OSError as error:
         raise MapFileError(
-            f"The robot map {path} cannot be read: {error.strerror or error}. Check its rights."
+            tr(
+                "The robot map {path} cannot be read: {reason}. Check its rights.",
+                path=path,
+                reason=error.strerror or error,
+            )
         ) from error
     except UnicodeDecodeError as error:
         raise MapFileError(
-            f"The file {path} is no robot map: it is neither UTF-8 (byte {error.start}) nor in the binary "
-            f"format, which begins with {MAGIC.decode()}. Choose another file."
+            tr(
+                "The file {path} is no robot map: it is neither UTF-8 (byte {start}) nor in the binary "
+                "format, which begins with {decode}. Choose another file.",
+                path=path,
+                start=error.start,
+                decode=MAGIC.decode(),
+            )
         ) from error
     except RobotMapError as error:
-        raise MapFileError(f"The robot map {path} cannot be read: {error}") from error
+        raise MapFileError(
+            tr(
+                "The robot map {path} cannot be read: {error}",
+                path=path,
+                error=error,
+            )
+        ) from error
 
 
 def map_place(
@@ -138,7 +159,13 @@ def map_place(
     if parameters.get(ROTATION) not in (None, ""):
         rotation = math.radians(algorithm.parameterAsDouble(parameters, ROTATION, context))
     if not all(math.isfinite(number) for number in (*origin, rotation)):
-        raise ParameterError(f"ORIGIN {origin} or ROTATION {rotation} is not finite: give numbers.")
+        raise ParameterError(
+            tr(
+                "ORIGIN {origin} or ROTATION {rotation} is not finite: give numbers.",
+                origin=origin,
+                rotation=rotation,
+            )
+        )
     return MapPlace(crs, SiteFrame(crs.authid(), (origin[0], origin[1]), rotation))
 
 
@@ -147,7 +174,10 @@ def _crs(algorithm, parameters, context, meta, feedback) -> QgsCoordinateReferen
     if parameters.get(SITE_CRS):
         if not chosen.isValid():
             raise ParameterError(
-                f"SITE_CRS {parameters[SITE_CRS]} is no CRS that QGIS knows: write a code such as EPSG:32633."
+                tr(
+                    "SITE_CRS {crs} is no CRS that QGIS knows: write a code such as EPSG:32633.",
+                    crs=parameters[SITE_CRS],
+                )
             )
         check_site_crs(chosen)
         return chosen
@@ -155,10 +185,20 @@ def _crs(algorithm, parameters, context, meta, feedback) -> QgsCoordinateReferen
     known = QgsCoordinateReferenceSystem(stated) if stated else QgsCoordinateReferenceSystem()
     if known.isValid():
         return known
-    why = f"the CRS {stated!r} that the map names is not known to QGIS" if stated else "it names no CRS"
+    why = (
+        tr(
+            "the CRS {stated!r} that the map names is not known to QGIS",
+            stated=stated,
+        )
+        if stated
+        else tr("it names no CRS")
+    )
     feedback.pushWarning(
-        f"The map's place is not known, because {why}: its layers are in local metres. Give SITE_CRS, "
-        "ORIGIN and ROTATION to place it."
+        tr(
+            "The map's place is not known, because {why}: its layers are in local metres. Give SITE_CRS, "
+            "ORIGIN and ROTATION to place it.",
+            why=why,
+        )
     )
     return layer_crs(known)
 
@@ -172,9 +212,15 @@ def _numbers(meta: Mapping[str, str], key: str, count: int) -> tuple[float, ...]
     except ValueError:
         numbers = ()
     if len(numbers) != count or not all(math.isfinite(number) for number in numbers):
-        wanted = "two numbers 'x,y'" if count == 2 else "a number"
+        wanted = tr("two numbers 'x,y'") if count == 2 else tr("a number")
         raise ParameterError(
-            f"The leading line '%{key} {meta[key]}' of the map should hold {wanted}: correct it there, or "
-            f"give {key.upper()}."
+            tr(
+                "The leading line '%{key} {meta}' of the map should hold {wanted}: correct it there, or "
+                "give {upper}.",
+                key=key,
+                meta=meta[key],
+                wanted=wanted,
+                upper=key.upper(),
+            )
         )
     return numbers

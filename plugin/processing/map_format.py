@@ -17,6 +17,7 @@ from qgis.core import (
 from ...robot_bridge.robotmap.binary import CODEC_COLUMNS, CODEC_TEXT, encode
 from ...robot_bridge.robotmap.model import Border, RobotMap
 from ...robot_bridge.robotmap.text import write_text
+from ..language import tr
 
 FORMAT, STRICT = "FORMAT", "STRICT"
 # No comma in a choice: QGIS would take it for two.
@@ -53,17 +54,19 @@ def format_parameters() -> list[QgsProcessingParameterDefinition]:
     """Return the parameters."""
     how = QgsProcessingParameterEnum(
         FORMAT,
-        "Format (compact: binary in columns, about a third of binary)",
+        tr("Format (compact: binary in columns, about a third of binary)"),
         options=list(_CODECS),
         defaultValue=TEXT,
         usesStaticStrings=True,
     )
     how.setHelp(
-        "text: lines that people and scripts read. binary: that text compressed, with a check sum. compact: "
-        "the same map in columns of centimetres, also with a check sum (codec 2)."
+        tr(
+            "text: lines that people and scripts read. binary: that text compressed, with a check sum. "
+            "compact: the same map in columns of centimetres, also with a check sum (codec 2)."
+        )
     )
     strict = QgsProcessingParameterBoolean(
-        STRICT, "Only what the paper's Fig. 2 has: no leading lines, no extras", defaultValue=False
+        STRICT, tr("Only what the paper's Fig. 2 has: no leading lines, no extras"), defaultValue=False
     )
     return [how, strict]
 

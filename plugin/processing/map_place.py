@@ -13,6 +13,7 @@ from qgis.core import (
     QgsLineString,
 )
 
+from ..language import tr
 from ..sites.placing import SitePlacing
 from ..sites.site_crs import is_engineering
 from .errors import ParameterError
@@ -45,8 +46,10 @@ class PlacedMap:
         """
         if self.is_local:
             raise ParameterError(
-                "GeoJSON needs longitudes and latitudes, and the map's place is not known: give SITE_CRS, "
-                "ORIGIN and ROTATION, or choose geopackage, which keeps the site's metres."
+                tr(
+                    "GeoJSON needs longitudes and latitudes, and the map's place is not known: give "
+                    "SITE_CRS, ORIGIN and ROTATION, or choose geopackage, which keeps the site's metres."
+                )
             )
         line = QgsLineString(*self.place.points(xy).T.tolist())
         target = QgsCoordinateReferenceSystem(WGS_84)
@@ -54,8 +57,12 @@ class PlacedMap:
             line.transform(QgsCoordinateTransform(self.place.crs, target, self.transform_context))
         except QgsCsException as error:
             raise ParameterError(
-                f"The map's positions cannot be transformed from {self.place.crs.authid()} to longitudes and "
-                f"latitudes ({error}): check the map's lines crs, origin and rotation."
+                tr(
+                    "The map's positions cannot be transformed from {authid} to longitudes and latitudes "
+                    "({error}): check the map's lines crs, origin and rotation.",
+                    authid=self.place.crs.authid(),
+                    error=error,
+                )
             ) from error
         wkb = bytes(line.asWkb())
         # 9 bytes come first: byte order, geometry type, number of points.

@@ -13,6 +13,7 @@ from qgis.core import (
     QgsProcessingParameterFile,
 )
 
+from ..language import tr
 from ..sites.feature_filter import FeatureFilter
 from ..sites.obstacle_source import Setups
 from ..sites.profile_file import SUFFIXES, find_profile, read_profile
@@ -26,10 +27,10 @@ def profile_parameter() -> QgsProcessingParameterDefinition:
     kinds = " ".join(f"*{suffix}" for suffix in SUFFIXES)
     return QgsProcessingParameterFile(
         PROFILE,
-        "Map profile: what the layers are, by their names (default: as each layer keeps it)",
+        tr("Map profile: what the layers are, by their names (default: as each layer keeps it)"),
         optional=True,
         # "All files" also lets the name of a shipped profile pass QGIS's check of the value.
-        fileFilter=f"Map profile ({kinds});;All files (*)",
+        fileFilter=tr("Map profile ({kinds});;All files (*)", kinds=kinds),
     )
 
 

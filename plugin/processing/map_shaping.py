@@ -16,6 +16,7 @@ from qgis.core import (
 
 from ...robot_bridge.robotmap.dissolving import shapely_module
 from ...robot_bridge.robotmap.shaping import Shaping
+from ..language import tr
 from .errors import ParameterError
 
 PLANE_LOW, PLANE_HIGH, HEIGHT_STEP = "PLANE_LOW", "PLANE_HIGH", "HEIGHT_STEP"
@@ -23,40 +24,50 @@ DISSOLVE, CHAIN, TOLERANCE, SHORTEST = "DISSOLVE", "CHAIN", "TOLERANCE", "SHORTE
 
 _HEIGHTS = {
     PLANE_LOW: (
-        "Robot's plane: from this height above the ground [m]",
-        "What is not higher than this is left out: the robot drives over it. Stairs and ramps stay. Give the "
-        "lower and the upper height together, or neither.",
+        tr("Robot's plane: from this height above the ground [m]"),
+        tr(
+            "What is not higher than this is left out: the robot drives over it. Stairs and ramps stay. "
+            "Give the lower and the upper height together, or neither."
+        ),
     ),
     PLANE_HIGH: (
-        "Robot's plane: up to this height above the ground [m]",
-        "What begins at this height or above it is left out: the robot drives under it. Where things begin "
-        "is said by the layers or by the parameter BASE_EXPRESSION.",
+        tr("Robot's plane: up to this height above the ground [m]"),
+        tr(
+            "What begins at this height or above it is left out: the robot drives under it. Where things "
+            "begin is said by the layers or by the parameter BASE_EXPRESSION."
+        ),
     ),
 }
 _FLAGS = {
     DISSOLVE: (
-        "Leave out walls between buildings that touch and lines inside or along buildings",
-        "No robot outside can meet them. What stays keeps its height and its source. Needs the Python "
-        "package shapely 2.",
+        tr("Leave out walls between buildings that touch and lines inside or along buildings"),
+        tr(
+            "No robot outside can meet them. What stays keeps its height and its source. Needs the Python "
+            "package shapely 2."
+        ),
     ),
     CHAIN: (
-        "Join lines that meet end to end into one obstacle",
-        "Only lines that are alike in height, label and all else. The source of a joined line is that of its "
-        "first part and how many others are in it, such as walls:3+7.",
+        tr("Join lines that meet end to end into one obstacle"),
+        tr(
+            "Only lines that are alike in height, label and all else. The source of a joined line is that "
+            "of its first part and how many others are in it, such as walls:3+7."
+        ),
     ),
 }
 _LENGTHS = {
     TOLERANCE: (
-        "Fewer corners: how far an outline may then be from the drawn one [m]",
-        "0 is off. An outline that would cross itself stays as it is. Needs the Python package shapely 2.",
+        tr("Fewer corners: how far an outline may then be from the drawn one [m]"),
+        tr(
+            "0 is off. An outline that would cross itself stays as it is. Needs the Python package shapely 2."
+        ),
     ),
     SHORTEST: (
-        "Shortest segment: corners nearer than this to the one before are left out [m]",
-        "0 is off. Ends of lines stay and rings keep three corners. Needs the Python package shapely 2.",
+        tr("Shortest segment: corners nearer than this to the one before are left out [m]"),
+        tr("0 is off. Ends of lines stay and rings keep three corners. Needs the Python package shapely 2."),
     ),
     HEIGHT_STEP: (
-        "Heights are rounded up to a multiple of this [m]",
-        "0 is off. Half a metre makes a compact map smaller still, and no obstacle lower than it is.",
+        tr("Heights are rounded up to a multiple of this [m]"),
+        tr("0 is off. Half a metre makes a compact map smaller still, and no obstacle lower than it is."),
     ),
 }
 _REAL = QgsProcessingParameterNumber.Type.Double
@@ -88,7 +99,13 @@ def shaping_of(
     lengths = {name: algorithm.parameterAsDouble(parameters, name, context) for name in _LENGTHS}
     for name, value in lengths.items():
         if not 0 <= value < math.inf:
-            raise ParameterError(f"{name} is {value:g}: give a number of metres of 0 or more.")
+            raise ParameterError(
+                tr(
+                    "{name} is {value:g}: give a number of metres of 0 or more.",
+                    name=name,
+                    value=value,
+                )
+            )
     dissolve, chain = (algorithm.parameterAsBool(parameters, name, context) for name in _FLAGS)
     if dissolve or lengths[TOLERANCE] or lengths[SHORTEST]:
         _check_shapely()
@@ -108,11 +125,22 @@ def _plane(algorithm, parameters, context) -> tuple[float, float] | None:
         return None
     if not all(given):
         missing, other = (PLANE_HIGH, PLANE_LOW) if given[0] else (PLANE_LOW, PLANE_HIGH)
-        raise ParameterError(f"{other} is given and {missing} is not: give both heights in metres, or none.")
+        raise ParameterError(
+            tr(
+                "{other} is given and {missing} is not: give both heights in metres, or none.",
+                other=other,
+                missing=missing,
+            )
+        )
     low, high = (algorithm.parameterAsDouble(parameters, name, context) for name in _HEIGHTS)
     if not -math.inf < low < high < math.inf:
         raise ParameterError(
-            f"PLANE_LOW is {low:g} and PLANE_HIGH {high:g}: give the lower and the upper height in metres."
+            tr(
+                "PLANE_LOW is {low:g} and PLANE_HIGH {high:g}: give the lower and the upper height in "
+                "metres.",
+                low=low,
+                high=high,
+            )
         )
     return low, high
 
@@ -121,6 +149,10 @@ def _check_shapely() -> None:
     version = shapely_module().__version__
     if int(version.partition(".")[0]) < 2:
         raise ParameterError(
-            f"DISSOLVE, TOLERANCE and SHORTEST need the Python package shapely 2, and {version} is installed "
-            "here: install a newer one (python3 -m pip install 'shapely>=2'), or leave them off."
+            tr(
+                "DISSOLVE, TOLERANCE and SHORTEST need the Python package shapely 2, and {version} is "
+                "installed here: install a newer one (python3 -m pip install 'shapely>=2'), or leave them "
+                "off.",
+                version=version,
+            )
         )

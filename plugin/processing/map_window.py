@@ -21,6 +21,7 @@ from qgis.core import (
 
 from ...robot_bridge.robotmap.builder import Window
 from ...robot_bridge.sites.frame import SiteFrame
+from ..language import tr
 from ..sites.project_site import frame_in_project
 from ..sites.site_crs import crs_name
 from .errors import ParameterError
@@ -35,10 +36,12 @@ _REAL = QgsProcessingParameterNumber.Type.Double
 def window_parameters() -> list[QgsProcessingParameterDefinition]:
     """Return the parameters that say where the map is and in which frame."""
     return [
-        QgsProcessingParameterPoint(CENTER, "Centre of the window (or choose an extent)", optional=True),
-        QgsProcessingParameterNumber(WIDTH, "Width of the window, along x [m]", _REAL, PAPERS_SIDE_M),
-        QgsProcessingParameterNumber(HEIGHT, "Height of the window, along y [m]", _REAL, PAPERS_SIDE_M),
-        QgsProcessingParameterExtent(EXTENT, "Extent (instead of centre, width and height)", optional=True),
+        QgsProcessingParameterPoint(CENTER, tr("Centre of the window (or choose an extent)"), optional=True),
+        QgsProcessingParameterNumber(WIDTH, tr("Width of the window, along x [m]"), _REAL, PAPERS_SIDE_M),
+        QgsProcessingParameterNumber(HEIGHT, tr("Height of the window, along y [m]"), _REAL, PAPERS_SIDE_M),
+        QgsProcessingParameterExtent(
+            EXTENT, tr("Extent (instead of centre, width and height)"), optional=True
+        ),
         *frame_parameters(),
     ]
 
@@ -52,15 +55,19 @@ def window_problem(parameters: Mapping[str, Any]) -> str:
     """Return what is wrong with the choice of window, or nothing."""
     has_center, has_extent = _given(parameters, CENTER), _given(parameters, EXTENT)
     if has_center and has_extent:
-        return "Both CENTER and EXTENT are given: give one of them, the window cannot be both."
+        return tr("Both CENTER and EXTENT are given: give one of them, the window cannot be both.")
     if not has_center and not has_extent:
-        return (
+        return tr(
             "Neither CENTER nor EXTENT is given: give the centre of the window with WIDTH and HEIGHT in "
             "metres, or an extent."
         )
     for side in (WIDTH, HEIGHT):
         if not _is_number(parameters.get(side, PAPERS_SIDE_M)):
-            return f"{side} is {parameters[side]}: give a finite number of metres."
+            return tr(
+                "{side} is {length}: give a finite number of metres.",
+                side=side,
+                length=parameters[side],
+            )
     return ""
 
 
@@ -81,7 +88,13 @@ def site_frame(
         origin = (point.x(), point.y())
     degrees = algorithm.parameterAsDouble(parameters, ROTATION, context)
     if not all(math.isfinite(number) for number in (*origin, degrees)):
-        raise ParameterError(f"ORIGIN {origin} or ROTATION {degrees} is not finite: give numbers.")
+        raise ParameterError(
+            tr(
+                "ORIGIN {origin} or ROTATION {degrees} is not finite: give numbers.",
+                origin=origin,
+                degrees=degrees,
+            )
+        )
     return SiteFrame(name, origin, math.radians(degrees))
 
 
@@ -103,7 +116,12 @@ def map_window(
         outline = algorithm.parameterAsExtentGeometry(parameters, EXTENT, context, crs)
         corners = frame.to_site([(vertex.x(), vertex.y()) for vertex in outline.vertices()])
         if not len(corners):
-            raise ParameterError(f"EXTENT {parameters[EXTENT]} is no extent: write 'xmin,xmax,ymin,ymax'.")
+            raise ParameterError(
+                tr(
+                    "EXTENT {extent} is no extent: write 'xmin,xmax,ymin,ymax'.",
+                    extent=parameters[EXTENT],
+                )
+            )
         return Window.from_bounds(*_rounded(corners.min(axis=0)), *_rounded(corners.max(axis=0)))
     center = algorithm.parameterAsPoint(parameters, CENTER, context, crs)
     ((x, y),) = frame.to_site([(center.x(), center.y())])
@@ -118,19 +136,19 @@ def map_window(
 def _frame_parameters() -> list[QgsProcessingParameterDefinition]:
     return [
         QgsProcessingParameterCrs(
-            SITE_CRS, "Site CRS, in metres (default: the project's, else the layers')", optional=True
+            SITE_CRS, tr("Site CRS, in metres (default: the project's, else the layers')"), optional=True
         ),
         QgsProcessingParameterPoint(
-            ORIGIN, "Origin of the site frame (default: as the project has it, else 0,0)", optional=True
+            ORIGIN, tr("Origin of the site frame (default: as the project has it, else 0,0)"), optional=True
         ),
         QgsProcessingParameterNumber(
             ROTATION,
-            "Rotation of the site frame, counter-clockwise from the CRS's x axis [degrees]",
+            tr("Rotation of the site frame, counter-clockwise from the CRS's x axis [degrees]"),
             _REAL,
             optional=True,
         ),
         QgsProcessingParameterBoolean(
-            LOCAL, "Layers without a CRS are already in the site frame's metres", defaultValue=False
+            LOCAL, tr("Layers without a CRS are already in the site frame's metres"), defaultValue=False
         ),
     ]
 

@@ -14,6 +14,7 @@ from qgis.core import (
 )
 
 from ...robot_bridge.robotmap.exporters.masks import MaskArea
+from ..language import tr
 from ..sites.feature_filter import FeatureFilter
 from ..sites.placing import PlacingError, SitePlacing
 from ..sites.shapes import Shape, polygons_of, shapes_of
@@ -42,19 +43,32 @@ def areas_of(
     for feature in source.getFeatures():
         if feedback.isCanceled():
             break
-        name = f"Layer {source.sourceName()}, feature {feature.id()}"
+        name = tr("Layer {sourcename}, feature {id}", sourcename=source.sourceName(), id=feature.id())
         doubts: list[str] = []
         if counted is not None and not counted.keeps(feature, doubts):
             warnings += [f"{name}: {doubt}" for doubt in doubts]
             continue
         limit = math.nan if speed is None else speed(feature)
         if speed is not None and not 0 < limit < math.inf:
-            warnings.append(f"{name}: it has no speed above 0 m/s, so it sets no limit; it is left out")
+            warnings.append(
+                tr(
+                    "{name}: it has no speed above 0 m/s, so it sets no limit; it is left out",
+                    name=name,
+                )
+            )
             continue
         try:
             shapes, notes = _shapes(feature, placing)
         except PlacingError as error:
-            shapes, notes = [], [f"cannot be transformed into the site's CRS ({error}); it is left out"]
+            shapes, notes = (
+                [],
+                [
+                    tr(
+                        "cannot be transformed into the site's CRS ({error}); it is left out",
+                        error=error,
+                    )
+                ],
+            )
         warnings += [f"{name}: {note}" for note in notes]
         areas += [
             MaskArea([placing.to_site(ring) for ring in rings], name, limit) for rings in polygons_of(shapes)
@@ -71,7 +85,13 @@ def speed_by(text: str, source: QgsProcessingFeatureSource, context: QgsExpressi
     context.setFields(source.fields())
     if expression.hasParserError() or not expression.prepare(context):
         reason = expression.parserErrorString() or expression.evalErrorString()
-        raise ParameterError(f"SPEED {text!r} is no expression ({reason}): write a field's name or a number.")
+        raise ParameterError(
+            tr(
+                "SPEED {text!r} is no expression ({reason}): write a field's name or a number.",
+                text=text,
+                reason=reason,
+            )
+        )
 
     def speed(feature: QgsFeature) -> float:
         context.setFeature(feature)
@@ -87,5 +107,5 @@ def speed_by(text: str, source: QgsProcessingFeatureSource, context: QgsExpressi
 def _shapes(feature: QgsFeature, placing) -> tuple[Sequence[Shape], list[str]]:
     geometry = feature.geometry()
     if geometry.isNull() or geometry.isEmpty():
-        return [], ["has no geometry; it is left out"]
+        return [], [tr("has no geometry; it is left out")]
     return shapes_of(placing.to_metres(geometry))

@@ -10,6 +10,7 @@ from ...robot_bridge.robotmap.model import Border
 from ...robot_bridge.robotmap.outlines import Outlines
 from ...robot_bridge.robotmap.shaping import Shaping, shaped
 from ...robot_bridge.robotmap.window import Window
+from ..language import tr
 from ..sites.reading import Reading, read_outlines
 from .export_plan import ObstaclePlan
 
@@ -38,14 +39,22 @@ def _reduced(
     outlines: Outlines, shaping: Shaping, area: Window, feedback: QgsProcessingFeedback
 ) -> Outlines | None:
     """Return the reduced outlines, None after a cancel; say what is other in ``area`` for it."""
-    feedback.setProgressText("Reducing obstacles")
+    feedback.setProgressText(tr("Reducing obstacles"))
     try:
         made = shaped(outlines, shaping, lambda share: feedback.setProgress(100 * share), feedback.isCanceled)
     except CancelledError:
         return None
     before, after = (_counts(some, area) for some in (outlines, made))
     # Fewer walls can be more obstacles: what is left of a ring is open chains.
-    feedback.pushInfo(f"{before[0]} obstacles with {before[1]} segments became {after[0]} with {after[1]}")
+    feedback.pushInfo(
+        tr(
+            "{obstacles} obstacles with {segments} segments became {obstacles_left} with {segments_left}",
+            obstacles=before[0],
+            segments=before[1],
+            obstacles_left=after[0],
+            segments_left=after[1],
+        )
+    )
     return made
 
 

@@ -7,7 +7,10 @@ from pathlib import Path
 from qgis.core import QgsProcessingProvider
 from qgis.PyQt.QtGui import QIcon
 
+from .as_placed_report import AsPlacedReport
+from .assign_cones import AssignCones
 from .build_road_network import BuildRoadNetwork
+from .build_road_surfaces import BuildRoadSurfaces
 from .check_road_network import CheckRoadNetwork
 from .check_robot_map import CheckRobotMap
 from .cone_layout import ConeLayout
@@ -18,6 +21,8 @@ from .find_route import FindRoute
 from .import_cone_layout import ImportConeLayout
 from .load_robot_map import LoadRobotMap
 from .publish_site import PublishSite
+from .surface_at_point import SurfaceAtPoint
+from .trajectories import Trajectories
 
 ICON = Path(__file__).parents[2] / "resources" / "icons" / "fleet.svg"
 
@@ -44,5 +49,10 @@ class FleetProvider(QgsProcessingProvider):
         self.addAlgorithm(BuildRoadNetwork())
         self.addAlgorithm(CheckRoadNetwork())
         self.addAlgorithm(FindRoute())
+        self.addAlgorithm(BuildRoadSurfaces())
+        self.addAlgorithm(SurfaceAtPoint())
         self.addAlgorithm(ConeLayout())
         self.addAlgorithm(ImportConeLayout())
+        self.addAlgorithm(AssignCones())
+        self.addAlgorithm(Trajectories())
+        self.addAlgorithm(AsPlacedReport())

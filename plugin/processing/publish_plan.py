@@ -25,6 +25,7 @@ from ...robot_bridge.sites.settings import (
     earlier_settings,
 )
 from ...robot_bridge.sites.settings_toml import value_text
+from ..language import tr
 from ..sites.content_reading import SiteSources, check_content_sources
 from ..sites.errors import LayerTypeError
 from ..sites.obstacle_source import Setups, obstacle_sources
@@ -100,8 +101,10 @@ def publish_plan(
     sources = _sources(algorithm, parameters, context)
     if not sources.all():
         raise ParameterError(
-            "There is nothing to publish: no layer is given and no layer of the project has a role. Give "
-            "roles (Fleet Supervisor > Layer roles), a PROFILE, or layers."
+            tr(
+                "There is nothing to publish: no layer is given and no layer of the project has a role. "
+                "Give roles (Fleet Supervisor > Layer roles), a PROFILE, or layers."
+            )
         )
     crs = site_crs(algorithm, parameters, context, sources.all())
     _check_published_crs(crs)
@@ -139,8 +142,12 @@ def _layers(algorithm, parameters: Parameters, context, name: str, setups: Setup
     for value in values if isinstance(values, (list, tuple)) else [values]:
         if isinstance(value, str) and QgsProcessingUtils.mapLayerFromString(value, context) is None:
             raise LayerTypeError(
-                f"{name}: the layer {value} cannot be opened: check the file, and the layer's name after "
-                "'|layername='."
+                tr(
+                    "{name}: the layer {layer} cannot be opened: check the file, and the layer's name after "
+                    "'|layername='.",
+                    name=name,
+                    layer=value,
+                )
             )
     layers = algorithm.parameterAsLayerList(parameters, name, context)
     _check_vectors(layers)
@@ -157,16 +164,31 @@ def _project_layers(project, roles: Sequence[str], setups: Setups) -> list[QgsVe
 def _check_vectors(layers: Sequence[QgsMapLayer]) -> None:
     for layer in layers:
         if not isinstance(layer, QgsVectorLayer):
-            raise LayerTypeError(f"The layer {layer.name()} is no vector layer: take its role away.")
+            raise LayerTypeError(
+                tr(
+                    "The layer {layer} is no vector layer: take its role away.",
+                    layer=layer.name(),
+                )
+            )
 
 
 def _check_published_crs(crs: QgsCoordinateReferenceSystem) -> None:
     if crs.isValid() and not is_engineering(crs) and crs.authid() and not crs.authid().startswith("USER:"):
         return
-    named = f"The site's CRS, {crs_name(crs)}," if crs.isValid() else "The site's CRS is not known, and"
+    named = (
+        tr(
+            "The site's CRS, {crs_name},",
+            crs_name=crs_name(crs),
+        )
+        if crs.isValid()
+        else tr("The site's CRS is not known, and")
+    )
     raise ParameterError(
-        f"{named} has no code that a gateway knows it by: choose SITE_CRS such as EPSG:32633. Layers in "
-        "local metres can be published with ORIGIN and LOCAL=true."
+        tr(
+            "{named} has no code that a gateway knows it by: choose SITE_CRS such as EPSG:32633. Layers in "
+            "local metres can be published with ORIGIN and LOCAL=true.",
+            named=named,
+        )
     )
 
 
@@ -206,7 +228,13 @@ def _number(text: str, place: str) -> float:
     try:
         return float(text.replace("_", ""))
     except ValueError:
-        raise ParameterError(f"{place} = {text} is no number: correct it there.") from None
+        raise ParameterError(
+            tr(
+                "{place} = {text} is no number: correct it there.",
+                place=place,
+                text=text,
+            )
+        ) from None
 
 
 def _names(algorithm, parameters: Parameters, context) -> tuple[str, str]:
@@ -217,8 +245,11 @@ def _names(algorithm, parameters: Parameters, context) -> tuple[str, str]:
     )
     if not name:
         raise ParameterError(
-            f"SITE_ID is empty and the project has no variable {SITE_VARIABLE}: give the site an id of "
-            "letters, digits, '_', '.' and '-', such as north_yard."
+            tr(
+                "SITE_ID is empty and the project has no variable {site_variable}: give the site an id of "
+                "letters, digits, '_', '.' and '-', such as north_yard.",
+                site_variable=SITE_VARIABLE,
+            )
         )
     title = project.title() if project is not None else ""
     return name, algorithm.parameterAsString(parameters, SITE_NAME, context) or title or name
@@ -230,7 +261,12 @@ def _bounds(algorithm, parameters: Parameters, context, site: SitePlacing) -> Bo
     outline = algorithm.parameterAsExtentGeometry(parameters, BOUNDS, context, site.crs)
     corners = site.frame.to_site([(vertex.x(), vertex.y()) for vertex in outline.vertices()])
     if not len(corners):
-        raise ParameterError(f"BOUNDS {parameters[BOUNDS]} is no extent: write 'xmin,xmax,ymin,ymax'.")
+        raise ParameterError(
+            tr(
+                "BOUNDS {bounds} is no extent: write 'xmin,xmax,ymin,ymax'.",
+                bounds=parameters[BOUNDS],
+            )
+        )
     low, high = corners.min(axis=0).round(3), corners.max(axis=0).round(3)
     return Bounds(float(low[0]), float(low[1]), float(high[0]), float(high[1]))
 
@@ -238,5 +274,11 @@ def _bounds(algorithm, parameters: Parameters, context, site: SitePlacing) -> Bo
 def _above_zero(algorithm, parameters: Parameters, context, name: str) -> float:
     value = algorithm.parameterAsDouble(parameters, name, context)
     if not 0 < value < math.inf:
-        raise ParameterError(f"{name} is {value}: give a number of metres above 0.")
+        raise ParameterError(
+            tr(
+                "{name} is {value}: give a number of metres above 0.",
+                name=name,
+                value=value,
+            )
+        )
     return value

@@ -20,6 +20,7 @@ from qgis.core import (
 
 from ...robot_bridge.sites.settings import Bounds, LivenessLimits, SiteSettings
 from ..errors import FleetError
+from ..language import tr
 from ..sites.content_reading import read_content
 from ..sites.ground_reading import DEFAULT_WIDTH_M
 from ..sites.publication import next_version, publish
@@ -46,18 +47,18 @@ from .publish_plan import (
 )
 
 LAYER_TITLES = {
-    "OBSTACLES": "Obstacle layers, stairs, ramps and furniture (default: the project's with such a role)",
-    "ROAD_CENTRELINES": "Road centreline layers (default: the project's with that role)",
-    "ROAD_SURFACES": "Road surface layers (default: the project's with that role)",
-    "KEEPOUTS": "Keepout layers (default: the project's with that role)",
+    "OBSTACLES": tr("Obstacle layers, stairs, ramps and furniture (default: the project's with such a role)"),
+    "ROAD_CENTRELINES": tr("Road centreline layers (default: the project's with that role)"),
+    "ROAD_SURFACES": tr("Road surface layers (default: the project's with that role)"),
+    "KEEPOUTS": tr("Keepout layers (default: the project's with that role)"),
 }
 NUMBERS = {
-    "VERSION": "Version of the site",
-    "OBSTACLE_COUNT": "Obstacle outlines",
-    "CENTRELINE_COUNT": "Road centrelines",
-    "SURFACE_COUNT": "Road surfaces",
-    "KEEPOUT_COUNT": "Keepouts",
-    "WARNING_COUNT": "Warnings",
+    "VERSION": tr("Version of the site"),
+    "OBSTACLE_COUNT": tr("Obstacle outlines"),
+    "CENTRELINE_COUNT": tr("Road centrelines"),
+    "SURFACE_COUNT": tr("Road surfaces"),
+    "KEEPOUT_COUNT": tr("Keepouts"),
+    "WARNING_COUNT": tr("Warnings"),
 }
 ID = "ID"
 
@@ -68,22 +69,22 @@ _LIMITS = LivenessLimits()
 class PublishSite(FleetAlgorithm):
     """Publishes the project's layers as the site that a gateway serves (design, section 3)."""
 
-    GROUP = ("sites", "Sites")
+    GROUP = ("sites", tr("Sites"))
     NAME = "publishsite"
-    TITLE = "Publish site"
-    SUMMARY = "Writes the layers of a site, by their roles, into the folder that a gateway serves."
+    TITLE = tr("Publish site")
+    SUMMARY = tr("Writes the layers of a site, by their roles, into the folder that a gateway serves.")
     HELP = HELP
     ICON = "publish_site.svg"
     TAGS = ("gateway", "site", "publish", "obstacle", "road", "keepout", "qgis_process")
 
     def initAlgorithm(self, configuration=None):
         site = [
-            QgsProcessingParameterString(SITE_ID, "Site id (default: the project's)", optional=True),
+            QgsProcessingParameterString(SITE_ID, tr("Site id (default: the project's)"), optional=True),
             QgsProcessingParameterString(
-                SITE_NAME, "Site name (default: the project's title)", optional=True
+                SITE_NAME, tr("Site name (default: the project's title)"), optional=True
             ),
             QgsProcessingParameterExtent(
-                BOUNDS, "Where robots may be sent (default: all that is published)", optional=True
+                BOUNDS, tr("Where robots may be sent (default: all that is published)"), optional=True
             ),
         ]
         for parameter in (
@@ -92,10 +93,10 @@ class PublishSite(FleetAlgorithm):
             *site,
             *_value_parameters(),
             *frame_parameters(),
-            QgsProcessingParameterFolderDestination(FOLDER, "Folder of the published site"),
+            QgsProcessingParameterFolderDestination(FOLDER, tr("Folder of the published site")),
         ):
             self.addParameter(parameter)
-        self.addOutput(QgsProcessingOutputString(ID, "Id of the site"))
+        self.addOutput(QgsProcessingOutputString(ID, tr("Id of the site")))
         for name, description in NUMBERS.items():
             self.addOutput(QgsProcessingOutputNumber(name, description))
 
@@ -130,9 +131,18 @@ class PublishSite(FleetAlgorithm):
         groups = (content.obstacles, content.centrelines, content.surfaces, content.keepouts)
         figures = (settings.version, *map(len, groups), len(content.warnings))
         feedback.pushInfo(
-            f"Site {settings.id} version {settings.version} is published in {plan.folder}: "
-            f"{figures[1]} obstacle outlines, {figures[2]} centrelines, {figures[3]} road surfaces, "
-            f"{figures[4]} keepouts; bounds {', '.join(f'{edge:.10g}' for edge in settings.bounds)} m"
+            tr(
+                "Site {id} version {version} is published in {folder}: {outlines} obstacle outlines, "
+                "{centrelines} centrelines, {surfaces} road surfaces, {keepouts} keepouts; bounds {bounds} m",
+                id=settings.id,
+                version=settings.version,
+                folder=plan.folder,
+                outlines=figures[1],
+                centrelines=figures[2],
+                surfaces=figures[3],
+                keepouts=figures[4],
+                bounds=", ".join(f"{edge:.10g}" for edge in settings.bounds),
+            )
         )
         return {FOLDER: str(plan.folder), ID: settings.id, **dict(zip(NUMBERS, figures, strict=True))}
 
@@ -146,8 +156,10 @@ def _all_of(content: SiteContent) -> Bounds:
     extent = content.extent
     if extent is None:
         raise ParameterError(
-            "There is nothing to publish: the layers hold nothing that can be read. See the warnings, or "
-            "give BOUNDS to publish an empty site."
+            tr(
+                "There is nothing to publish: the layers hold nothing that can be read. See the warnings, "
+                "or give BOUNDS to publish an empty site."
+            )
         )
     x_min, y_min, x_max, y_max = extent
     x_low, y_low = math.floor(x_min), math.floor(y_min)
@@ -166,25 +178,34 @@ def _layer_parameters() -> list[QgsProcessingParameterDefinition]:
 
 def _value_parameters() -> list[QgsProcessingParameterDefinition]:
     numbers = (
-        (DEFAULT_HEIGHT, "Height where none is known [m]", 3.0),
-        (DEFAULT_WIDTH, "Width of a road where none is known [m]", DEFAULT_WIDTH_M),
+        (DEFAULT_HEIGHT, tr("Height where none is known [m]"), 3.0),
+        (DEFAULT_WIDTH, tr("Width of a road where none is known [m]"), DEFAULT_WIDTH_M),
     )
     limits = (
-        (TOLERANCE, "A target is reached within [m]", SiteSettings.reached_tolerance_m),
-        (STALE_AFTER, "A robot is stale without a message for [s]", _LIMITS.stale_after_s),
-        (LOST_AFTER, "A robot is lost without a message for [s]", _LIMITS.lost_after_s),
+        (TOLERANCE, tr("A target is reached within [m]"), SiteSettings.reached_tolerance_m),
+        (STALE_AFTER, tr("A robot is stale without a message for [s]"), _LIMITS.stale_after_s),
+        (LOST_AFTER, tr("A robot is lost without a message for [s]"), _LIMITS.lost_after_s),
     )
     parameters: list[QgsProcessingParameterDefinition] = [
         QgsProcessingParameterNumber(name, title, _REAL, default) for name, title, default in numbers
     ]
     parameters += [
         QgsProcessingParameterNumber(
-            name, f"{title} (default: as published, at first {default:g})", _REAL, optional=True
+            name,
+            tr(
+                "{title} (default: as published, at first {default:g})",
+                title=title,
+                default=default,
+            ),
+            _REAL,
+            optional=True,
         )
         for name, title, default in limits
     ]
     parameters.append(
-        QgsProcessingParameterBoolean(REPLACE, "Replace the publication of another site", defaultValue=False)
+        QgsProcessingParameterBoolean(
+            REPLACE, tr("Replace the publication of another site"), defaultValue=False
+        )
     )
     for parameter in parameters[2:]:
         parameter.setFlags(parameter.flags() | QgsProcessingParameterDefinition.Flag.FlagAdvanced)

@@ -23,6 +23,7 @@ from ...robot_bridge.roads.findings import Finding
 from ...robot_bridge.roads.network import Network, build_network
 from ...robot_bridge.roads.repairs import repaired_network
 from ...robot_bridge.sites.frame import SiteFrame
+from ..language import tr
 from ..sites.ground_reading import DEFAULT_WIDTH_M, lines_of
 from ..sites.layer_rules import LayerRules
 from ..sites.placing import LayerPlacing, PlacingError, SitePlacing
@@ -38,12 +39,12 @@ WARNING_COUNT = "WARNING_COUNT"
 
 _REAL = QgsProcessingParameterNumber.Type.Double
 _EXPRESSIONS = {
-    "WIDTH": "Width of each road [m] (default: the layer's role, else a field width_m or width)",
-    "SURFACE": "Surface of each road (default: the layer's role, else a field surface)",
-    "DIRECTION": "Direction: yes along the line, -1 against it, no both (default: a field oneway, ...)",
-    "SPEED": "Speed on each road [m/s] (default: a field speed_ms, or maxspeed in km/h)",
-    "CLOSED": "Whether each road is closed (default: a field closed)",
-    "LEVEL": "Level of each road, 0 on the ground (default: fields level, layer, bridge, tunnel)",
+    "WIDTH": tr("Width of each road [m] (default: the layer's role, else a field width_m or width)"),
+    "SURFACE": tr("Surface of each road (default: the layer's role, else a field surface)"),
+    "DIRECTION": tr("Direction: yes along the line, -1 against it, no both (default: a field oneway, ...)"),
+    "SPEED": tr("Speed on each road [m/s] (default: a field speed_ms, or maxspeed in km/h)"),
+    "CLOSED": tr("Whether each road is closed (default: a field closed)"),
+    "LEVEL": tr("Level of each road, 0 on the ground (default: fields level, layer, bridge, tunnel)"),
 }
 _ROLE = {"width": "width", "surface": "semantics"}
 """Expressions that a layer's role has for the attributes of a road."""
@@ -51,13 +52,17 @@ _ROLE = {"width": "width", "surface": "semantics"}
 
 @dataclass
 class RoadReading:
-    """Roads in metres; road ``k`` is a part of feature ``features[k]``."""
+    """Roads in metres; road ``k`` is a part of feature ``features[k]``.
+
+    ``without_width`` holds the roads whose width is not known and taken as the default one.
+    """
 
     roads: Centrelines
     features: list[int]
     crs: QgsCoordinateReferenceSystem
     placing: LayerPlacing
     warnings: list[str] = field(default_factory=list)
+    without_width: list[int] = field(default_factory=list)
 
 
 def road_parameters() -> list[QgsProcessingParameterDefinition]:
@@ -69,29 +74,29 @@ def road_parameters() -> list[QgsProcessingParameterDefinition]:
     advanced += [
         QgsProcessingParameterNumber(
             DEFAULT_WIDTH,
-            "Width of roads of which it is not known [m]",
+            tr("Width of roads of which it is not known [m]"),
             _REAL,
             DEFAULT_WIDTH_M,
             minValue=0.01,
         ),
         QgsProcessingParameterNumber(
             SPEED_DEFAULT,
-            "Speed on roads of which it is not known [m/s]",
+            tr("Speed on roads of which it is not known [m/s]"),
             _REAL,
             DEFAULT_SPEED,
             minValue=0.01,
         ),
         QgsProcessingParameterCrs(
-            SITE_CRS, "CRS in metres (default: the layer's, or the project's)", optional=True
+            SITE_CRS, tr("CRS in metres (default: the layer's, or the project's)"), optional=True
         ),
     ]
     for parameter in advanced:
         parameter.setFlags(parameter.flags() | QgsProcessingParameterDefinition.Flag.FlagAdvanced)
     lines = [QgsProcessing.SourceType.TypeVectorLine]
     return [
-        QgsProcessingParameterFeatureSource(ROADS, "Road centrelines", lines),
+        QgsProcessingParameterFeatureSource(ROADS, tr("Road centrelines"), lines),
         QgsProcessingParameterNumber(
-            TOLERANCE, "Ends this near to a road were meant to meet it [m]", _REAL, 0.5, minValue=0.0
+            TOLERANCE, tr("Ends this near to a road were meant to meet it [m]"), _REAL, 0.5, minValue=0.0
         ),
         *advanced,
     ]
@@ -100,7 +105,7 @@ def road_parameters() -> list[QgsProcessingParameterDefinition]:
 def repair_parameter() -> QgsProcessingParameterDefinition:
     """Return the parameter that asks for repairs."""
     return QgsProcessingParameterBoolean(
-        REPAIR, "Repair: close gaps, cut overshoots, leave out what is drawn twice", defaultValue=False
+        REPAIR, tr("Repair: close gaps, cut overshoots, leave out what is drawn twice"), defaultValue=False
     )
 
 
@@ -126,7 +131,10 @@ class RoadSource:
         source = self._algorithm.parameterAsSource(self._parameters, ROADS, self._context)
         if source is None:
             raise ParameterError(
-                f"ROADS {self._parameters.get(ROADS)} cannot be opened: check the file and the layer's name."
+                tr(
+                    "ROADS {roads} cannot be opened: check the file and the layer's name.",
+                    roads=self._parameters.get(ROADS),
+                )
             )
         crs = self._crs(source)
         site = SitePlacing(crs, SiteFrame("", (0.0, 0.0)), self._context.transformContext())
@@ -138,7 +146,10 @@ class RoadSource:
         if self._parameters.get(SITE_CRS) and not chosen.isValid():
             given = self._parameters[SITE_CRS]
             raise ParameterError(
-                f"SITE_CRS {given} is no CRS that QGIS knows: write a code such as EPSG:32633."
+                tr(
+                    "SITE_CRS {given} is no CRS that QGIS knows: write a code such as EPSG:32633.",
+                    given=given,
+                )
             )
         own = source.sourceCrs()
         if not chosen.isValid() and own.isValid() and not own.isGeographic():
@@ -168,9 +179,18 @@ class RoadSource:
                 known += [road_rules.of(notes)] * len(found)
             lines += found
             features += [feature.id()] * len(found)
-            warnings += [f"Layer {name}, feature {feature.id()}: {note}" for note in notes]
+            warnings += [
+                tr(
+                    "Layer {name}, feature {id}: {note}",
+                    name=name,
+                    id=feature.id(),
+                    note=note,
+                )
+                for note in notes
+            ]
         reading = RoadReading(self._columns(lines, known, name, warnings), features, crs, placing, warnings)
         reading.warnings += rules.warnings
+        reading.without_width += [k for k, one in enumerate(known) if one.width is None]
         return reading
 
     def _columns(self, lines, known: list[RoadAttributes], name: str, warnings: list[str]) -> Centrelines:
@@ -178,9 +198,18 @@ class RoadSource:
             self._algorithm.parameterAsDouble(self._parameters, key, self._context)
             for key in (DEFAULT_WIDTH, SPEED_DEFAULT)
         )
+        # Not every algorithm asks how fast roads are driven.
+        speed = speed or DEFAULT_SPEED
         unknown = sum(one.width is None for one in known)
         if unknown:
-            warnings.append(f"Layer {name}: the width of {unknown} roads is not known; {width:g} m is used")
+            warnings.append(
+                tr(
+                    "Layer {name}: the width of {unknown} roads is not known; {width:g} m is used",
+                    name=name,
+                    unknown=unknown,
+                    width=width,
+                )
+            )
         return centrelines(
             lines,
             width=[one.width or width for one in known],
@@ -195,12 +224,17 @@ class RoadSource:
 def _lines_in_metres(feature, placing: LayerPlacing, notes: list[str]) -> list[np.ndarray]:
     geometry = feature.geometry()
     if geometry.isNull() or geometry.isEmpty():
-        notes.append("has no geometry; it is left out")
+        notes.append(tr("has no geometry; it is left out"))
         return []
     try:
         return lines_of(placing.to_metres(geometry), notes)
     except PlacingError as error:
-        notes.append(f"cannot be transformed into the CRS in metres ({error}); it is left out")
+        notes.append(
+            tr(
+                "cannot be transformed into the CRS in metres ({error}); it is left out",
+                error=error,
+            )
+        )
         return []
 
 
@@ -217,5 +251,13 @@ def network_of_roads(
     for repair in repairs:
         feature, text = reading.features[repair.road], repair.told(reading.features)
         where = f"({repair.x:.3f}, {repair.y:.3f})"
-        feedback.pushInfo(f"Repaired: {repair.kind.value} of feature {feature} at {where}: {text}")
+        feedback.pushInfo(
+            tr(
+                "Repaired: {kind} of feature {feature} at {where}: {text}",
+                kind=repair.kind.value,
+                feature=feature,
+                where=where,
+                text=text,
+            )
+        )
     return network, repairs

@@ -17,6 +17,7 @@ from qgis.core import (
     QgsProcessingFeedback,
 )
 
+from ..language import tr
 from .whole_file import OutputError
 
 AT_ONCE = 1000
@@ -60,8 +61,11 @@ def fill(
         features = [_feature(fields, *row) for row in rows[start : start + AT_ONCE]]
         if not sink.addFeatures(features, QgsFeatureSink.Flag.FastInsert):
             raise OutputError(
-                f"A layer cannot be written ({sink.lastError() or 'no reason is given'}): choose another "
-                "place or format for it, and check the free space."
+                tr(
+                    "A layer cannot be written ({reason}): choose another place or format for it, and check "
+                    "the free space.",
+                    reason=sink.lastError() or "no reason is given",
+                )
             )
     return True
 

@@ -7,6 +7,7 @@ from qgis.PyQt.QtGui import QImage, QPainter
 from qgis.PyQt.QtSvg import QSvgRenderer
 
 from ..errors import FleetError
+from ..language import tr
 
 _SHARPNESS = 2
 """Pixels of the picture for each of the SVG, so that it can be printed."""
@@ -21,7 +22,9 @@ def png_of(svg: bytes) -> bytes:
     renderer = QSvgRenderer(QByteArray(svg))
     image = QImage(renderer.defaultSize() * _SHARPNESS, QImage.Format.Format_RGB32)
     if not renderer.isValid() or image.isNull():
-        raise PictureError("Qt cannot draw the picture of this map: choose svg and open that in a browser.")
+        raise PictureError(
+            tr("Qt cannot draw the picture of this map: choose svg and open that in a browser.")
+        )
     image.fill(Qt.GlobalColor.white)
     painter = QPainter(image)
     renderer.render(painter)

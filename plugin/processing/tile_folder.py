@@ -7,6 +7,7 @@ import shutil
 from contextlib import suppress
 from pathlib import Path
 
+from ..language import tr
 from .whole_file import OutputError
 
 
@@ -36,7 +37,12 @@ class TileFolder:
     def add(self, name: str, content: bytes) -> None:
         """Keep ``content`` to become the file ``name``."""
         if (self.target / name).is_dir():
-            raise OutputError(f"{self.target / name} is a folder: choose another folder for the tiles.")
+            raise OutputError(
+                tr(
+                    "{path} is a folder: choose another folder for the tiles.",
+                    path=self.target / name,
+                )
+            )
         try:
             (self._stage / name).write_bytes(content)
         except OSError as error:
@@ -62,6 +68,10 @@ class TileFolder:
 
     def _failed(self, error: OSError) -> OutputError:
         return OutputError(
-            f"The tiles cannot be written to {self.target}: {error.strerror or error}. Choose a folder that "
-            "may be written to, and check the free space."
+            tr(
+                "The tiles cannot be written to {folder}: {reason}. Choose a folder that may be written to, "
+                "and check the free space.",
+                folder=self.target,
+                reason=error.strerror or error,
+            )
         )

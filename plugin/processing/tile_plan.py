@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from qgis.core import QgsFeature, QgsProcessingAlgorithm, QgsProcessingContext
 
+from ..language import tr
 from ..sites.feature_filter import FeatureFilter
 from ..sites.placing import PlacingError, SitePlacing
 from ..sites.shapes import shapes_of
@@ -36,9 +37,11 @@ def tiles_problem(parameters: Mapping[str, Any]) -> str:
     """Return what is wrong with the choice of area, or nothing."""
     has_extent, has_route = (parameters.get(name) not in (None, "") for name in (EXTENT, ROUTE))
     if has_extent and has_route:
-        return "Both EXTENT and ROUTE are given: give one of them, for a grid or for tiles along a route."
+        return tr("Both EXTENT and ROUTE are given: give one of them, for a grid or for tiles along a route.")
     if not has_extent and not has_route:
-        return "Neither EXTENT nor ROUTE is given: give an extent for a grid, or a layer of lines to follow."
+        return tr(
+            "Neither EXTENT nor ROUTE is given: give an extent for a grid, or a layer of lines to follow."
+        )
     return ""
 
 
@@ -62,7 +65,7 @@ def tile_plan_of(
         tiles = grid_tiles(area.border, size)
     folder = Path(algorithm.parameterAsFileOutput(parameters, FOLDER, context))
     if folder.exists() and not folder.is_dir():
-        raise ParameterError(f"OUTPUT {folder} is a file: choose a folder for the tiles.")
+        raise ParameterError(tr("OUTPUT {folder} is a file: choose a folder for the tiles.", folder=folder))
     return TilePlan(**vars(plan), tiles=tiles, folder=folder)
 
 
@@ -70,7 +73,12 @@ def _routes(algorithm, parameters, context, site: SitePlacing) -> list[np.ndarra
     """Return each line of ROUTE as (n, 2) metres in the site frame."""
     source = algorithm.parameterAsSource(parameters, ROUTE, context)
     if source is None:
-        raise ParameterError(f"ROUTE {parameters[ROUTE]} cannot be opened: choose a layer of lines.")
+        raise ParameterError(
+            tr(
+                "ROUTE {route} cannot be opened: choose a layer of lines.",
+                route=parameters[ROUTE],
+            )
+        )
     placing = site.of_layer(source.sourceName(), stated_crs(source.sourceCrs()))
     counted = filter_in(algorithm, parameters, ROUTE, context)
     routes = []
@@ -81,8 +89,13 @@ def _routes(algorithm, parameters, context, site: SitePlacing) -> list[np.ndarra
             shapes = shapes_of(placing.to_metres(feature.geometry())).shapes
         except PlacingError as error:
             raise ParameterError(
-                f"ROUTE: feature {feature.id()} of {source.sourceName()} has no place in the site's CRS "
-                f"({error}): correct its geometry or the CRS."
+                tr(
+                    "ROUTE: feature {id} of {sourcename} has no place in the site's CRS ({error}): correct "
+                    "its geometry or the CRS.",
+                    id=feature.id(),
+                    sourcename=source.sourceName(),
+                    error=error,
+                )
             ) from error
         routes += [placing.to_site(shape.points) for shape in shapes]
     return routes
@@ -93,6 +106,11 @@ def _counts(feature: QgsFeature, layer: str, counted: FeatureFilter | None) -> b
     kept = counted is None or counted.keeps(feature, doubts)
     if doubts:
         raise ParameterError(
-            f"ROUTE: feature {feature.id()} of {layer}: {doubts[0]}. Correct the filter of the layer."
+            tr(
+                "ROUTE: feature {id} of {layer}: {doubts}. Correct the filter of the layer.",
+                id=feature.id(),
+                layer=layer,
+                doubts=doubts[0],
+            )
         )
     return kept

@@ -10,6 +10,7 @@ import numpy as np
 
 from ...robot_bridge.robotmap.model import Border
 from ...robot_bridge.robotmap.window import Window
+from ..language import tr
 from .errors import ParameterError
 
 MOST_TILES = 10_000
@@ -39,10 +40,19 @@ class TileSize:
         for name in ("width", "height"):
             value = getattr(self, name)
             if not (math.isfinite(value) and value >= 1.0):
-                raise ParameterError(f"The {name} of a tile is {value} m: give at least 1 m, such as 100.")
+                raise ParameterError(
+                    tr(
+                        "The {name} of a tile is {value} m: give at least 1 m, such as 100.",
+                        name=name,
+                        value=value,
+                    )
+                )
         if not 0.0 <= self.overlap <= 0.9 * min(self.width, self.height):
             raise ParameterError(
-                f"OVERLAP is {self.overlap} m: give 0 or more, and at most nine tenths of a tile's side."
+                tr(
+                    "OVERLAP is {overlap} m: give 0 or more, and at most nine tenths of a tile's side.",
+                    overlap=self.overlap,
+                )
             )
 
 
@@ -92,7 +102,7 @@ def route_tiles(routes: Sequence[np.ndarray], size: TileSize) -> list[Tile]:
                 name = f"route_{len(tiles) + 1:04}"
                 tiles.append(Tile(name, window, route=number, along=round(float(at), 2)))
     if not tiles:
-        raise ParameterError("ROUTE holds no line: choose a layer with the route to export along.")
+        raise ParameterError(tr("ROUTE holds no line: choose a layer with the route to export along."))
     return tiles
 
 
@@ -117,6 +127,10 @@ def _steps(length: float, step: float) -> int:
 def _check_count(count: int) -> None:
     if count > MOST_TILES:
         raise ParameterError(
-            f"That would be {count} tiles, and {MOST_TILES} are the most: choose larger tiles, less overlap "
-            "or a smaller area."
+            tr(
+                "That would be {count} tiles, and {most_tiles} are the most: choose larger tiles, less "
+                "overlap or a smaller area.",
+                count=count,
+                most_tiles=MOST_TILES,
+            )
         )

@@ -7,14 +7,17 @@ from contextlib import suppress
 from pathlib import Path
 
 from ..errors import FleetError
+from ..language import tr
 
 
 class OutputError(FleetError):
     """The output file cannot be written."""
 
 
-def write_whole(target: Path, content: bytes) -> None:
+def write_whole(target: Path, content: bytes, what: str = tr("The robot map")) -> None:
     """Write ``content`` to ``target`` by way of a file beside it: what stood there stays until the end.
+
+    ``what`` it is, is said when it cannot be written.
 
     :raises OutputError: naming the file and what to do; nothing is left behind.
     """
@@ -26,6 +29,11 @@ def write_whole(target: Path, content: bytes) -> None:
         with suppress(OSError):
             part.unlink()
         raise OutputError(
-            f"The robot map cannot be written to {target}: {error.strerror or error}. "
-            "Choose a file in a folder that exists and may be written to."
+            tr(
+                "{what} cannot be written to {target}: {reason}. Choose a file in a folder that exists and "
+                "may be written to.",
+                what=what,
+                target=target,
+                reason=error.strerror or error,
+            )
         ) from error

@@ -17,6 +17,7 @@ from qgis.PyQt.QtGui import QImage
 
 from ...robot_bridge.sites.frame import SiteFrame
 from ..errors import FleetError
+from ..language import tr
 from ..sites.obstacle_source import ObstacleSource, obstacle_sources
 from ..sites.placing import SitePlacing
 from ..sites.project_site import frame_in_project
@@ -96,7 +97,14 @@ class LivePreview(QObject):
             return
         sources = {_key(row): source for row in missing if (source := self._source(row)) is not None}
         known = {_key(row): self._known[_key(row)] for row in wanted if _key(row) in self._known}
-        self.summed.emit(f"Reading {len(sources)} layers …" if sources else summary(list(known.values())))
+        self.summed.emit(
+            tr(
+                "Reading {sources} layers …",
+                sources=len(sources),
+            )
+            if sources
+            else summary(list(known.values()))
+        )
         self._task = PreviewTask(sources, known, site, self._size, self._ratio)
         self._task.measured.connect(self._keep)
         self._task.drawn.connect(self.drawn)

@@ -10,6 +10,7 @@ from qgis.core import QgsFeedback
 
 from ...robot_bridge.robotmap.model import ShapeType
 from ..errors import FleetError
+from ..language import tr
 from ..sites.ground_reading import read_areas, read_centrelines
 from ..sites.obstacle_source import ObstacleSource
 from ..sites.placing import SitePlacing
@@ -78,10 +79,10 @@ def summary(measures: Sequence[Measure]) -> str:
     segments = sum(len(one.segments) for one in measures if one.role in OBSTACLE_ROLES)
     warned = sum(len(one.warnings) for one in measures)
     things = [_counted(number, thing) for thing, number in counted.items()]
-    things[0] += f" of {_counted(segments, 'segment')}"
+    things[0] += tr(" of {counted}", counted=_counted(segments, "segment"))
     refused = sum(bool(one.refused) for one in measures)
     if refused:
-        things.append(f"{_counted(refused, 'layer')} refused")
+        things.append(tr("{counted} refused", counted=_counted(refused, "layer")))
     return ", ".join([*things, _counted(warned, "warning")])
 
 

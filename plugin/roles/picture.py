@@ -9,6 +9,7 @@ from qgis.core import QgsFeedback
 from qgis.PyQt.QtCore import QLineF, QPointF, QSize
 from qgis.PyQt.QtGui import QColor, QImage, QPainter, QPen
 
+from ..language import tr
 from ..sites.roles import FURNITURE, KEEPOUT, OBSTACLE, RAMP, ROAD_CENTRELINE, ROAD_SURFACE, STAIRS
 from .measure import Measure
 
@@ -87,4 +88,4 @@ def _scale_bar(painter: QPainter, size: QSize, scale: float) -> None:
     length, y = metres * scale, size.height() - MARGIN
     painter.setPen(QPen(QColor("#30383f"), 2))
     painter.drawLine(QLineF(MARGIN, y, MARGIN + length, y))
-    painter.drawText(QPointF(MARGIN, y - 5), f"{metres:g} m")
+    painter.drawText(QPointF(MARGIN, y - 5), tr("{metres:g} m", metres=metres))

@@ -9,6 +9,7 @@ from qgis.core import QgsFeedback, QgsTask
 from qgis.PyQt.QtCore import QSize, pyqtSignal
 from qgis.PyQt.QtGui import QImage
 
+from ..language import tr
 from ..sites.obstacle_source import ObstacleSource
 from ..sites.placing import SitePlacing
 from .measure import Measure, measure
@@ -34,7 +35,7 @@ class PreviewTask(QgsTask):
         size: QSize,
         ratio: float,
     ):
-        super().__init__("Preview of the site", QgsTask.Flag.CanCancel)
+        super().__init__(tr("Preview of the site"), QgsTask.Flag.CanCancel)
         self._sources, self._known, self._site = dict(sources), dict(known), site
         self._size, self._ratio = size, ratio
         self._feedback = QgsFeedback()

@@ -10,6 +10,7 @@ from qgis.PyQt import sip
 from qgis.PyQt.QtGui import QIcon
 from qgis.PyQt.QtWidgets import QAction
 
+from ..language import tr
 from .roles_dialog import RolesDialog
 
 ICON = Path(__file__).parents[2] / "resources" / "icons" / "layer_roles.svg"
@@ -21,9 +22,9 @@ class RolesAction:
     def __init__(self, iface: QgisInterface, menu: str):
         self._iface, self._menu = iface, menu
         self._dialog: RolesDialog | None = None
-        self.action = QAction(QIcon(str(ICON)), "Layer roles…", iface.mainWindow())
+        self.action = QAction(QIcon(str(ICON)), tr("Layer roles…"), iface.mainWindow())
         self.action.setObjectName("fleet_layer_roles")
-        self.action.setToolTip("Say what each layer of the project is to robots")
+        self.action.setToolTip(tr("Say what each layer of the project is to robots"))
         self.action.triggered.connect(self.open)
         iface.addPluginToMenu(menu, self.action)
 

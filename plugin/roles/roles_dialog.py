@@ -24,6 +24,7 @@ from qgis.PyQt.QtWidgets import (
 )
 
 from ..errors import FleetError
+from ..language import tr
 from ..sites.profile_file import SUFFIXES, read_profile, shipped_profiles
 from ..sites.roles import keep_setup, setup_of
 from .delegates import ExpressionDelegate, RoleDelegate
@@ -72,7 +73,7 @@ class RolesDialog(QDialog):
     def __init__(self, project: QgsProject, parent: QWidget | None = None):
         super().__init__(parent)
         self.setObjectName("fleet_roles_dialog")
-        self.setWindowTitle("Layer roles")
+        self.setWindowTitle(tr("Layer roles"))
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self._project = project
         self.model = RoleTableModel(rows_of(project), self)
@@ -110,9 +111,23 @@ class RolesDialog(QDialog):
         self.model.set_up(known)
         self._bar.clearWidgets()
         if known:
-            self._bar.pushInfo("", f"{profile.name}: {len(known)} of {len(setups)} layers set up.")
+            self._bar.pushInfo(
+                "",
+                tr(
+                    "{name}: {known} of {setups} layers set up.",
+                    name=profile.name,
+                    known=len(known),
+                    setups=len(setups),
+                ),
+            )
         else:
-            self._bar.pushWarning("", f"{profile.name} knows none of these layers by name and fields.")
+            self._bar.pushWarning(
+                "",
+                tr(
+                    "{name} knows none of these layers by name and fields.",
+                    name=profile.name,
+                ),
+            )
 
     def done(self, result: int) -> None:
         """End the preview whichever way the dialog closes."""
@@ -175,12 +190,12 @@ class RolesDialog(QDialog):
                 continue
             self._profiles.addItem(profile.name, str(file))
             self._profiles.setItemData(self._profiles.count() - 1, profile.about, Qt.ItemDataRole.ToolTipRole)
-        self._apply_profile = QPushButton("Apply profile", self)
+        self._apply_profile = QPushButton(tr("Apply profile"), self)
         self._apply_profile.setObjectName("fleet_roles_apply_profile")
-        self._from_file = QPushButton("Profile from file…", self)
+        self._from_file = QPushButton(tr("Profile from file…"), self)
         self._apply_profile.setEnabled(self._profiles.count() > 0)
         line = QHBoxLayout()
-        line.addWidget(QLabel("Map profile:", self))
+        line.addWidget(QLabel(tr("Map profile:"), self))
         for widget in (self._profiles, self._apply_profile, self._from_file):
             line.addWidget(widget)
         line.addStretch(1)
@@ -220,6 +235,14 @@ class RolesDialog(QDialog):
 
     def _choose_profile(self) -> None:
         kinds = " ".join(f"*{suffix}" for suffix in SUFFIXES)
-        name, _ = QFileDialog.getOpenFileName(self, "Map profile", "", f"Map profile ({kinds})")
+        name, _ = QFileDialog.getOpenFileName(
+            self,
+            tr("Map profile"),
+            "",
+            tr(
+                "Map profile ({kinds})",
+                kinds=kinds,
+            ),
+        )
         if name:
             self.apply_profile(Path(name))

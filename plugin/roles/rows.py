@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 from qgis.core import QgsMapLayer, QgsProject, QgsRasterLayer, QgsVectorLayer, QgsWkbTypes
 
-from ..desk.robot_layer import MARK
+from ..desk.live_layers import MARK
 from ..sites.roles import (
     FURNITURE,
     KEEPOUT,

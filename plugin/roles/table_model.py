@@ -10,24 +10,25 @@ from qgis.PyQt.QtCore import QAbstractTableModel, QModelIndex, Qt, pyqtSignal
 from qgis.PyQt.QtGui import QColor
 
 from ...robot_bridge.robotmap.templates import NAMED
+from ..language import tr
 from ..sites.roles import FURNITURE, OBSTACLE_ROLES, ORTHOPHOTO, ROAD_CENTRELINE, LayerSetup
 from .measure import Measure
 from .picture import COLOURS
 from .rows import RoleRow
 
 TITLES = (
-    "Layer",
-    "Role",
-    "Filter",
-    "Height [m]",
-    "Estimate [m]",
-    "Foot [m]",
-    "Label",
-    "Outdoors",
-    "Width [m]",
-    "Template",
-    "Turned [°]",
-    "Comes to",
+    tr("Layer"),
+    tr("Role"),
+    tr("Filter"),
+    tr("Height [m]"),
+    tr("Estimate [m]"),
+    tr("Foot [m]"),
+    tr("Label"),
+    tr("Outdoors"),
+    tr("Width [m]"),
+    tr("Template"),
+    tr("Turned [°]"),
+    tr("Comes to"),
 )
 LAYER, ROLE, FILTER, HEIGHT, ESTIMATE, BASE, SEMANTICS, OUTDOOR, WIDTH, TEMPLATE, ROTATION, RESULT = range(12)
 WHAT = {
@@ -43,22 +44,28 @@ WHAT = {
     ROTATION: "rotation",
 }
 EXPLANATIONS = {
-    LAYER: "Layers of the project that can have a role",
-    ROLE: "What the layer is to robots and operators",
-    FILTER: "Expression that is true of the features that count, such as \"amenity\" = 'bench'; empty: all",
-    HEIGHT: "Expression for metres from the foot up; empty: the field height or height_m",
-    ESTIMATE: 'Expression for the height where it is not known, such as 3 * "levels"; marked as estimated',
-    BASE: "Expression for metres above the ground where it begins, as of an arch; empty: 0",
-    SEMANTICS: "Expression for the label, such as 'building,' || \"name\"; of a road its surface",
-    OUTDOOR: "Expression for true or false; empty: true",
-    WIDTH: "Expression for the metres across, of a road or of furniture that is points",
-    TEMPLATE: "Expression for the shape that a point of furniture stands for: "
-    f"{', '.join(map(repr, NAMED))}, 'circle 0.6', 'square 1' or 'rectangle 2 0.5'; empty: an octagon of its "
-    "width",
-    ROTATION: "Expression for the degrees clockwise that the template is turned; empty: 0",
-    RESULT: "What is published of the layer",
+    LAYER: tr("Layers of the project that can have a role"),
+    ROLE: tr("What the layer is to robots and operators"),
+    FILTER: tr(
+        "Expression that is true of the features that count, such as \"amenity\" = 'bench'; empty: all"
+    ),
+    HEIGHT: tr("Expression for metres from the foot up; empty: the field height or height_m"),
+    ESTIMATE: tr(
+        'Expression for the height where it is not known, such as 3 * "levels"; marked as estimated'
+    ),
+    BASE: tr("Expression for metres above the ground where it begins, as of an arch; empty: 0"),
+    SEMANTICS: tr("Expression for the label, such as 'building,' || \"name\"; of a road its surface"),
+    OUTDOOR: tr("Expression for true or false; empty: true"),
+    WIDTH: tr("Expression for the metres across, of a road or of furniture that is points"),
+    TEMPLATE: tr(
+        "Expression for the shape that a point of furniture stands for: {shapes}, 'circle 0.6', 'square 1' "
+        "or 'rectangle 2 0.5'; empty: an octagon of its width",
+        shapes=", ".join(map(repr, NAMED)),
+    ),
+    ROTATION: tr("Expression for the degrees clockwise that the template is turned; empty: 0"),
+    RESULT: tr("What is published of the layer"),
 }
-ROLE_NAMES = {"": "–", ROAD_CENTRELINE: "road centreline", "road_surface": "road surface"}
+ROLE_NAMES = {"": "–", ROAD_CENTRELINE: tr("road centreline"), "road_surface": tr("road surface")}
 
 _GREY, _RED, _AMBER = QColor("#8a949e"), QColor("#c1121f"), QColor("#9a5b00")
 
@@ -177,7 +184,7 @@ class RoleTableModel(QAbstractTableModel):
             return ""
         shown = [found.refused] if found.refused else list(found.warnings[:20])
         more = len(found.warnings) - 20
-        return "\n".join([*shown, f"and {more} more"] if more > 0 else shown)
+        return "\n".join([*shown, tr("and {more} more", more=more)] if more > 0 else shown)
 
     def _colour(self, row: RoleRow, column: int) -> Any:
         found = self._results.get(row.layer_id)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from qgis.core import QgsFeedback
 
-from .ground_reading import check_ground_sources, read_areas, read_centrelines
+from .ground_reading import check_ground_sources, read_areas, read_centrelines, read_surfaces
 from .obstacle_source import ObstacleSource
 from .placing import Bounds, SitePlacing, widened
 from .reading import check_sources, read_outlines
@@ -47,7 +47,7 @@ def read_content(
     near = widened(bounds, BEYOND_M) if bounds is not None else None
     obstacles = read_outlines(sources.obstacles, site, near, default_height, feedback)
     centrelines = read_centrelines(sources.centrelines, site, default_width, feedback)
-    surfaces = read_areas(sources.surfaces, site, ROAD_SURFACE, feedback)
+    surfaces = read_surfaces(sources.surfaces, site, feedback)
     keepouts = read_areas(sources.keepouts, site, KEEPOUT, feedback)
     readings = (obstacles, centrelines, surfaces, keepouts)
     if feedback.isCanceled() or not all(reading.complete for reading in readings):

@@ -10,6 +10,7 @@ import numpy as np
 from qgis.core import QgsAbstractGeometry, QgsFeature, QgsFeedback, QgsGeometry
 
 from ...robot_bridge.roads.centrelines import DEFAULT_SPEED
+from ...robot_bridge.roads.surfaces.surface import DRAWN, GENERATED, Surface
 from ...robot_bridge.sites.features import Area, Centreline
 from .feature_filter import FeatureFilter
 from .layer_rules import LayerRules
@@ -27,7 +28,7 @@ DEFAULT_WIDTH_M = 3.5
 LABEL_FIELDS = {ROAD_CENTRELINE: "surface", ROAD_SURFACE: "surface", KEEPOUT: "name"}
 """The field that labels a feature of each role where no expression does."""
 
-Item = TypeVar("Item", Centreline, Area)
+Item = TypeVar("Item", Centreline, Area, Surface)
 
 
 @dataclass
@@ -95,18 +96,46 @@ def read_areas(
     reading: GroundReading[Area] = GroundReading()
     for source in sources:
         layer = _GroundLayer(source, site, role)
-        for feature, geometry in layer.features(reading, feedback):
-            shapes, notes = shapes_of(geometry)
-            polygons = polygons_of(shapes)
-            if any(not shape.closed for shape in shapes):
-                notes.append("has a line, which is no area; it is left out")
-            label = layer.label(feature, notes)
-            reading.items += [
-                Area(tuple(layer.placing.to_site(ring) for ring in rings), label) for rings in polygons
-            ]
-            layer.note(feature, notes, reading)
+        for rings, label in _polygons(layer, reading, feedback):
+            reading.items.append(Area(rings, label))
         reading.warnings += layer.rules.warnings
     return reading
+
+
+def read_surfaces(
+    sources: Sequence[ObstacleSource], site: SitePlacing, feedback: QgsFeedback
+) -> GroundReading[Surface]:
+    """Return the road surfaces of layers of polygons, with their fields ``name`` and ``origin``.
+
+    What does not say that it was generated was drawn.
+
+    :raises LayerReadingError: as :func:`read_centrelines`.
+    """
+    reading: GroundReading[Surface] = GroundReading()
+    for source in sources:
+        layer = _GroundLayer(source, site, ROAD_SURFACE)
+        name, origin = (layer.rules.rule(field, layer.rules.column(field)) for field in ("name", "origin"))
+        for rings, label in _polygons(layer, reading, feedback):
+            notes: list[str] = []
+            made = layer.rules.value("origin", origin, notes) == GENERATED
+            called = str(layer.rules.value("name", name, notes) or "")
+            reading.items.append(Surface(rings, label, called, GENERATED if made else DRAWN))
+        reading.warnings += layer.rules.warnings
+    return reading
+
+
+def _polygons(
+    layer: _GroundLayer, reading: GroundReading, feedback: QgsFeedback
+) -> Iterator[tuple[tuple[np.ndarray, ...], str]]:
+    """Yield the rings of each polygon, in the site frame, with its label."""
+    for feature, geometry in layer.features(reading, feedback):
+        shapes, notes = shapes_of(geometry)
+        if any(not shape.closed for shape in shapes):
+            notes.append("has a line, which is no area; it is left out")
+        label = layer.label(feature, notes)
+        layer.note(feature, notes, reading)
+        for rings in polygons_of(shapes):
+            yield tuple(layer.placing.to_site(ring) for ring in rings), label
 
 
 def check_ground_sources(sources: Sequence[ObstacleSource], site: SitePlacing, role: str) -> None:

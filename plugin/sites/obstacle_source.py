@@ -18,6 +18,7 @@ from qgis.core import (
     QgsWkbTypes,
 )
 
+from ..language import tr
 from .errors import LayerTypeError
 from .roles import EXPRESSIONS, FURNITURE, LayerExpressions, LayerSetup, setup_of
 from .site_crs import stated_crs
@@ -70,15 +71,23 @@ def _check(layer: QgsVectorLayer, role: str) -> None:
     name = plain_name(layer)
     if not layer.isValid():
         raise LayerTypeError(
-            f"The layer {name} cannot be opened ({layer.source()}): repair its data source or leave it out."
+            tr(
+                "The layer {name} cannot be opened ({source}): repair its data source or leave it out.",
+                name=name,
+                source=layer.source(),
+            )
         )
     points = QgsWkbTypes.GeometryType.PointGeometry
     of_points = layer.isSpatial() and layer.geometryType() == points
     if not layer.isSpatial() or (of_points and role != FURNITURE):
-        held = "points" if layer.isSpatial() else "no geometry"
+        held = tr("points") if layer.isSpatial() else tr("no geometry")
         raise LayerTypeError(
-            f"The layer {name} holds {held}, and only lines and polygons are obstacles: leave it "
-            "out, give it an extent first (for example with Buffer), or the role furniture."
+            tr(
+                "The layer {name} holds {held}, and only lines and polygons are obstacles: leave it out, "
+                "give it an extent first (for example with Buffer), or the role furniture.",
+                name=name,
+                held=held,
+            )
         )
 
 

@@ -17,6 +17,7 @@ from qgis.core import (
 )
 
 from ...robot_bridge.sites.frame import SiteFrame
+from ..language import tr
 from .errors import LayerCrsError
 from .site_crs import crs_name, is_engineering
 
@@ -55,15 +56,21 @@ class SitePlacing:
         return LayerPlacing(QgsCoordinateTransform(crs, self.crs, self.transform_context), self.frame)
 
     def _why_unplaced(self, name: str, crs: QgsCoordinateReferenceSystem) -> str:
-        tick = "tick 'Layers without a CRS are already in the site frame's metres' (LOCAL=true)"
+        tick = tr("tick 'Layers without a CRS are already in the site frame's metres' (LOCAL=true)")
         if not crs.isValid():
-            return (
-                f"The layer {name} has no CRS, so its place on the site is not known: set the layer's CRS "
-                f"(Layer > Set CRS of Layer), or {tick}."
+            return tr(
+                "The layer {name} has no CRS, so its place on the site is not known: set the layer's "
+                "CRS (Layer > Set CRS of Layer), or {tick}.",
+                name=name,
+                tick=tick,
             )
-        return (
-            f"The layer {name} is in the CRS {crs_name(crs)}, which has no known relation to the site CRS "
-            f"{crs_name(self.crs)}: choose the layer's CRS as the site CRS, or {tick}."
+        return tr(
+            "The layer {name} is in the CRS {crs}, which has no known relation to the site CRS "
+            "{site_crs}: choose the layer's CRS as the site CRS, or {tick}.",
+            name=name,
+            crs=crs_name(crs),
+            site_crs=crs_name(self.crs),
+            tick=tick,
         )
 
 

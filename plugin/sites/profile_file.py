@@ -9,6 +9,7 @@ from typing import Any
 
 from qgis.core import QgsExpression
 
+from ..language import tr
 from .errors import ProfileError
 from .profile import GEOMETRIES, Profile, ProfileRule
 from .roles import EXPRESSIONS, ROLES, LayerExpressions, LayerSetup
@@ -40,7 +41,12 @@ def read_profile(file: Path) -> Profile:
     _refuse_unknown(content, _KEYS, "", file)
     layers = content.get("layers")
     if not isinstance(layers, list) or not layers:
-        raise ProfileError(f"{file}: layers is missing or empty: write one table [[layers]] or more.")
+        raise ProfileError(
+            tr(
+                "{file}: layers is missing or empty: write one table [[layers]] or more.",
+                file=file,
+            )
+        )
     return Profile(
         name=_text(content, "name", "", file) or file.stem,
         about=_text(content, "about", "", file),
@@ -54,17 +60,34 @@ def _content(file: Path) -> Mapping[str, Any]:
     except FileNotFoundError as error:
         shipped = ", ".join(path.stem for path in shipped_profiles())
         raise ProfileError(
-            f"The profile {file} is not there: give the path of a file, or one of {shipped}."
+            tr(
+                "The profile {file} is not there: give the path of a file, or one of {shipped}.",
+                file=file,
+                shipped=shipped,
+            )
         ) from error
     except (OSError, UnicodeDecodeError) as error:
-        raise ProfileError(f"The profile {file} cannot be read: {error}.") from error
+        raise ProfileError(
+            tr(
+                "The profile {file} cannot be read: {error}.",
+                file=file,
+                error=error,
+            )
+        ) from error
     try:
         content = json.loads(text) if file.suffix.lower() == ".json" else _toml(text, file)
     except (ValueError, RecursionError) as error:
         kind = "JSON" if file.suffix.lower() == ".json" else "TOML"
-        raise ProfileError(f"{file} is not valid {kind}: {error}. Correct that place.") from error
+        raise ProfileError(
+            tr(
+                "{file} is not valid {kind}: {error}. Correct that place.",
+                file=file,
+                kind=kind,
+                error=error,
+            )
+        ) from error
     if not isinstance(content, Mapping):
-        raise ProfileError(f"{file} is no profile: write an object with name and layers.")
+        raise ProfileError(tr("{file} is no profile: write an object with name and layers.", file=file))
     return content
 
 
@@ -73,27 +96,57 @@ def _toml(text: str, file: Path) -> Mapping[str, Any]:
         import tomllib
     except ImportError as error:
         raise ProfileError(
-            f"{file} cannot be read: this QGIS runs Python older than 3.11, which reads no TOML. Save the "
-            "profile with the same keys as JSON and choose that file."
+            tr(
+                "{file} cannot be read: this QGIS runs Python older than 3.11, which reads no TOML. Save "
+                "the profile with the same keys as JSON and choose that file.",
+                file=file,
+            )
         ) from error
     return tomllib.loads(text)
 
 
 def _rule(content: Any, key: str, file: Path) -> ProfileRule:
     if not isinstance(content, Mapping):
-        raise ProfileError(f"{file}: {key} is {content!r}: write a table [[layers]].")
+        raise ProfileError(
+            tr(
+                "{file}: {key} is {content!r}: write a table [[layers]].",
+                file=file,
+                key=key,
+                content=content,
+            )
+        )
     _refuse_unknown(content, _RULE_KEYS, f"{key}.", file)
     names, fields = (_texts(content, name, key, file) for name in ("names", "fields"))
     if not names and not fields:
         raise ProfileError(
-            f'{file}: {key} fits no layer: write names = ["*building*"] or fields = ["building"].'
+            tr(
+                '{file}: {key} fits no layer: write names = ["*building*"] or fields = ["building"].',
+                file=file,
+                key=key,
+            )
         )
     geometry = _text(content, "geometry", f"{key}.", file)
     if geometry and geometry not in GEOMETRIES:
-        raise ProfileError(f"{file}: {key}.geometry is {geometry!r}: write one of {', '.join(GEOMETRIES)}.")
+        raise ProfileError(
+            tr(
+                "{file}: {key}.geometry is {geometry!r}: write one of {geometries}.",
+                file=file,
+                key=key,
+                geometry=geometry,
+                geometries=", ".join(GEOMETRIES),
+            )
+        )
     role = _text(content, "role", f"{key}.", file)
     if role not in ROLES:
-        raise ProfileError(f"{file}: {key}.role is {role!r}: write one of {', '.join(ROLES)}.")
+        raise ProfileError(
+            tr(
+                "{file}: {key}.role is {role!r}: write one of {roles}.",
+                file=file,
+                key=key,
+                role=role,
+                roles=", ".join(ROLES),
+            )
+        )
     expressions = {name: _expression(content, name, key, file) for name in EXPRESSIONS}
     return ProfileRule(names, fields, geometry, LayerSetup(role, LayerExpressions(**expressions)))
 
@@ -102,7 +155,13 @@ def _expression(content: Mapping[str, Any], name: str, key: str, file: Path) -> 
     text = " ".join(_text(content, name, f"{key}.", file).split())
     if text and (parsed := QgsExpression(text)).hasParserError():
         raise ProfileError(
-            f"{file}: {key}.{name} is no QGIS expression: {parsed.parserErrorString().strip()}. Correct it."
+            tr(
+                "{file}: {key}.{name} is no QGIS expression: {error}. Correct it.",
+                file=file,
+                key=key,
+                name=name,
+                error=parsed.parserErrorString().strip(),
+            )
         )
     return text
 
@@ -110,7 +169,15 @@ def _expression(content: Mapping[str, Any], name: str, key: str, file: Path) -> 
 def _text(content: Mapping[str, Any], name: str, prefix: str, file: Path) -> str:
     value = content.get(name, "")
     if not isinstance(value, str):
-        raise ProfileError(f"{file}: {prefix}{name} is {value!r}: write text in quotes.")
+        raise ProfileError(
+            tr(
+                "{file}: {prefix}{name} is {value!r}: write text in quotes.",
+                file=file,
+                prefix=prefix,
+                name=name,
+                value=value,
+            )
+        )
     return value
 
 
@@ -118,7 +185,15 @@ def _texts(content: Mapping[str, Any], name: str, key: str, file: Path) -> tuple
     value = content.get(name, [])
     texts = [value] if isinstance(value, str) else value
     if not isinstance(texts, list) or not all(isinstance(text, str) and text for text in texts):
-        raise ProfileError(f'{file}: {key}.{name} is {value!r}: write a list of texts, such as ["walls"].')
+        raise ProfileError(
+            tr(
+                '{file}: {key}.{name} is {value!r}: write a list of texts, such as ["walls"].',
+                file=file,
+                key=key,
+                name=name,
+                value=value,
+            )
+        )
     return tuple(texts)
 
 
@@ -126,6 +201,12 @@ def _refuse_unknown(content: Mapping[str, Any], known: tuple[str, ...], prefix: 
     for name in content:
         if name not in known:
             raise ProfileError(
-                f"{file}: {prefix}{name} is no key of a profile: known are {', '.join(known)}. Remove it or "
-                "correct its name."
+                tr(
+                    "{file}: {prefix}{name} is no key of a profile: known are {known}. Remove it or correct "
+                    "its name.",
+                    file=file,
+                    prefix=prefix,
+                    name=name,
+                    known=", ".join(known),
+                )
             )

@@ -19,6 +19,7 @@ from ...robot_bridge.sites.settings import (
     earlier_settings,
     settings_text,
 )
+from ..language import tr
 from .errors import PublicationError
 from .publication_lock import unwritable
 from .site_content import SiteContent
@@ -78,8 +79,14 @@ def next_version(settings: SiteSettings, folder: Path, *, replace_other: bool = 
         return replace(settings, version=earlier.version + 1)
     if earlier is not None and not replace_other:
         raise PublicationError(
-            f"{folder} holds version {earlier.version} of another site, {earlier.id}: choose another folder "
-            f"for {settings.id}, or say that the other site may be replaced (REPLACE=true)."
+            tr(
+                "{folder} holds version {version} of another site, {other}: choose another folder for "
+                "{site}, or say that the other site may be replaced (REPLACE=true).",
+                folder=folder,
+                version=earlier.version,
+                other=earlier.id,
+                site=settings.id,
+            )
         )
     return replace(settings, version=1)
 
@@ -142,6 +149,9 @@ def check_publication_values(settings: SiteSettings, folder: Path) -> None:
 
 def _not_a_publication(file: Path) -> PublicationError:
     return PublicationError(
-        f"{file} is there and is no part of a published site: choose another folder, or say that it may be "
-        "replaced (REPLACE=true)."
+        tr(
+            "{file} is there and is no part of a published site: choose another folder, or say that it may "
+            "be replaced (REPLACE=true).",
+            file=file,
+        )
     )

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from qgis.PyQt.QtCore import QLockFile
 
+from ..language import tr
 from .errors import PublicationError
 
 LOCK_FILE = ".publishing.lock"
@@ -43,16 +44,26 @@ def only_publication(folder: Path) -> Iterator[None]:
 def unwritable(folder: Path, reason: str) -> PublicationError:
     """Return the error of a ``folder`` that cannot be written for ``reason``."""
     return PublicationError(
-        f"The site cannot be published in {folder}: {reason}. Check the folder's rights and the free space."
+        tr(
+            "The site cannot be published in {folder}: {reason}. Check the folder's rights and the free "
+            "space.",
+            folder=folder,
+            reason=reason,
+        )
     )
 
 
 def _why_not(lock: QLockFile, folder: Path) -> PublicationError:
     if lock.error() != QLockFile.LockError.LockFailedError:
-        return unwritable(folder, f"no file {LOCK_FILE} can be made in it")
+        return unwritable(folder, tr("no file {lock_file} can be made in it", lock_file=LOCK_FILE))
     known, process, host, _ = lock.getLockInfo()
-    who = f"process {process} on {host}" if known else "another process"
+    who = tr("process {process} on {host}", process=process, host=host) if known else tr("another process")
     return PublicationError(
-        f"Another publication into {folder} is under way, by {who}: wait until it has ended, or choose "
-        f"another folder. If it ended on another computer without a word, remove {folder / LOCK_FILE}."
+        tr(
+            "Another publication into {folder} is under way, by {who}: wait until it has ended, or choose "
+            "another folder. If it ended on another computer without a word, remove {file}.",
+            folder=folder,
+            who=who,
+            file=folder / LOCK_FILE,
+        )
     )

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ...robot_bridge.roads.surfaces.surface import Surface
 from ...robot_bridge.robotmap.outlines import OutlineRow
 from ...robot_bridge.sites.features import Area, Centreline
 
@@ -17,7 +18,7 @@ class SiteContent:
 
     obstacles: Sequence[OutlineRow] = ()
     centrelines: Sequence[Centreline] = ()
-    surfaces: Sequence[Area] = ()
+    surfaces: Sequence[Surface] = ()
     keepouts: Sequence[Area] = ()
     warnings: list[str] = field(default_factory=list)
 

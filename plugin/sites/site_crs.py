@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from qgis.core import QgsCoordinateReferenceSystem, QgsUnitTypes
 
 from ...robot_bridge.sites.projections import utm_zone_of
+from ..language import tr
 from .errors import SiteCrsError
 
 
@@ -41,21 +42,33 @@ def check_site_crs(crs: QgsCoordinateReferenceSystem) -> None:
     Projected CRSs in metres are, except Mercator ones such as EPSG:3857; so is an engineering CRS in metres,
     which is a site frame already.
     """
-    named = f"The CRS {crs_name(crs)} cannot carry a site"
+    named = tr("The CRS {crs} cannot carry a site", crs=crs_name(crs))
     if crs.isGeographic() or crs.projectionAcronym() == "geocent":
         raise SiteCrsError(
-            f"{named}: its coordinates are not metres on a plane. "
-            f"Choose a projected CRS such as the local UTM zone{_suggestion(crs)}."
+            tr(
+                "{named}: its coordinates are not metres on a plane. Choose a projected CRS such as the "
+                "local UTM zone{suggestion}.",
+                named=named,
+                suggestion=_suggestion(crs),
+            )
         )
     if crs.projectionAcronym() in ("merc", "webmerc"):
         raise SiteCrsError(
-            f"{named}: its metres are not metres; 1 m on the ground is 1.56 m there at latitude 50°. "
-            "Choose the local UTM zone, such as EPSG:32633 for 12°E to 18°E."
+            tr(
+                "{named}: its metres are not metres; 1 m on the ground is 1.56 m there at latitude 50°. "
+                "Choose the local UTM zone, such as EPSG:32633 for 12°E to 18°E.",
+                named=named,
+            )
         )
     if crs.mapUnits() != QgsUnitTypes.DistanceUnit.DistanceMeters:
         raise SiteCrsError(
-            f"{named}: its unit is {QgsUnitTypes.toString(crs.mapUnits())}, and robots speak metres. "
-            f"Choose a CRS in metres such as the local UTM zone{_suggestion(crs)}."
+            tr(
+                "{named}: its unit is {unit}, and robots speak metres. Choose a CRS in metres such as "
+                "the local UTM zone{suggestion}.",
+                named=named,
+                unit=QgsUnitTypes.toString(crs.mapUnits()),
+                suggestion=_suggestion(crs),
+            )
         )
 
 
@@ -78,12 +91,12 @@ def crs_name(crs: QgsCoordinateReferenceSystem) -> str:
     """Return the authority's code and the name of ``crs``, as far as it has them."""
     if crs.authid() and crs.description():
         return f"{crs.authid()} ({crs.description()})"
-    return crs.authid() or crs.description() or "without a name"
+    return crs.authid() or crs.description() or tr("without a name")
 
 
 def _suggestion(crs: QgsCoordinateReferenceSystem) -> str:
     """Return ``", EPSG:..."`` for the UTM zone in the middle of the CRS's area when that area is small."""
     area = crs.bounds()
     if area.isEmpty() or area.width() > 30.0:
-        return " (EPSG:326xx north, EPSG:327xx south of the equator)"
+        return tr(" (EPSG:326xx north, EPSG:327xx south of the equator)")
     return f", {utm_zone_of(area.center().x(), area.center().y())}"

@@ -16,6 +16,7 @@ from qgis.core import QgsFeedback
 from ...robot_bridge.sites.geopackage import STAMP_KEY
 from ...robot_bridge.sites.layers import LayerSpec
 from ...robot_bridge.sites.settings import SiteSettings
+from ..language import tr
 from .errors import PublicationError
 from .site_content import SiteContent
 from .site_rows import SiteRow, site_rows
@@ -98,8 +99,13 @@ def _named_failures(file: Path) -> Iterator[Any]:
         yield gdal
     except RuntimeError as error:
         raise PublicationError(
-            f"{file.name} cannot be written in {file.parent.parent}: {error}. Check the folder's rights and "
-            "the free space."
+            tr(
+                "{file} cannot be written in {folder}: {error}. Check the folder's rights and the free "
+                "space.",
+                file=file.name,
+                folder=file.parent.parent,
+                error=error,
+            )
         ) from error
     finally:
         gdal.PopErrorHandler()
@@ -118,7 +124,7 @@ def _done(status: int | None) -> None:
 
 def _last_message() -> str:
     gdal, _, _ = _bindings()
-    return gdal.GetLastErrorMsg() or "GDAL does not say why"
+    return gdal.GetLastErrorMsg() or tr("GDAL does not say why")
 
 
 def _bindings() -> tuple[Any, Any, Any]:
@@ -126,7 +132,9 @@ def _bindings() -> tuple[Any, Any, Any]:
         from osgeo import gdal, ogr, osr
     except ImportError as error:
         raise PublicationError(
-            "The Python bindings of GDAL (osgeo) are missing in this QGIS, which write site.gpkg: install "
-            "the distribution's package, such as python3-gdal."
+            tr(
+                "The Python bindings of GDAL (osgeo) are missing in this QGIS, which write site.gpkg: "
+                "install the distribution's package, such as python3-gdal."
+            )
         ) from error
     return gdal, ogr, osr

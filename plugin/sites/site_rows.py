@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ...robot_bridge.roads.surfaces.surface import Surface
 from ...robot_bridge.robotmap.model import ShapeType
 from ...robot_bridge.robotmap.outlines import OutlineRow
 from ...robot_bridge.sites.features import Area
@@ -31,7 +32,7 @@ def site_rows(content: SiteContent, frame: SiteFrame) -> list[tuple[LayerSpec, I
     return [
         (OBSTACLES, _obstacle_rows(content.obstacles, frame)),
         (CENTRELINES, _centreline_rows(content, frame)),
-        (SURFACES, _area_rows(SURFACES, content.surfaces, frame)),
+        (SURFACES, _surface_rows(content.surfaces, frame)),
         (KEEPOUTS, _area_rows(KEEPOUTS, content.keepouts, frame)),
     ]
 
@@ -68,6 +69,13 @@ def _area_rows(spec: LayerSpec, areas: Sequence[Area], frame: SiteFrame) -> Iter
     for area in areas:
         rings = [_shut(frame.to_crs(ring)) for ring in area.rings]
         yield SiteRow(polygon_wkb(rings), {label: area.label})
+
+
+def _surface_rows(surfaces: Sequence[Surface], frame: SiteFrame) -> Iterator[SiteRow]:
+    for one in surfaces:
+        rings = [_shut(frame.to_crs(ring)) for ring in one.rings]
+        values = {"surface": one.label, "name": one.name, "origin": one.origin}
+        yield SiteRow(polygon_wkb(rings), values)
 
 
 def _shut(ring: np.ndarray) -> np.ndarray:

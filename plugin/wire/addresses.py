@@ -9,6 +9,7 @@ from typing import Any
 from urllib.parse import urlsplit
 
 from ..errors import AddressError
+from ..language import tr
 
 DEFAULT_URL = "ws://127.0.0.1:8765/desk"
 
@@ -36,11 +37,16 @@ class Credentials:
         """Raise AddressError when ``url`` cannot be connected to with this."""
         parts = urlsplit(url)
         if self.token and (not self.token.isascii() or len(self.token.split()) != 1):
-            raise AddressError("The token cannot be right: it is one word. Paste it again, whole and alone.")
+            raise AddressError(
+                tr("The token cannot be right: it is one word. Paste it again, whole and alone.")
+            )
         if parts.scheme == "ws" and self.token and not _is_own(parts.hostname or ""):
             raise AddressError(
-                f"Over {url} everybody on the way could read the token. Write wss:// instead of ws://; a "
-                "gateway that other computers can reach has TLS."
+                tr(
+                    "Over {url} everybody on the way could read the token. Write wss:// instead of ws://; a "
+                    "gateway that other computers can reach has TLS.",
+                    url=url,
+                )
             )
         if parts.scheme == "wss":
             self._context()
@@ -50,8 +56,12 @@ class Credentials:
             context = ssl.create_default_context(cafile=self.ca_file or None)
         except (OSError, ssl.SSLError) as error:
             raise AddressError(
-                f"The CA file {self.ca_file} cannot be used: {error.strerror or error}. Choose the ca.pem "
-                "that whoever runs the site gave you."
+                tr(
+                    "The CA file {file} cannot be used: {reason}. Choose the ca.pem that whoever runs the "
+                    "site gave you.",
+                    file=self.ca_file,
+                    reason=error.strerror or error,
+                )
             ) from error
         context.minimum_version = ssl.TLSVersion.TLSv1_2
         return context
@@ -60,23 +70,41 @@ class Credentials:
 def check_address(url: str) -> str:
     """Return ``url`` without blanks around it if it can be a gateway's, else raise AddressError."""
     url = url.strip()
-    example = f"Write it like {DEFAULT_URL}."
+    example = tr("Write it like {default_url}.", default_url=DEFAULT_URL)
     if not url:
-        raise AddressError(f"The gateway's URL is empty. {example}")
+        raise AddressError(tr("The gateway's URL is empty. {example}", example=example))
     try:
         parts = urlsplit(url)
         host, port = parts.hostname, parts.port
     except ValueError as error:
-        raise AddressError(f"The gateway's URL {url} cannot be read: {error}. {example}") from error
+        raise AddressError(
+            tr(
+                "The gateway's URL {url} cannot be read: {error}. {example}",
+                url=url,
+                error=error,
+                example=example,
+            )
+        ) from error
     if parts.scheme not in ("ws", "wss"):
         raise AddressError(
-            f"The gateway's URL {url} begins with {parts.scheme or 'no scheme'}; a gateway is reached over "
-            f"ws:// (or wss:// with TLS). {example}"
+            tr(
+                "The gateway's URL {url} begins with {scheme}; a gateway is reached over ws:// (or wss:// "
+                "with TLS). {example}",
+                url=url,
+                scheme=parts.scheme or tr("no scheme"),
+                example=example,
+            )
         )
     if not host or any(c.isspace() for c in url):
-        raise AddressError(f"The gateway's URL {url} names no host. {example}")
+        raise AddressError(tr("The gateway's URL {url} names no host. {example}", url=url, example=example))
     if port == 0:
-        raise AddressError(f"The gateway's URL {url} has port 0, where nothing can listen. {example}")
+        raise AddressError(
+            tr(
+                "The gateway's URL {url} has port 0, where nothing can listen. {example}",
+                url=url,
+                example=example,
+            )
+        )
     return url
 
 

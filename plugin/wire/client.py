@@ -8,6 +8,7 @@ from types import ModuleType
 from typing import Any
 
 from ..errors import AddressError, LinkError
+from ..language import tr
 from .addresses import Credentials
 from .backoff import Backoff
 from .failures import explain
@@ -22,6 +23,8 @@ PONG_WITHIN = 2.5
 """Together under 5 s: a cable that is pulled out shows before the operator wonders."""
 CLOSE_WITHIN = 0.2
 LARGEST_MESSAGE = 64 * 2**20
+MOST_WAITING = 1
+"""Messages that wait to be read: more would be old news by then, where a gateway that waits has newer."""
 
 
 class DeskClient:
@@ -82,7 +85,7 @@ class DeskClient:
             return explained
         finally:
             self._protocol.ready = False
-        return LinkError(f"The gateway at {self._url} closed the link. It is tried again.")
+        return LinkError(tr("The gateway at {url} closed the link. It is tried again.", url=self._url))
 
     def _connect(self) -> Any:
         options: dict[str, Any] = {
@@ -91,6 +94,7 @@ class DeskClient:
             "ping_timeout": PONG_WITHIN,
             "close_timeout": CLOSE_WITHIN,
             "max_size": LARGEST_MESSAGE,
+            "max_queue": MOST_WAITING,
             "compression": None,
             **self._credentials.options(self._url),
         }
@@ -120,8 +124,12 @@ class DeskClient:
                 self._send_all(self._protocol.receive(text))
         except asyncio.TimeoutError as error:
             raise LinkError(
-                f"What answers at {self._url} opens a WebSocket but did not answer the desk's greeting "
-                f"within {ANSWER_WITHIN:g} s. Check that the URL leads to a Fleet Supervisor gateway."
+                tr(
+                    "What answers at {url} opens a WebSocket but did not answer the desk's greeting within "
+                    "{answer_within:g} s. Check that the URL leads to a Fleet Supervisor gateway.",
+                    url=self._url,
+                    answer_within=ANSWER_WITHIN,
+                )
             ) from error
         self._backoff.reset()
         self._mailbox.put_link(LinkStatus(Phase.CONNECTED, self._protocol.who))

@@ -9,6 +9,7 @@ from typing import Any
 from urllib.parse import urlsplit
 
 from ..errors import LinkError
+from ..language import tr
 from .addresses import DEFAULT_URL
 
 REVOKED = 4003
@@ -30,13 +31,23 @@ def explain(error: Exception, url: str, exceptions: ModuleType) -> LinkError | N
         return _bad_status(error.response, url)
     if isinstance(error, (exceptions.InvalidHandshake, exceptions.ProtocolError, EOFError)):
         return LinkError(
-            f"What answers at {place} does not speak WebSocket. Check host and port, and ws:// or wss://: a "
-            "gateway prints its URL when it starts."
+            tr(
+                "What answers at {place} does not speak WebSocket. Check host and port, and ws:// or "
+                "wss://: a gateway prints its URL when it starts.",
+                place=place,
+            )
         )
     if isinstance(error, exceptions.ConnectionClosed):
         return _closed(error, place)
     if isinstance(error, exceptions.InvalidURI):
-        return LinkError(f"The gateway's URL {url} cannot be used. Write it like {DEFAULT_URL}.", final=True)
+        return LinkError(
+            tr(
+                "The gateway's URL {url} cannot be used. Write it like {default_url}.",
+                url=url,
+                default_url=DEFAULT_URL,
+            ),
+            final=True,
+        )
     return _network_failure(error, place, secure=urlsplit(url).scheme == "wss")
 
 
@@ -49,22 +60,47 @@ def _bad_status(response: Any, url: str) -> LinkError:
     status, said = response.status_code, _said(response)
     if status == 404:
         return LinkError(
-            f"There is no desk at {url} (HTTP 404). A gateway's desk has the path /desk, "
-            f"as in {DEFAULT_URL}; or another program answers there."
+            tr(
+                "There is no desk at {url} (HTTP 404). A gateway's desk has the path /desk, as in "
+                "{default_url}; or another program answers there.",
+                url=url,
+                default_url=DEFAULT_URL,
+            )
         )
     if status == 401:
         return LinkError(
-            f"{url} refuses this desk: {said or 'it wants a token'} Enter the operator's token under Access.",
+            tr(
+                "{url} refuses this desk: {said} Enter the operator's token under Access.",
+                url=url,
+                said=said or tr("it wants a token."),
+            ),
             final=True,
             wants_token=True,
         )
     if status == 403:
-        return LinkError(f"{url} refuses this desk: {said or 'no reason given.'}", final=True)
+        return LinkError(
+            tr(
+                "{url} refuses this desk: {said}",
+                url=url,
+                said=said or tr("no reason given."),
+            ),
+            final=True,
+        )
     if status in (429, 503) and said:
-        return LinkError(f"{url} takes no desk now: {said} It is tried again by itself.")
+        return LinkError(
+            tr(
+                "{url} takes no desk now: {said} It is tried again by itself.",
+                url=url,
+                said=said,
+            )
+        )
     return LinkError(
-        f"{url} answered HTTP {status} instead of opening a WebSocket. Check that a gateway runs there and "
-        "what its log says."
+        tr(
+            "{url} answered HTTP {status} instead of opening a WebSocket. Check that a gateway runs there "
+            "and what its log says.",
+            url=url,
+            status=status,
+        )
     )
 
 
@@ -72,23 +108,40 @@ def _closed(error: Exception, place: str) -> LinkError:
     received = getattr(error, "rcvd", None)
     if received is None:
         return LinkError(
-            f"The link to the gateway at {place} broke off. It is tried again by itself; if it does not come "
-            "back, check the gateway and the network."
+            tr(
+                "The link to the gateway at {place} broke off. It is tried again by itself; if it does not "
+                "come back, check the gateway and the network.",
+                place=place,
+            )
         )
     why = f": {received.reason}" if received.reason else ""
     if received.code == REVOKED:
         return LinkError(
-            f"The gateway at {place} ended the link{why}. Ask whoever runs the site for a new token and "
-            "enter it under Access.",
+            tr(
+                "The gateway at {place} ended the link{why}. Ask whoever runs the site for a new token and "
+                "enter it under Access.",
+                place=place,
+                why=why,
+            ),
             final=True,
             wants_token=True,
         )
     if received.code == ENDED:
         return LinkError(
-            f"The gateway at {place} ended your session{why}. Connect brings it back.", final=True
+            tr(
+                "The gateway at {place} ended your session{why}. Connect brings it back.",
+                place=place,
+                why=why,
+            ),
+            final=True,
         )
     return LinkError(
-        f"The gateway at {place} closed the link (code {received.code}{why}). It is tried again by itself."
+        tr(
+            "The gateway at {place} closed the link (code {code}{why}). It is tried again by itself.",
+            place=place,
+            code=received.code,
+            why=why,
+        )
     )
 
 
@@ -96,25 +149,47 @@ def _bad_certificate(error: ssl.SSLCertVerificationError, place: str) -> LinkErr
     code = error.verify_code
     if code in _UNKNOWN_AUTHORITY:
         return LinkError(
-            f"The certificate of {place} is from an authority that this desk does not trust. Choose the "
-            "site's ca.pem as CA file under Access; whoever runs the site has it.",
+            tr(
+                "The certificate of {place} is from an authority that this desk does not trust. Choose the "
+                "site's ca.pem as CA file under Access; whoever runs the site has it.",
+                place=place,
+            ),
             final=True,
             wants_token=True,
         )
     if code in _OTHER_NAME:
         return LinkError(
-            f"The certificate of {place} is for another name: {error.verify_message} Use the name that the "
-            "gateway's certificate was made for, or have one made for this name.",
+            tr(
+                "The certificate of {place} is for another name: {reason} Use the name that the "
+                "gateway's certificate was made for, or have one made for this name.",
+                place=place,
+                reason=error.verify_message,
+            ),
             final=True,
         )
     if code == _EXPIRED:
         return LinkError(
-            f"The certificate of {place} has expired. Whoever runs the site renews it with 'robot-bridge tls "
-            "renew'; if it was renewed, check this computer's clock."
+            tr(
+                "The certificate of {place} has expired. Whoever runs the site renews it with 'robot-bridge "
+                "tls renew'; if it was renewed, check this computer's clock.",
+                place=place,
+            )
         )
     if code == _NOT_YET_VALID:
-        return LinkError(f"The certificate of {place} holds only later: check this computer's clock.")
-    return LinkError(f"The certificate of {place} cannot be trusted: {error.verify_message}.", final=True)
+        return LinkError(
+            tr(
+                "The certificate of {place} holds only later: check this computer's clock.",
+                place=place,
+            )
+        )
+    return LinkError(
+        tr(
+            "The certificate of {place} cannot be trusted: {reason}.",
+            place=place,
+            reason=error.verify_message,
+        ),
+        final=True,
+    )
 
 
 def _said(response: Any) -> str:
@@ -130,25 +205,49 @@ def _network_failure(error: Exception, place: str, *, secure: bool) -> LinkError
         return _bad_certificate(error, place)
     if isinstance(error, ssl.SSLError):
         return LinkError(
-            f"No secure link to {place}: {error.reason or error}. If the gateway has no TLS, write ws:// "
-            "instead of wss://."
+            tr(
+                "No secure link to {place}: {reason}. If the gateway has no TLS, write ws:// instead of "
+                "wss://.",
+                place=place,
+                reason=error.reason or error,
+            )
         )
     if isinstance(error, ConnectionRefusedError) or "Connect call failed" in str(error):
         return LinkError(
-            f"Nothing listens at {place}. Start the gateway (robot-bridge serve --site ...) or correct the "
-            "URL."
+            tr(
+                "Nothing listens at {place}. Start the gateway (robot-bridge serve --site ...) or correct "
+                "the URL.",
+                place=place,
+            )
         )
     if isinstance(error, socket.gaierror):
-        return LinkError(f"The host of {place} is not known to this network. Correct the URL.")
+        return LinkError(
+            tr(
+                "The host of {place} is not known to this network. Correct the URL.",
+                place=place,
+            )
+        )
     if secure and isinstance(error, ConnectionResetError):
         return LinkError(
-            f"{place} broke off while the secure link was made. If the gateway has no TLS, write ws:// "
-            "instead of wss://."
+            tr(
+                "{place} broke off while the secure link was made. If the gateway has no TLS, write ws:// "
+                "instead of wss://.",
+                place=place,
+            )
         )
     if isinstance(error, TimeoutError):
         return LinkError(
-            f"{place} did not answer in time. Check that the gateway runs, and the network and firewall."
+            tr(
+                "{place} did not answer in time. Check that the gateway runs, and the network and firewall.",
+                place=place,
+            )
         )
     if isinstance(error, OSError):
-        return LinkError(f"{place} cannot be reached: {error.strerror or error}. Check network and URL.")
+        return LinkError(
+            tr(
+                "{place} cannot be reached: {reason}. Check network and URL.",
+                place=place,
+                reason=error.strerror or error,
+            )
+        )
     return None

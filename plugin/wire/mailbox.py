@@ -9,20 +9,25 @@ from __future__ import annotations
 import threading
 from collections.abc import Iterable
 from dataclasses import dataclass, field
+from typing import Any
 
-from ...robot_bridge.messages import CommandReport, EmergencyReport, RobotReport, SiteReport
+from ...robot_bridge.messages import (
+    CommandReport,
+    EmergencyReport,
+    ObservationReport,
+    PlacementReport,
+    QueueReport,
+    SiteReport,
+)
+from .observation_news import ObservationNews
 from .outbox import Answer
+from .placement_news import PlacementNews
+from .queue_news import QueueNews
+from .road_news import RoadNews
+from .sightings import Sightings
 from .status import LinkStatus, Phase
 
 MOST_COMMANDS = 1000
-
-
-@dataclass(frozen=True)
-class Sighting:
-    """A robot as the gateway told it, and when that arrived here (monotonic clock)."""
-
-    report: RobotReport
-    received: float
 
 
 @dataclass
@@ -31,10 +36,14 @@ class News:
 
     link: LinkStatus
     site: SiteReport | None = None
-    robots: dict[str, Sighting] = field(default_factory=dict)
+    robots: Sightings = field(default_factory=Sightings)
     commands: dict[str, CommandReport] = field(default_factory=dict)
     answers: list[Answer] = field(default_factory=list)
     emergency: EmergencyReport | None = None
+    roads: RoadNews = field(default_factory=RoadNews)
+    queues: QueueNews = field(default_factory=QueueNews)
+    placements: PlacementNews = field(default_factory=PlacementNews)
+    observations: ObservationNews = field(default_factory=ObservationNews)
 
 
 class Mailbox:
@@ -54,11 +63,13 @@ class Mailbox:
         with self._lock:
             self._news.site = site
 
-    def put_robots(self, reports: Iterable[RobotReport], received: float) -> None:
-        """Leave reports of robots; each replaces an older one of the same robot."""
+    def put_robots(self, robots: Sightings) -> None:
+        """Leave what was told of robots; it replaces what is older of the same robots."""
         with self._lock:
-            for report in reports:
-                self._news.robots[report.robot] = Sighting(report, received)
+            if len(self._news.robots):
+                self._news.robots.merge(robots)
+            else:
+                self._news.robots = robots
 
     def put_commands(self, reports: Iterable[CommandReport]) -> None:
         """Leave reports of commands, which hold all their steps; those longest unchanged go first."""
@@ -74,6 +85,31 @@ class Mailbox:
         """Leave how an emergency stop stands."""
         with self._lock:
             self._news.emergency = report
+
+    def put_roads(self, method: str, params: dict[str, Any]) -> None:
+        """Leave what was told of roads."""
+        with self._lock:
+            self._news.roads.take(method, params)
+
+    def put_queue(self, report: QueueReport) -> None:
+        """Leave how a robot's queue stands."""
+        with self._lock:
+            self._news.queues.take(report)
+
+    def put_every_queue(self, reports: Iterable[QueueReport]) -> None:
+        """Leave how every queue stands: there are no others."""
+        with self._lock:
+            self._news.queues.take_all(reports)
+
+    def put_placements(self, reports: Iterable[PlacementReport]) -> None:
+        """Leave which cones were put down or collected."""
+        with self._lock:
+            self._news.placements.take(reports)
+
+    def put_observations(self, reports: Iterable[ObservationReport]) -> None:
+        """Leave what robots saw, and what became of it."""
+        with self._lock:
+            self._news.observations.take(reports)
 
     def put_answer(self, answer: Answer) -> None:
         """Leave what became of an order; every one of them is kept."""

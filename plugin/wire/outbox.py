@@ -24,11 +24,15 @@ class Order:
 
 @dataclass(frozen=True)
 class Answer:
-    """What became of an order: the gateway's ``result``, or ``error`` in words for the operator."""
+    """What became of an order: the gateway's ``result``, or ``error`` in words for the operator.
+
+    ``outdated`` is true when it was refused because what it changes has changed since it was looked at.
+    """
 
     order: Order
     result: dict[str, Any] | None = None
     error: str | None = None
+    outdated: bool = False
 
 
 class Outbox:

@@ -13,22 +13,42 @@ from ...robot_bridge.messages import (
     ClearEmergencyStop,
     CommandReport,
     EmergencyStop,
+    GetClosures,
     GetCommands,
+    GetQueue,
     Hello,
-    RobotReport,
+    PositionForm,
     SiteReport,
     Subscribe,
     command_report,
     emergency_report,
-    robot_report,
+    observation_report,
+    placement_report,
+    queue_report,
     site_report,
     to_json,
 )
 from ..errors import LinkError
+from ..language import tr
 from .mailbox import Mailbox
+from .observation_news import METHOD as OBSERVATION_NEWS
+from .observation_news import observations_in
 from .outbox import Answer, Order, Outbox
+from .placement_news import METHOD as PLACEMENT_NEWS
+from .placement_news import placements_in
+from .position_rows import sightings
+from .position_table import sightings_in
+from .queue_news import METHOD as QUEUE_NEWS
+from .queue_news import queues_in
+from .road_news import METHODS as ROAD_NEWS
 
 Clock = Callable[[], float]
+
+OUTDATED = -32006
+"""The error code of a change to what is not as it was seen; the newer state comes with it."""
+
+ALL_QUEUES = "every queue"
+"""The key of what asks for all queues when a link begins."""
 
 
 class DeskProtocol:
@@ -69,8 +89,10 @@ class DeskProtocol:
             self._mailbox.put_answer(
                 Answer(
                     order,
-                    error="The link was closed before the gateway answered: whether it arrived is not known. "
-                    "Connect again and look in the command log.",
+                    error=tr(
+                        "The link was closed before the gateway answered: whether it arrived is not known. "
+                        "Connect again and look in the command log."
+                    ),
                 )
             )
 
@@ -80,6 +102,9 @@ class DeskProtocol:
         :raises LinkError: when the text is not what a gateway of this protocol sends.
         """
         try:
+            if isinstance(text, bytes):
+                self._mailbox.put_robots(sightings_in(text, self._clock()))
+                return []
             message = json.loads(text)
             if not isinstance(message, dict):
                 raise ValueError(f"a JSON object was expected, not {type(message).__name__}")
@@ -91,9 +116,15 @@ class DeskProtocol:
             raise
         except (ValueError, KeyError, TypeError, AttributeError) as error:
             raise LinkError(
-                f"What answers at {self._url} sent something that is not the desk's protocol: "
-                f"{_start_of(text)} ({type(error).__name__}: {error}). "
-                "Check that the URL leads to a Fleet Supervisor gateway of this version."
+                tr(
+                    "What answers at {url} sent something that is not the desk's protocol: {text} "
+                    "({kind}: {error}). Check that the URL leads to a Fleet Supervisor gateway of this "
+                    "version.",
+                    url=self._url,
+                    text=_start_of(text),
+                    kind=type(error).__name__,
+                    error=error,
+                )
             ) from error
 
     def _request(self, order: Order) -> str:
@@ -103,38 +134,68 @@ class DeskProtocol:
 
     def _notified(self, method: str, params: dict[str, Any]) -> None:
         if method == "positions":
-            reports = [checked_robot(robot_report(values)) for values in params["robots"]]
-            self._mailbox.put_robots(reports, self._clock())
+            self._mailbox.put_robots(sightings(params["robots"], self._clock()))
         elif method == "command":
             self._mailbox.put_commands([command_report(params)])
         elif method == "emergency":
             self._mailbox.put_emergency(emergency_report(params))
         elif method == "site":
             self._mailbox.put_site(checked_site(site_report(params)))
+        elif method == QUEUE_NEWS:
+            self._mailbox.put_queue(queue_report(params))
+        elif method in ROAD_NEWS:
+            self._mailbox.put_roads(method, params)
+        elif method == PLACEMENT_NEWS:
+            self._mailbox.put_placements([placement_report(params)])
+        elif method == OBSERVATION_NEWS:
+            self._mailbox.put_observations([observation_report(params)])
         # Another notification is of a newer gateway and nothing that this desk asked for.
 
     def _answered(self, message: dict[str, Any]) -> list[str]:
         order = self._asked.pop(message.get("id", 0), None)
         if order is None:
             if "error" in message:
-                raise LinkError(f"The gateway at {self._url} refused a message: {_error_text(message)}")
+                raise LinkError(
+                    tr(
+                        "The gateway at {url} refused a message: {error}",
+                        url=self._url,
+                        error=_error_text(message),
+                    )
+                )
             return []
         if order.method == Hello.method:
             return self._welcomed(message)
         if order.method == Subscribe.method:
             if "error" in message:
-                raise LinkError(f"The gateway at {self._url} sends no positions: {_error_text(message)}")
+                raise LinkError(
+                    tr(
+                        "The gateway at {url} sends no positions: {error}",
+                        url=self._url,
+                        error=_error_text(message),
+                    )
+                )
             return []
         return self._order_answered(order, message)
 
     def _welcomed(self, message: dict[str, Any]) -> list[str]:
         if "error" in message:
-            raise LinkError(f"The gateway at {self._url} turned the desk away: {_error_text(message)}")
+            raise LinkError(
+                tr(
+                    "The gateway at {url} turned the desk away: {error}",
+                    url=self._url,
+                    error=_error_text(message),
+                )
+            )
         result = message["result"]
         if result.get("protocol") != PROTOCOL_VERSION:
             raise LinkError(
-                f"The gateway at {self._url} speaks protocol {result.get('protocol')}, this plugin protocol "
-                f"{PROTOCOL_VERSION}. Update whichever of the two is older, then press Connect.",
+                tr(
+                    "The gateway at {url} speaks protocol {theirs}, this plugin protocol {ours}. "
+                    "Update whichever of the two is older, then press Connect.",
+                    url=self._url,
+                    theirs=result.get("protocol"),
+                    ours=PROTOCOL_VERSION,
+                ),
                 final=True,
             )
         self._mailbox.put_site(checked_site(site_report(result["site"])))
@@ -146,46 +207,54 @@ class DeskProtocol:
         for order in too_old:
             self._mailbox.put_answer(Answer(order, error=_too_old(self._clock() - order.asked_at)))
         first = [
-            Order("subscribe", Subscribe.method, to_json(Subscribe(self._rate))),
+            Order("subscribe", Subscribe.method, to_json(Subscribe(self._rate, PositionForm.COLUMNS))),
             Order("get_commands", GetCommands.method, to_json(GetCommands())),
+            Order("get_closures", GetClosures.method),
+            Order(ALL_QUEUES, GetQueue.method, to_json(GetQueue())),
         ]
         return [self._request(order) for order in (*first, *orders)]
 
     def _order_answered(self, order: Order, message: dict[str, Any]) -> list[str]:
         waiting = self._outbox.answered(order.key)
         if "error" in message:
+            outdated = _code(message) == OUTDATED
+            if outdated:
+                self._take_queues(message["error"].get("data") or {})
             if waiting is not None:
-                self._mailbox.put_answer(Answer(order, error=_error_text(message)))
+                self._mailbox.put_answer(Answer(order, error=_error_text(message), outdated=outdated))
             return []
         result = message.get("result") or {}
         if order.method in (EmergencyStop.method, ClearEmergencyStop.method):
             self._mailbox.put_emergency(emergency_report(result))
+        if order.method == GetClosures.method:
+            self._mailbox.put_roads("closures", result)
+        if order.key == ALL_QUEUES:
+            self._mailbox.put_every_queue(queues_in(result))
+        else:
+            self._take_queues(result)
         self._mailbox.put_commands(_commands_in(result))
+        self._mailbox.put_placements(placements_in(result))
+        self._mailbox.put_observations(observations_in(result))
         if waiting is not None:
             self._mailbox.put_answer(Answer(order, result=result))
         return []
 
-
-def checked_robot(report: RobotReport) -> RobotReport:
-    """Return ``report`` if its numbers are finite numbers, else raise ValueError naming the field."""
-    for name in ("age", "x", "y", "theta", "v", "battery", "latency"):
-        _check_number(f"{name} of robot {report.robot}", getattr(report, name), name != "age")
-    return report
+    def _take_queues(self, values: dict[str, Any]) -> None:
+        for report in queues_in(values):
+            self._mailbox.put_queue(report)
 
 
 def checked_site(site: SiteReport) -> SiteReport:
     """Return ``site`` if its numbers are finite numbers, else raise ValueError naming the field."""
     numbers = (*site.origin, *site.bounds, site.rotation, site.stale_after, site.lost_after)
     for value in numbers:
-        _check_number(f"a number of site {site.id}", value, False)
+        _check_number(f"a number of site {site.id}", value)
     if len(site.origin) != 2 or len(site.bounds) != 4:
         raise ValueError(f"origin or bounds of site {site.id} have the wrong length")
     return site
 
 
-def _check_number(name: str, value: Any, may_miss: bool) -> None:
-    if value is None and may_miss:
-        return
+def _check_number(name: str, value: Any) -> None:
     if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
         raise ValueError(f"{name} is {value!r}, not a finite number")
 
@@ -194,7 +263,7 @@ def _commands_in(result: dict[str, Any]) -> list[CommandReport]:
     """Return the reports in an answer; oldest first, since get_commands answers with the newest first."""
     if "commands" in result:
         return [command_report(values) for values in reversed(result["commands"])]
-    return [command_report(result)] if "command" in result else []
+    return [command_report(result)] if "command" in result and "op" in result else []
 
 
 def _error_text(message: dict[str, Any]) -> str:
@@ -202,10 +271,17 @@ def _error_text(message: dict[str, Any]) -> str:
     return str(error.get("message", error)) if isinstance(error, dict) else str(error)
 
 
+def _code(message: dict[str, Any]) -> Any:
+    error = message["error"]
+    return error.get("code") if isinstance(error, dict) else None
+
+
 def _too_old(age: float) -> str:
-    return (
-        f"The link was lost before the gateway answered, and {age:.0f} s later it was not repeated: a robot "
-        "shall not drive off on an old order. Look in the command log and send it again if it is not there."
+    return tr(
+        "The link was lost before the gateway answered, and {age:.0f} s later it was not repeated: a "
+        "robot shall not drive off on an old order. Look in the command log and send it again if it is "
+        "not there.",
+        age=age,
     )
 
 

@@ -15,6 +15,11 @@ from websockets.asyncio.server import serve
 
 PLUGIN_FILES = ("__init__.py", "plugin/__init__.py", "plugin/errors.py", "plugin/websocket_library.py")
 
+UNTRANSLATED = """
+def tr(text, /, **values):
+    return text.format(**values) if values else text
+"""
+
 
 @pytest.fixture
 def released(tmp_path, root) -> Path:
@@ -23,6 +28,8 @@ def released(tmp_path, root) -> Path:
     for name in PLUGIN_FILES:
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(root / name, folder / name)
+    # There is no QGIS in that Python whose language could be asked.
+    (folder / "plugin" / "language.py").write_text(UNTRANSLATED, encoding="utf-8")
     return folder
 
 

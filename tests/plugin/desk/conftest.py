@@ -7,6 +7,7 @@ import itertools
 import json
 import threading
 import time
+from collections.abc import Callable
 from dataclasses import replace
 
 import pytest
@@ -20,7 +21,7 @@ from fleet_supervisor.robot_bridge.messages import (
     SiteReport,
     to_json,
 )
-from qgis.core import QgsCoordinateReferenceSystem, QgsProject, QgsRectangle, QgsSettings
+from qgis.core import QgsCoordinateReferenceSystem, QgsLocator, QgsProject, QgsRectangle, QgsSettings
 from qgis.gui import QgsMapCanvas, QgsMapToolPan, QgsMessageBar
 from qgis.PyQt import sip
 from qgis.PyQt.QtCore import QCoreApplication, QEvent, QPoint, Qt
@@ -74,6 +75,8 @@ class SmallGateway:
         """Methods that are taken in and never answered."""
         self.raw: str | None = None
         """What is sent in place of every answer."""
+        self.answers: dict[str, Callable[[dict], dict]] = {}
+        """By method, what answers it in place of what is here: returns {"result": …} or {"error": …}."""
         self._sockets: set = set()
         self._clock = itertools.count(1_700_000_000)
 
@@ -100,21 +103,22 @@ class SmallGateway:
 
     def show(self, *robots: RobotReport) -> None:
         self.robots.update({robot.robot: robot for robot in robots})
-        self._tell("positions", {"t": time.time(), "robots": [to_json(robot) for robot in robots]})
+        self.tell("positions", {"t": time.time(), "robots": [to_json(robot) for robot in robots]})
 
     def step(self, command: str, state: CommandState, by: str, **more) -> None:
         known = self.commands[command]
         steps = [*known.steps, CommandStep(state, float(next(self._clock)), by, more.pop("reason", None))]
         values = {**vars(known), "state": state, "steps": steps, **more}
         self.commands[command] = CommandReport(**values)
-        self._tell("command", to_json(self.commands[command]))
+        self.tell("command", to_json(self.commands[command]))
 
     def stand(self, **how) -> None:
         """Tell how an emergency stop stands."""
         self.emergency = replace(self.emergency, **how)
-        self._tell("emergency", to_json(self.emergency))
+        self.tell("emergency", to_json(self.emergency))
 
-    def _tell(self, method: str, params: dict) -> None:
+    def tell(self, method: str, params: dict) -> None:
+        """Send every desk a notification."""
         text = json.dumps({"jsonrpc": "2.0", "method": method, "params": params})
         for socket in list(self._sockets):
             asyncio.run_coroutine_threadsafe(socket.send(text), self._loop).result(5)
@@ -160,6 +164,8 @@ class SmallGateway:
         answer = {"jsonrpc": "2.0", "id": message["id"]}
         if method in self.refuse:
             return {**answer, "error": {"code": -32000, "message": self.refuse[method]}}
+        if method in self.answers:
+            return {**answer, **self.answers[method](params)}
         if method == "hello":
             facts = {"site": to_json(self.site), "emergency": to_json(self.emergency)}
             return {**answer, "result": {"protocol": self.protocol, **facts}}
@@ -225,6 +231,10 @@ class Window(QMainWindow):
         self.setCentralWidget(self.canvas)
         self.bar = QgsMessageBar(self.canvas)
         self.plugins = self.menuBar().addMenu("Plugins")
+        self.plugin_help = self.menuBar().addMenu("Help").addMenu("Plugins")
+        self.locator = QgsLocator(self)
+        self.options_pages = []
+        self.drop_handlers = []
         self._pan_tool = QgsMapToolPan(self.canvas)
         self._pan = QAction("Pan", self)
         self._pan.triggered.connect(lambda: self.canvas.setMapTool(self._pan_tool))
@@ -253,6 +263,27 @@ class Window(QMainWindow):
 
     def removePluginMenu(self, menu, action):
         self.plugins.removeAction(action)
+
+    def pluginHelpMenu(self):
+        return self.plugin_help
+
+    def registerLocatorFilter(self, one):
+        self.locator.registerFilter(one)
+
+    def deregisterLocatorFilter(self, one):
+        self.locator.deregisterFilter(one)
+
+    def registerOptionsWidgetFactory(self, factory):
+        self.options_pages.append(factory)
+
+    def unregisterOptionsWidgetFactory(self, factory):
+        self.options_pages.remove(factory)
+
+    def registerCustomDropHandler(self, handler):
+        self.drop_handlers.append(handler)
+
+    def unregisterCustomDropHandler(self, handler):
+        self.drop_handlers.remove(handler)
 
     def texts(self) -> list[str]:
         """What hangs in the message bar."""

@@ -46,13 +46,13 @@ def test_a_gateway_is_greeted_and_its_site_and_robots_arrive(connection, gateway
 
     def arrived():
         news = connection.take()
-        robots.update(news.robots)
+        robots.update({name: news.robots.report(row) for row, name in enumerate(news.robots.names)})
         sites.extend([news.site] if news.site else [])
         return robots
 
     wait(arrived, what="r1")
     assert sites == [gateway.site]
-    assert robots["r1"].report == gateway.robots["r1"]
+    assert robots["r1"] == gateway.robots["r1"]
     assert gateway.requests[0] == ("hello", {"operator": "anna", "protocol": 1})
 
 
@@ -168,11 +168,11 @@ def test_a_killed_gateway_is_found_again_on_its_port(connection, gateway, make_r
     wait(lambda: phase_of(connection) is Phase.RETRYING, 3)
     gateway.show(make_robot("r9"))
     gateway.start()
-    robots = {}
+    robots = set()
 
     def again():
         news = connection.take()
-        robots.update(news.robots)
+        robots.update(news.robots.names)
         return news.link.phase is Phase.CONNECTED and "r9" in robots
 
     wait(again, 6, what="the second link")
@@ -254,7 +254,7 @@ def test_a_slow_reader_gets_the_newest_state_and_no_queue(connection, gateway, m
     time.sleep(0.3)
     news = connection.take()
     assert len(news.robots) == 1
-    assert news.robots["r1"].report.x == 1999.0
+    assert news.robots.report(0).x == 1999.0
 
 
 def test_a_gateway_that_hangs_is_noticed_within_five_seconds(connection, gateway, wait):

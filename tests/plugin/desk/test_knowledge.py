@@ -10,17 +10,23 @@ import numpy as np
 import pytest
 from fleet_supervisor.plugin.desk.command_book import CommandBook, in_words
 from fleet_supervisor.plugin.desk.picture import STATES, RobotPicture
-from fleet_supervisor.plugin.desk.trails import Trails
+from fleet_supervisor.plugin.desk.placement_book import PlacementBook
+from fleet_supervisor.plugin.desk.queue_book import QueueBook
 from fleet_supervisor.plugin.errors import LinkError
 from fleet_supervisor.plugin.wire.backoff import Backoff
-from fleet_supervisor.plugin.wire.mailbox import MOST_COMMANDS, Mailbox, Sighting
+from fleet_supervisor.plugin.wire.mailbox import MOST_COMMANDS, Mailbox
 from fleet_supervisor.plugin.wire.outbox import Order, Outbox
+from fleet_supervisor.plugin.wire.placement_news import PlacementNews
+from fleet_supervisor.plugin.wire.position_rows import sightings
 from fleet_supervisor.plugin.wire.protocol import DeskProtocol
+from fleet_supervisor.plugin.wire.queue_news import QueueNews
 from fleet_supervisor.robot_bridge.messages import (
     CommandReport,
     CommandState,
     CommandStep,
     RobotState,
+    placement_report,
+    queue_report,
     to_json,
 )
 from hypothesis import given
@@ -66,7 +72,7 @@ def test_orders_are_repeated_in_the_order_in_which_they_were_asked():
 
 
 def sighting(report, received=100.0):
-    return {report.robot: Sighting(report, received)}
+    return sightings([to_json(report)], received)
 
 
 @pytest.mark.parametrize(
@@ -114,19 +120,10 @@ def test_a_robot_without_a_pose_is_known_but_not_drawn(make_robot):
     picture.merge(sighting(make_robot("r2", x=None, y=None, theta=None, v=None)))
     picture.merge(sighting(make_robot("r1", theta=None)))
     arrays = picture.arrays(100.0)
-    assert len(picture.views(100.0)) == 2
-    assert arrays.names == ["r1"]
-    assert math.isnan(arrays.theta[0])
-
-
-def test_a_trail_grows_with_the_way_and_fades_with_time(make_robot):
-    trails = Trails(seconds=10.0)
-    for second in range(20):
-        trails.extend(sighting(make_robot(x=float(min(second, 15))), received=float(second)))
-    (trail,) = trails.arrays(now=19.0)
-    np.testing.assert_allclose(trail[:, 0], [9, 10, 11, 12, 13, 14, 15])
-    np.testing.assert_allclose(trail[:, 2], [10, 9, 8, 7, 6, 5, 4])
-    assert trails.arrays(now=40.0) == []
+    assert [view.name for view in picture.views(100.0)] == ["r1", "r2"]
+    assert arrays.names == ["r2", "r1"]
+    assert np.isnan(arrays.xy[0]).all() and not np.isnan(arrays.xy[1]).any()
+    assert math.isnan(arrays.theta[1])
 
 
 def command(state=CommandState.QUEUED, steps=1, **more):
@@ -166,12 +163,12 @@ def test_a_window_that_does_not_look_costs_a_bounded_memory(make_robot):
     mailbox = Mailbox()
     for number in range(3 * MOST_COMMANDS):
         mailbox.put_commands([command(command=f"command-{number}")])
-        mailbox.put_robots([make_robot(x=float(number))], float(number))
+        mailbox.put_robots(sighting(make_robot(x=float(number)), float(number)))
     news = mailbox.take()
     assert len(news.robots) == 1
     assert list(news.commands)[-1] == f"command-{3 * MOST_COMMANDS - 1}"
     assert len(news.commands) == MOST_COMMANDS
-    assert not mailbox.take().robots
+    assert len(mailbox.take().robots) == 0
 
 
 def greeted(site):
@@ -186,8 +183,10 @@ def greeted(site):
 def test_after_the_greeting_the_desk_subscribes_and_asks_for_commands(site):
     _, mailbox, sent = greeted(site)
     assert [(request["method"], request["params"]) for request in sent] == [
-        ("subscribe", {"rate": 10.0}),
+        ("subscribe", {"rate": 10.0, "form": "columns"}),
         ("get_commands", {"limit": 200}),
+        ("get_closures", {}),
+        ("get_queue", {"paths": False, "ended": 10}),
     ]
     assert mailbox.take().site == site
 
@@ -223,9 +222,70 @@ def test_positions_that_are_none_are_refused_in_words(site, params):
     protocol, mailbox, _ = greeted(site)
     with pytest.raises(LinkError, match="ws://here/desk"):
         protocol.receive(json.dumps({"jsonrpc": "2.0", "method": "positions", "params": params}))
-    assert not mailbox.take().robots
+    assert len(mailbox.take().robots) == 0
 
 
 def test_what_a_newer_gateway_says_besides_is_passed_over(site):
     protocol, _, _ = greeted(site)
     assert protocol.receive('{"jsonrpc": "2.0", "method": "weather", "params": {"rain": true}}') == []
+
+
+def queue(robot="r1", revision=1, **more):
+    values = {"robot": robot, "revision": revision, "state": "running", "robot_state": "fresh"}
+    return {**values, "tasks": [], "ended": [], **more}
+
+
+def placement(number, **more):
+    places = {"planned_x": 1.0, "planned_y": 2.0, "x": 1.1, "y": 2.0, "theta": 0.0, "deviation": 0.1}
+    facts = {"task": f"task-{number}", "robot": "r1", "placed_at": 5.0, "command": "c"}
+    return {"placement": number, **facts, **places, **more}
+
+
+def told(protocol, **message):
+    protocol.receive(json.dumps({"jsonrpc": "2.0", **message}))
+
+
+def answer_to(protocol, method, **params):
+    """Ask for something and return the id that its answer names."""
+    (text,) = protocol.submit(Order(method, method, params))
+    return json.loads(text)["id"]
+
+
+def test_queues_and_placed_cones_are_taken_from_news_answers_and_refusals(site):
+    protocol, mailbox, sent = greeted(site)
+    (every,) = [one["id"] for one in sent if one["method"] == "get_queue"]
+    told(protocol, id=every, result={"queues": [queue("r1"), queue("r2")]})
+    news = mailbox.take()
+    assert news.queues.every and set(news.queues.queues) == {"r1", "r2"}
+    told(protocol, method="queue", params=queue("r1", 2))
+    told(protocol, method="placement", params=placement(7))
+    told(protocol, id=answer_to(protocol, "set_queue"), result=queue("r2", 5))
+    told(protocol, id=answer_to(protocol, "take_over"), result={"queues": [queue("r3", 6)]})
+    told(protocol, id=answer_to(protocol, "get_placements"), result={"placements": [placement(8)]})
+    news = mailbox.take()
+    assert {name: one.revision for name, one in news.queues.queues.items()} == {"r1": 2, "r2": 5, "r3": 6}
+    assert set(news.placements.placements) == {7, 8} and not news.queues.every
+    refusal = {"code": -32006, "message": "look again", "data": queue("r1", 9)}
+    told(protocol, id=answer_to(protocol, "add_tasks"), error=refusal)
+    news = mailbox.take()
+    assert news.queues.queues["r1"].revision == 9
+    assert news.answers[-1].outdated and news.answers[-1].error == "look again"
+
+
+def test_a_robot_without_a_queue_has_revision_0_and_one_that_is_gone_is_forgotten():
+    book, news = QueueBook(), QueueNews()
+    news.take_all([queue_report(queue("r1", 4)), queue_report(queue("r2", 2))])
+    assert sorted(book.merge(news)) == ["r1", "r2"]
+    assert (book.revision("r1"), book.revision("r9")) == (4, 0)
+    fewer = QueueNews()
+    fewer.take_all([queue_report(queue("r2", 2))])
+    assert book.merge(fewer) == ["r1"] and book.get("r1") is None
+    assert book.merge(fewer) == []
+
+
+def test_of_very_many_placed_cones_the_newest_are_kept(monkeypatch):
+    monkeypatch.setattr("fleet_supervisor.plugin.desk.placement_book.MOST_PLACEMENTS", 3)
+    book, news = PlacementBook(), PlacementNews()
+    news.take([placement_report(placement(number)) for number in (4, 1, 5, 2)])
+    assert book.merge(news) == [4, 1, 5, 2]
+    assert sorted(one.placement for one in book) == [2, 4, 5]

@@ -227,6 +227,7 @@ def test_the_layer_carries_the_robots_in_the_sites_crs(at_desk, wait):
         "age",
         "link",
         "command",
+        "accuracy",
     ]
     assert layer.crs().authid() == "EPSG:32633"
     group = QgsProject.instance().layerTreeRoot().findGroup("Fleet")

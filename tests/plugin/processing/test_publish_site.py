@@ -90,6 +90,15 @@ def refused(publish, tmp_path):
     return run
 
 
+def test_surfaces_are_published_with_their_names_and_where_they_come_from(publish, yard, make_layer):
+    fields = "&field=surface:string&field=name:string&field=origin:string"
+    features = [(AREA, "asphalt", "Yard", "generated"), (RING, "sand", None, None)]
+    yard["ROAD_SURFACES"] = [make_layer("ground", "Polygon", fields=fields, features=features)]
+    site = read_site(publish(**yard).folder)
+    told = [(one.label, one.name, one.origin) for one in site.surfaces]
+    assert told == [("asphalt", "Yard", "generated"), ("sand", "", "drawn")]
+
+
 def test_what_is_published_is_what_the_layers_hold(publish, yard):
     done = publish(**yard, ORIGIN="-10,-20", ROTATION=90, REACHED_TOLERANCE=0.3, STALE_AFTER=2, LOST_AFTER=5)
     site = read_site(done.folder)

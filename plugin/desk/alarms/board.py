@@ -1,0 +1,140 @@
+"""The alarms that there are, and the log of those that there were."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterable
+from dataclasses import replace
+
+import numpy as np
+
+from .alarm import Alarm, AlarmChange, AlarmEvent, Key
+from .latches import PairLatch, RowLatch
+from .rules import RULES, Situation, too_close
+from .thresholds import AlarmKind, Thresholds
+from .words import text_of
+
+MOST_EVENTS = 5000
+MOST_ALARMS = 1000
+ON_AFTER = 1.0
+"""Seconds for which a rule holds before it is an alarm; a robot that stands has longer."""
+OFF_AFTER = 1.0
+URGENCY = {kind: number for number, kind in enumerate(AlarmKind)}
+
+
+class AlarmBoard:
+    """Looks at one situation after the other. ``moment`` is on the monotonic clock, ``at`` since 1970."""
+
+    def __init__(self, limits: Thresholds | None = None) -> None:
+        self._limits = limits or Thresholds()
+        self._rows = {kind: RowLatch() for kind in RULES}
+        self._pairs = PairLatch()
+        self._alarms: dict[Key, Alarm] = {}
+        self.log: deque[AlarmEvent] = deque(maxlen=MOST_EVENTS)
+
+    @property
+    def limits(self) -> Thresholds:
+        """The settings."""
+        return self._limits
+
+    def alarms(self) -> list[Alarm]:
+        """Return those to be shown: new ones first, what holds before what is over, pressing ones first."""
+        return sorted(
+            self._alarms.values(),
+            key=lambda alarm: (not alarm.is_new, alarm.ended is not None, URGENCY[alarm.kind], -alarm.began),
+        )
+
+    def of(self, robot: str) -> list[Alarm]:
+        """Return the alarms that a robot is part of, pressing ones first."""
+        return [alarm for alarm in self.alarms() if robot in (alarm.robot, alarm.other)]
+
+    def look(self, now: Situation, moment: float, at: float) -> list[AlarmEvent]:
+        """Judge a situation and return what changed by it."""
+        events = []
+        for kind, rule in RULES.items():
+            holds, over = rule(now, self._limits)
+            if kind not in self._limits.kinds:
+                holds, over = np.zeros_like(holds), np.ones_like(over)
+            wait = self._limits.stopped_after if kind is AlarmKind.STOPPED else ON_AFTER
+            rises, falls = self._rows[kind].update(holds, over, moment, wait, OFF_AFTER)
+            events += [self._begin(kind, now, row, at) for row in rises.tolist()]
+            events += self._end([(kind, now.names[row], "") for row in falls.tolist()], at)
+        events += self._look_at_pairs(now, at)
+        self.log.extend(events)
+        self._let_go()
+        return events
+
+    def set_limits(self, limits: Thresholds) -> None:
+        """Judge by other settings from the next look on."""
+        self._limits = limits
+
+    def acknowledge(self, keys: Iterable[Key], by: str, at: float) -> list[AlarmEvent]:
+        """Note that somebody has seen these alarms; those that are over go."""
+        events = []
+        for key in keys:
+            alarm = self._alarms.get(key)
+            if alarm is None or not alarm.is_new:
+                continue
+            seen = replace(alarm, acknowledged=at, by=by)
+            events.append(AlarmEvent(at, AlarmChange.ACKNOWLEDGED, seen, by))
+            if alarm.ended is None:
+                self._alarms[key] = seen
+            else:
+                del self._alarms[key]
+        self.log.extend(events)
+        return events
+
+    def clear(self) -> None:
+        """Forget the robots and their alarms: they are another site's. The log stays."""
+        self._rows = {kind: RowLatch() for kind in RULES}
+        self._pairs = PairLatch()
+        self._alarms.clear()
+
+    def _let_go(self) -> None:
+        """Leave what is over to the log where nobody has acknowledged anything for a long time."""
+        too_many = len(self._alarms) - MOST_ALARMS
+        if too_many > 0:
+            over = (alarm for alarm in self._alarms.values() if alarm.ended is not None)
+            for alarm in sorted(over, key=lambda alarm: alarm.began)[:too_many]:
+                del self._alarms[alarm.key]
+
+    def _look_at_pairs(self, now: Situation, at: float) -> list[AlarmEvent]:
+        one, other, apart = too_close(now, self._limits)
+        if AlarmKind.TOO_CLOSE not in self._limits.kinds:
+            one, other, apart = one[:0], other[:0], apart[:0]
+        rises, falls = self._pairs.update(one, other, apart, self._limits.too_close)
+        kind = AlarmKind.TOO_CLOSE
+        events = [self._begin(kind, now, i, at, j) for i, j in rises]
+        return events + self._end([(kind, now.names[i], now.names[j]) for i, j in falls], at)
+
+    def _begin(
+        self, kind: AlarmKind, now: Situation, row: int, at: float, other: int | None = None
+    ) -> AlarmEvent:
+        x, y = now.xy[row].tolist()
+        alarm = Alarm(
+            kind,
+            now.names[row],
+            text_of(kind, now, row, other),
+            at,
+            "" if other is None else now.names[other],
+            (x, y) if np.isfinite(x) and np.isfinite(y) else None,
+        )
+        before = self._alarms.get(alarm.key)
+        if before is not None and before.is_new:
+            alarm = replace(alarm, times=before.times + 1)
+        self._alarms[alarm.key] = alarm
+        return AlarmEvent(at, AlarmChange.BEGAN, alarm)
+
+    def _end(self, keys: list[Key], at: float) -> list[AlarmEvent]:
+        events = []
+        for key in keys:
+            alarm = self._alarms.get(key)
+            if alarm is None:
+                continue
+            over = replace(alarm, ended=at)
+            events.append(AlarmEvent(at, AlarmChange.ENDED, over))
+            if alarm.is_new:
+                self._alarms[key] = over
+            else:
+                del self._alarms[key]
+        return events

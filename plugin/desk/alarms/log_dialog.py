@@ -1,0 +1,130 @@
+"""The log of alarms: what began, ended and was acknowledged in this session."""
+
+from __future__ import annotations
+
+from qgis.PyQt.QtCore import QAbstractTableModel, QModelIndex, QObject, Qt
+from qgis.PyQt.QtWidgets import (
+    QDialog,
+    QDialogButtonBox,
+    QFileDialog,
+    QHeaderView,
+    QLabel,
+    QTableView,
+    QVBoxLayout,
+    QWidget,
+)
+
+from ...errors import FleetError
+from ...language import tr
+from ...settings.preferences import export_path
+from ..csv_files import iso_time, write_csv
+from .alarm import AlarmEvent
+from .alarm_model import time_of_day
+from .words import CHANGES, KINDS, who
+
+COLUMNS = (tr("Time"), tr("What"), tr("Kind"), tr("Robot"), tr("Alarm"), tr("By"))
+CSV_HEAD = ("time", "change", "kind", "robot", "other", "x", "y", "alarm", "by")
+
+
+class AlarmLogDialog(QDialog):
+    """Newest first; the whole of it can be written as CSV."""
+
+    def __init__(self, parent: QWidget | None = None):
+        super().__init__(parent)
+        self.setObjectName("fleet_alarm_log_dialog")
+        self.setWindowTitle(tr("Log of alarms"))
+        self._events: list[AlarmEvent] = []
+        self._model = EventModel(self)
+        view = QTableView()
+        view.setObjectName("fleet_alarm_events")
+        view.setModel(self._model)
+        view.setShowGrid(False)
+        view.setWordWrap(False)
+        view.verticalHeader().hide()
+        change, kind = (max(known.values(), key=len) for known in (CHANGES, KINDS))
+        widths = ("00:00:00", change, kind, "robot-00", "", "operator")
+        for column, widest in enumerate(widths):
+            view.setColumnWidth(column, view.fontMetrics().horizontalAdvance(widest) + 16)
+        view.horizontalHeader().setSectionResizeMode(4, QHeaderView.ResizeMode.Stretch)
+        self._said = QLabel()
+        self._said.setObjectName("fleet_alarm_log_said")
+        self._said.setWordWrap(True)
+        buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close)
+        export = buttons.addButton(tr("Export CSV…"), QDialogButtonBox.ButtonRole.ActionRole)
+        export.setObjectName("fleet_export_alarms")
+        export.clicked.connect(self._ask_where)
+        buttons.rejected.connect(self.reject)
+        rows = QVBoxLayout(self)
+        rows.addWidget(view, 1)
+        rows.addWidget(self._said)
+        rows.addWidget(buttons)
+        self.resize(1040, 440)
+
+    def show_events(self, events: list[AlarmEvent]) -> None:
+        """Show these, oldest given first."""
+        self._events = events
+        self._model.show_events(events[::-1])
+
+    def export(self, path: str) -> None:
+        """Write all that is shown to ``path`` and say so."""
+        try:
+            count = write_csv(path, CSV_HEAD, map(_csv_row, self._events))
+        except FleetError as error:
+            self._said.setText(str(error))
+            return
+        self._said.setText(tr("{count} lines written to {path}", count=count, path=path))
+
+    def _ask_where(self) -> None:
+        title = tr("Export the log of alarms")
+        path, _ = QFileDialog.getSaveFileName(self, title, export_path("alarms.csv"), tr("CSV (*.csv)"))
+        if path:
+            self.export(path)
+
+
+class EventModel(QAbstractTableModel):
+    """One row for each event."""
+
+    def __init__(self, parent: QObject | None = None):
+        super().__init__(parent)
+        self._events: list[AlarmEvent] = []
+
+    def rowCount(self, parent: QModelIndex | None = None) -> int:
+        return 0 if parent is not None and parent.isValid() else len(self._events)
+
+    def columnCount(self, parent: QModelIndex | None = None) -> int:
+        return 0 if parent is not None and parent.isValid() else len(COLUMNS)
+
+    def headerData(self, section: int, orientation: Qt.Orientation, role: int = 0) -> object:
+        if orientation == Qt.Orientation.Horizontal and role == Qt.ItemDataRole.DisplayRole:
+            return COLUMNS[section]
+        return None
+
+    def data(self, index: QModelIndex, role: int = 0) -> object:
+        if role not in (Qt.ItemDataRole.DisplayRole, Qt.ItemDataRole.ToolTipRole):
+            return None
+        event = self._events[index.row()]
+        alarm = event.alarm
+        what = CHANGES[event.change], KINDS[alarm.kind], who(alarm), alarm.text
+        return (time_of_day(event.at), *what, event.by)[index.column()]
+
+    def show_events(self, events: list[AlarmEvent]) -> None:
+        """Show these, in this order."""
+        self.beginResetModel()
+        self._events = events
+        self.endResetModel()
+
+
+def _csv_row(event: AlarmEvent) -> tuple[object, ...]:
+    alarm = event.alarm
+    x, y = alarm.xy if alarm.xy is not None else (None, None)
+    return (
+        iso_time(event.at),
+        event.change.value,
+        alarm.kind.value,
+        alarm.robot,
+        alarm.other,
+        x,
+        y,
+        alarm.text,
+        event.by,
+    )

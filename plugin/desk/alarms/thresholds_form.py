@@ -1,0 +1,87 @@
+"""What is an alarm, as fields."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from qgis.PyQt.QtWidgets import QCheckBox, QDoubleSpinBox, QGridLayout, QLabel, QWidget
+
+from ...language import tr
+from .thresholds import RANGES, AlarmKind, Thresholds
+from .words import KINDS
+
+
+@dataclass(frozen=True)
+class Field:
+    """One number of the settings: how it is shown."""
+
+    kind: AlarmKind
+    name: str
+    label: str
+    unit: str
+    scale: float = 1.0
+    decimals: int = 1
+
+
+FIELDS = (
+    Field(AlarmKind.LOW_BATTERY, "low_battery", tr("begins below"), " %", 100.0, 0),
+    Field(AlarmKind.LOW_BATTERY, "battery_margin", tr("ends so much above that"), " %", 100.0, 0),
+    Field(AlarmKind.TOO_CLOSE, "too_close", tr("begins when two are nearer than"), " m"),
+    Field(AlarmKind.TOO_CLOSE, "close_margin", tr("ends so much further apart"), " m"),
+    Field(AlarmKind.OUTSIDE_SITE, "outside_margin", tr("begins so far outside"), " m"),
+    Field(AlarmKind.OFF_ROAD, "road_margin", tr("begins so far beside the road"), " m"),
+    Field(AlarmKind.STOPPED, "stopped_after", tr("begins after standing with a task for"), " s", 1.0, 0),
+)
+SITE_SETS = tr("the site's settings say after how long (see the robots' state)")
+
+
+class ThresholdsForm(QWidget):
+    """A box for each kind of alarm that is watched for, with its numbers beside it."""
+
+    def __init__(self, parent: QWidget | None = None):
+        super().__init__(parent)
+        self._boxes: dict[AlarmKind, QCheckBox] = {}
+        self._numbers: dict[str, QDoubleSpinBox] = {}
+        grid = QGridLayout(self)
+        grid.setContentsMargins(0, 0, 0, 0)
+        grid.setColumnStretch(1, 1)
+        for kind in AlarmKind:
+            self._add(grid, kind)
+
+    def show_limits(self, limits: Thresholds) -> None:
+        """Show these settings."""
+        for kind, box in self._boxes.items():
+            box.setChecked(kind in limits.kinds)
+        for field in FIELDS:
+            self._numbers[field.name].setValue(getattr(limits, field.name) * field.scale)
+
+    def limits(self) -> Thresholds:
+        """Return what stands in the fields."""
+        return Thresholds(
+            **{field.name: self._numbers[field.name].value() / field.scale for field in FIELDS},
+            kinds=frozenset(kind for kind, box in self._boxes.items() if box.isChecked()),
+        )
+
+    def _add(self, grid: QGridLayout, kind: AlarmKind) -> None:
+        row = grid.rowCount()
+        box = QCheckBox(KINDS[kind][0].upper() + KINDS[kind][1:])
+        box.setObjectName(f"fleet_watch_{kind.name.lower()}")
+        self._boxes[kind] = box
+        grid.addWidget(box, row, 0)
+        fields = [field for field in FIELDS if field.kind is kind]
+        if not fields:
+            grid.addWidget(QLabel(SITE_SETS), row, 1, 1, 2)
+        for number, field in enumerate(fields):
+            grid.addWidget(QLabel(field.label), row + number, 1)
+            grid.addWidget(self._spin_box(field, box), row + number, 2)
+
+    def _spin_box(self, field: Field, box: QCheckBox) -> QDoubleSpinBox:
+        least, most = RANGES[field.name]
+        spin = QDoubleSpinBox()
+        spin.setObjectName(f"fleet_{field.name}")
+        spin.setDecimals(field.decimals)
+        spin.setRange(least * field.scale, most * field.scale)
+        spin.setSuffix(field.unit)
+        box.toggled.connect(spin.setEnabled)
+        self._numbers[field.name] = spin
+        return spin

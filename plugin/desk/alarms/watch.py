@@ -1,0 +1,120 @@
+"""Looks at the robots again and again, and tells of alarms."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable
+
+from qgis.core import Qgis, QgsMessageLog
+from qgis.PyQt.QtCore import QObject, pyqtSignal
+
+from ...language import tr
+from ...sites.surface_store import SurfaceStore
+from ...wire.status import Phase
+from ..desk import PULL_EVERY_MS, Desk
+from ..notices import TITLE
+from .alarm import AlarmChange, AlarmEvent, Key
+from .board import AlarmBoard
+from .road_ground import RoadGround
+from .situations import Situations
+from .stored_limits import read_limits, write_limits
+from .thresholds import AlarmKind, Thresholds
+from .words import KINDS
+
+LOOK_EVERY = 500 // PULL_EVERY_MS
+MANY = 500
+"""With more robots it looks half as often."""
+MOST_LOGGED = 20
+"""Lines that one look writes into QGIS's message log."""
+
+
+class AlarmWatch(QObject):
+    """Watches as long as the link is up: what the gateway does not tell, nobody can judge."""
+
+    changed = pyqtSignal()
+    """Alarms came, ended or were acknowledged, or whether somebody watches."""
+    happened = pyqtSignal(list)
+    """The AlarmEvents of one look."""
+
+    def __init__(self, desk: Desk, surfaces: SurfaceStore, parent: QObject | None = None):
+        super().__init__(parent)
+        self._desk = desk
+        self._ground = RoadGround(surfaces, self)
+        self._situations = Situations(desk, self._ground)
+        self._pulls = 0
+        self._generation = desk.picture.generation
+        self._told = ""
+        self.board = AlarmBoard(read_limits())
+        desk.pulled.connect(self._pulled)
+
+    def remove(self) -> None:
+        """Look no more."""
+        self._desk.pulled.disconnect(self._pulled)
+        self._ground.remove()
+
+    def why_not(self) -> str:
+        """Return what is not watched and why, empty when everything is."""
+        if self._desk.link.phase is not Phase.CONNECTED:
+            return tr("Nothing is watched: the desk is not connected.")
+        off = [KINDS[kind] for kind in AlarmKind if kind not in self.board.limits.kinds]
+        texts = [tr("Switched off: {kinds}.", kinds=", ".join(off))] if off else []
+        if self._ground.why_not and AlarmKind.OFF_ROAD in self.board.limits.kinds:
+            why = self._ground.why_not.rstrip(".")
+            texts.append(tr("Off the road is not watched: {why}.", why=why))
+        return " ".join(texts)
+
+    def look(self) -> None:
+        """Judge what is known now."""
+        if self._desk.link.phase is Phase.CONNECTED and self._desk.site is not None:
+            moment = self._desk.clock()
+            situation = self._situations.at(moment, self.board.limits)
+            self._tell(self.board.look(situation, moment, time.time()))
+        self._tell_of_watching()
+
+    def acknowledge(self, keys: Iterable[Key]) -> None:
+        """Note that the operator has seen these alarms."""
+        link = self._desk.link
+        # While connected the link's text is who this desk is to the gateway.
+        operator = (link.reason if link.phase is Phase.CONNECTED else "") or tr("this desk")
+        self._tell(self.board.acknowledge(keys, operator, time.time()))
+
+    def acknowledge_all(self) -> None:
+        """Note that the operator has seen every alarm."""
+        self.acknowledge([alarm.key for alarm in self.board.alarms()])
+
+    def set_limits(self, limits: Thresholds) -> None:
+        """Judge by these settings from now on, in later sessions as well."""
+        write_limits(limits)
+        self.board.set_limits(limits)
+        self.changed.emit()
+
+    def _pulled(self) -> None:
+        if self._generation != self._desk.picture.generation:
+            self._generation = self._desk.picture.generation
+            self.board.clear()
+            self.changed.emit()
+        self._pulls += 1
+        every = LOOK_EVERY if len(self._desk.picture) <= MANY else 2 * LOOK_EVERY
+        if self._pulls % every == 0:
+            self.look()
+
+    def _tell(self, events: list[AlarmEvent]) -> None:
+        if not events:
+            return
+        began = [event for event in events if event.change is AlarmChange.BEGAN]
+        for event in began[:MOST_LOGGED]:
+            QgsMessageLog.logMessage(event.alarm.text, TITLE, Qgis.MessageLevel.Warning, False)
+        if len(began) > MOST_LOGGED:
+            text = tr(
+                "and {number} more alarms: see the log of alarms in the Fleet panel",
+                number=len(began) - MOST_LOGGED,
+            )
+            QgsMessageLog.logMessage(text, TITLE, Qgis.MessageLevel.Warning, False)
+        self.happened.emit(events)
+        self.changed.emit()
+
+    def _tell_of_watching(self) -> None:
+        told = self.why_not()
+        if told != self._told:
+            self._told = told
+            self.changed.emit()

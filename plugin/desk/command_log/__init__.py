@@ -1,0 +1,1 @@
+"""The log of commands: what was asked of whom, every step of it, and where."""

@@ -1,0 +1,246 @@
+"""The log of commands with what is above it: whose, which, how many are open, and what to do with it."""
+
+from __future__ import annotations
+
+from qgis.PyQt.QtCore import QModelIndex, Qt, pyqtSignal
+from qgis.PyQt.QtWidgets import (
+    QAbstractItemView,
+    QComboBox,
+    QFileDialog,
+    QHBoxLayout,
+    QHeaderView,
+    QLabel,
+    QSizePolicy,
+    QToolButton,
+    QTreeView,
+    QVBoxLayout,
+    QWidget,
+)
+
+from ....robot_bridge.messages import CommandReport, GetCommands
+from ...errors import FleetError
+from ...language import tr
+from ...settings.preferences import export_path
+from ..command_book import MOST_COMMANDS, in_words, place_of
+from ..csv_files import write_csv
+from ..desk import Desk
+from ..small_views import shrink
+from .entries import CSV_HEAD, Filter, Which, csv_rows, summary
+from .log_model import LogModel
+
+EVERY_ROBOT, SELECTED = tr("All robots"), tr("Selected robots")
+WHICH = {
+    Which.ALL: tr("All commands"),
+    Which.OPEN: tr("Open"),
+    Which.FAILED: tr("Failed, aborted, expired"),
+}
+OLDER = 1000
+"""Commands that are asked for at once."""
+
+
+class CommandLog(QWidget):
+    """Newest command on top; the newest one lies open until the next comes."""
+
+    place_wanted = pyqtSignal(float, float)
+    """Where a command leads to, metres in the site frame."""
+
+    def __init__(self, desk: Desk, parent: QWidget | None = None):
+        super().__init__(parent)
+        self._desk = desk
+        self._model = LogModel(self)
+        self._opened: str | None = None
+        self._asked: set[str] = set()
+        self.view = _tree(self._model)
+        self._robots = _choices("fleet_log_robot", tr("Whose commands are listed"))
+        self._robots.addItems([EVERY_ROBOT, SELECTED])
+        self._which = _choices("fleet_log_filter", tr("Which commands are listed"))
+        self._which.addItems([WHICH[which] for which in Which])
+        self._summary = QLabel(tr("None open"))
+        self._summary.setObjectName("fleet_log_summary")
+        self._summary.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
+        self._lay_out()
+        self._robots.currentIndexChanged.connect(self.refresh)
+        self._which.currentIndexChanged.connect(self.refresh)
+        self.view.doubleClicked.connect(self._go)
+        self.view.selectionModel().selectionChanged.connect(self._allow)
+        desk.commands_changed.connect(self.show_reports)
+        desk.site_changed.connect(self._site_changed)
+        desk.selection_changed.connect(self._selection_changed)
+        desk.answered.connect(self._answered)
+        self._allow()
+
+    def show_reports(self, reports: list[CommandReport]) -> None:
+        """Add what is new, and bring what is known up to date."""
+        self._list_robots({report.robot for report in reports})
+        if len(reports) > OLDER // 2:
+            self.refresh()
+            return
+        added = self._model.merge(reports)
+        if len(self._model.shown) > MOST_COMMANDS:
+            self.refresh()
+        elif added:
+            self._open(self._model.index(0, 0))
+        self._summary.setText(summary(self._desk.book))
+
+    def refresh(self, *_what: object) -> None:
+        """List anew what the filters keep."""
+        self._model.show_all(self._desk.book, self.filter())
+        self._opened = None
+        self._open(self._model.index(0, 0))
+        self._summary.setText(summary(self._desk.book))
+        self._allow()
+
+    def filter(self) -> Filter:
+        """Return what the fields above the log say."""
+        whose = self._robots.currentIndex()
+        robots = None if whose == 0 else frozenset({self._robots.currentText()})
+        if whose == 1:
+            robots = frozenset(self._desk.selection)
+        return Filter(robots, list(Which)[self._which.currentIndex()])
+
+    def export(self, path: str) -> None:
+        """Write what is listed, every step of it, to ``path`` and say so."""
+        try:
+            count = write_csv(path, CSV_HEAD, csv_rows(self._model.shown))
+        except FleetError as error:
+            self._desk.failed.emit(str(error))
+            return
+        self._desk.remarked.emit(
+            tr(
+                "{commands} commands with {steps} steps written to {path}",
+                commands=len(self._model.shown),
+                steps=count,
+                path=path,
+            )
+        )
+
+    def ask_for_older(self) -> None:
+        """Ask the gateway for what was asked for before this desk came."""
+        whose = self._robots.currentText()
+        robot = self._desk.selected if whose == SELECTED else None if whose == EVERY_ROBOT else whose
+        try:
+            self._asked.add(self._desk.inquire(GetCommands(robot, OLDER)))
+        except FleetError as error:
+            self._desk.complained.emit(str(error))
+
+    def _lay_out(self) -> None:
+        tip = tr("Show where the chosen command leads to (double click)")
+        go = _tool("fleet_log_go", tr("Go there"), tip)
+        go.clicked.connect(lambda: self._go(self.view.currentIndex()))
+        older = _tool("fleet_log_older", tr("Older"), tr("Ask the gateway for older commands"))
+        older.clicked.connect(self.ask_for_older)
+        tip = tr("Write what is listed, every step of it, as CSV")
+        export = _tool("fleet_log_export", tr("Export…"), tip)
+        export.clicked.connect(self._ask_where)
+        self._go_button = go
+        head = QHBoxLayout()
+        head.setSpacing(4)
+        head.addWidget(self._robots, 1)
+        head.addWidget(self._which, 1)
+        for button in (go, older, export):
+            head.addWidget(button)
+        rows = QVBoxLayout(self)
+        rows.setContentsMargins(0, 2, 0, 0)
+        rows.setSpacing(3)
+        rows.addLayout(head)
+        rows.addWidget(self._summary)
+        rows.addWidget(self.view, 1)
+
+    def _list_robots(self, robots: set[str]) -> None:
+        known = {self._robots.itemText(row) for row in range(2, self._robots.count())}
+        if robots <= known:
+            return
+        chosen = self._robots.currentText()
+        self._robots.blockSignals(True)
+        while self._robots.count() > 2:
+            self._robots.removeItem(2)
+        self._robots.addItems(sorted(known | robots))
+        self._robots.setCurrentText(chosen)
+        self._robots.blockSignals(False)
+
+    def _open(self, index: QModelIndex) -> None:
+        report = self._model.report_at(index)
+        if report is None or report.command == self._opened:
+            return
+        before = None if self._opened is None else self._model.row_of(self._opened)
+        if before is not None:
+            self.view.collapse(self._model.index(before, 0))
+        self._opened = report.command
+        self.view.expand(index)
+
+    def _go(self, index: QModelIndex) -> None:
+        report = self._model.report_at(index)
+        if report is None:
+            return
+        place = place_of(report)
+        if place is None:
+            self._desk.complained.emit(
+                tr("{what} of {robot} leads to no place.", what=in_words(report), robot=report.robot)
+            )
+            return
+        self.place_wanted.emit(*place)
+
+    def _allow(self, *_what: object) -> None:
+        report = self._model.report_at(self.view.currentIndex())
+        self._go_button.setEnabled(report is not None and place_of(report) is not None)
+
+    def _answered(self, answer: object) -> None:
+        if answer.order.key in self._asked:
+            self._asked.discard(answer.order.key)
+            if answer.error is not None:
+                self._desk.complained.emit(tr("Older commands: {why}", why=answer.error))
+
+    def _selection_changed(self) -> None:
+        if self._robots.currentText() == SELECTED:
+            self.refresh()
+
+    def _site_changed(self) -> None:
+        if len(self._desk.book) == 0:
+            self._robots.blockSignals(True)
+            while self._robots.count() > 2:
+                self._robots.removeItem(2)
+            self._robots.blockSignals(False)
+            self.refresh()
+
+    def _ask_where(self) -> None:
+        path, _ = QFileDialog.getSaveFileName(
+            self, tr("Export commands"), export_path("commands.csv"), "CSV (*.csv)"
+        )
+        if path:
+            self.export(path)
+
+
+def _tree(model: LogModel) -> QTreeView:
+    view = QTreeView()
+    view.setObjectName("fleet_command_log")
+    view.setModel(model)
+    view.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
+    view.setAlternatingRowColors(True)
+    view.setUniformRowHeights(True)
+    view.setExpandsOnDoubleClick(False)
+    view.setIndentation(14)
+    shrink(view)
+    for column, widest in enumerate(("00:00:00", "", "acknowledged", tr("{metres:.2f} m off", metres=0.0))):
+        width = view.fontMetrics().horizontalAdvance(widest)
+        view.setColumnWidth(column, width + (2 * view.indentation() + 12 if column == 0 else 12))
+    view.header().setStretchLastSection(False)
+    view.header().setSectionResizeMode(1, QHeaderView.ResizeMode.Stretch)
+    return view
+
+
+def _choices(name: str, tip: str) -> QComboBox:
+    box = QComboBox()
+    box.setObjectName(name)
+    box.setToolTip(tip)
+    box.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
+    box.setMinimumContentsLength(8)
+    return box
+
+
+def _tool(name: str, text: str, tip: str) -> QToolButton:
+    button = QToolButton()
+    button.setObjectName(name)
+    button.setText(text)
+    button.setToolTip(tip)
+    button.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+    return button

@@ -1,0 +1,68 @@
+"""The menu beside the gateway's URL: the connections that are kept, and what can be done with them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from qgis.core import QgsApplication
+from qgis.PyQt.QtCore import QObject, Qt, pyqtSignal
+from qgis.PyQt.QtWidgets import QMenu, QToolButton, QWidget
+
+from ..language import tr
+from ..settings.connection_dialog import ConnectionDialog
+from ..settings.connections import Connections
+from ..settings.connections_dialog import ConnectionsDialog
+from ..settings.gateway_connection import GatewayConnection
+
+NONE_CHOSEN = tr("Connections that are kept under a name")
+
+
+class ConnectionMenu(QObject):
+    """Owns the button; ``chosen`` tells the connection that the operator picked."""
+
+    chosen = pyqtSignal(object)
+
+    def __init__(
+        self, connections: Connections, as_it_stands: Callable[[], GatewayConnection], parent: QWidget
+    ):
+        super().__init__(parent)
+        self._connections, self._as_it_stands = connections, as_it_stands
+        self._window, self._marked = parent, ""
+        self.button = QToolButton(parent)
+        self.button.setObjectName("fleet_connections_button")
+        self.button.setIcon(QgsApplication.getThemeIcon("/mIconConnect.svg"))
+        self.button.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
+        self.button.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+        self.menu = QMenu(self.button)
+        self.menu.setObjectName("fleet_connections_menu")
+        self.menu.aboutToShow.connect(self.fill)
+        self.button.setMenu(self.menu)
+        self.mark("")
+
+    def mark(self, name: str) -> None:
+        """Show which connection the fields are filled with, empty for none."""
+        self._marked = name
+        self.button.setToolTip(tr("Connection: {name}", name=name) if name else NONE_CHOSEN)
+
+    def fill(self) -> None:
+        """List the connections as they are kept now."""
+        self.menu.clear()
+        for one in self._connections.all():
+            entry = self.menu.addAction(one.name.replace("&", "&&"))
+            entry.setObjectName(f"fleet_connection_{one.name}")
+            entry.setCheckable(True)
+            entry.setChecked(one.name == self._marked)
+            entry.setToolTip(one.url)
+            entry.triggered.connect(lambda _=False, one=one: self.chosen.emit(one))
+        self.menu.addSeparator()
+        keep = self.menu.addAction(tr("&Keep under a name…"))
+        keep.setObjectName("fleet_keep_connection")
+        keep.triggered.connect(self._keep)
+        manage = self.menu.addAction(tr("&Manage connections…"))
+        manage.setObjectName("fleet_manage_connections")
+        manage.triggered.connect(lambda: ConnectionsDialog(self._window.window()).open())
+
+    def _keep(self) -> None:
+        dialog = ConnectionDialog(self._as_it_stands(), self._connections, self._window.window())
+        dialog.kept.connect(self.chosen)
+        dialog.open()

@@ -1,0 +1,99 @@
+"""Coordinates as people write and paste them."""
+
+from __future__ import annotations
+
+import re
+
+from ...errors import FleetError
+from ...language import tr
+
+_NUMBER = r"\d+(?:[.,]\d+)?"
+_ANGLE = re.compile(
+    rf"""(?P<before>[NSEWO])?\s*(?P<sign>[-+−])?\s*
+    (?P<degrees>{_NUMBER})\s*(?:°|º|deg|d)?\s*
+    (?:(?P<minutes>{_NUMBER})\s*(?:'|′|’|m(?![a-z]))\s*)?
+    (?:(?P<seconds>{_NUMBER})\s*(?:"|″|”|''|s(?![a-z]))\s*)?
+    (?P<after>[NSEWO](?![a-z]))?""",
+    re.VERBOSE | re.IGNORECASE,
+)
+_WORDS = re.compile(r"\b(lat(itude)?|lon(gitude)?|lng|x|y|easting|northing)\b\s*[:=]?\s*", re.IGNORECASE)
+
+
+class PlaceTextError(FleetError):
+    """A text is no pair of coordinates."""
+
+
+def read_place(text: str, *, geographic: bool) -> tuple[float, float]:
+    """Return x, y of a text: longitude, latitude in degrees where ``geographic``, else easting, northing.
+
+    Geographic texts say latitude first unless letters tell otherwise: ``48.2, 16.37``; ``48,2; 16,37``;
+    ``N 48° 12' 30.5"  E 16° 22'``; ``16.37E 48.2N``. Others say x first.
+
+    :raises PlaceTextError: naming what was read and what is right.
+    """
+    pair = _halves(_WORDS.sub("", text.strip().strip("()[]")))
+    if pair is None:
+        raise _wrong(text, geographic)
+    (first, letter), (second, other) = pair
+    if not geographic:
+        if letter or other:
+            raise _wrong(text, geographic)
+        return first, second
+    lat, lon = first, second
+    if letter in ("E", "W") or other in ("N", "S"):
+        lat, lon = second, first
+    if (letter in ("N", "S")) == (other in ("N", "S")) and letter and other:
+        raise _wrong(text, geographic)
+    if not (-90 <= lat <= 90 and -180 <= lon <= 180):
+        raise PlaceTextError(
+            tr(
+                "{strip!r}: latitude {lat:g} and longitude {lon:g} are not on the earth; write latitude "
+                "first, or choose the CRS that the numbers are in.",
+                strip=text.strip(),
+                lat=lat,
+                lon=lon,
+            )
+        )
+    return lon, lat
+
+
+def _halves(text: str) -> tuple[tuple[float, str], tuple[float, str]] | None:
+    for pattern in (r"\s*;\s*", r"\s*,\s+", r"\s*,\s*", r"\s*\t\s*"):
+        parts = [part for part in re.split(pattern, text) if part]
+        first, second = map(_angle, parts) if len(parts) == 2 else (None, None)
+        if first is not None and second is not None:
+            return first, second
+    # Without a separator: wherever two whole angles stand side by side.
+    for gap in re.finditer(r"\s+", text):
+        first, second = _angle(text[: gap.start()]), _angle(text[gap.end() :])
+        if first is not None and second is not None:
+            return first, second
+    return None
+
+
+def _angle(text: str) -> tuple[float, str] | None:
+    """Return the number of one half, negative for south and west, and its letter."""
+    found = _ANGLE.fullmatch(text.strip())
+    if found is None or (found["before"] and found["after"]):
+        return None
+    minutes, seconds = (_value(found[name] or "0") for name in ("minutes", "seconds"))
+    if minutes >= 60 or seconds >= 60:
+        return None
+    value = _value(found["degrees"]) + minutes / 60 + seconds / 3600
+    # O is west in Spanish and Catalan, and east in German: only what is clear is taken.
+    letter = (found["before"] or found["after"] or "").upper()
+    if letter == "O" or (letter and found["sign"]):
+        return None
+    return (-value if found["sign"] in ("-", "−") or letter in ("S", "W") else value), letter
+
+
+def _value(text: str) -> float:
+    return float(text.replace(",", "."))
+
+
+def _wrong(text: str, geographic: bool) -> PlaceTextError:
+    shown = text.strip()[:60]
+    right = tr("x, y, as in 488070.50, 5190055.20")
+    if geographic:
+        right = tr("latitude, longitude, as in 48.2083, 16.3725")
+    return PlaceTextError(tr("{shown!r} is no place: write {right}.", shown=shown, right=right))

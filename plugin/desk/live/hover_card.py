@@ -1,0 +1,92 @@
+"""The card beside the mouse: what is known of the robot under it."""
+
+from __future__ import annotations
+
+import math
+from html import escape
+
+from qgis.PyQt.QtCore import QPoint, Qt
+from qgis.PyQt.QtGui import QFont
+from qgis.PyQt.QtWidgets import QLabel, QToolTip, QWidget
+
+from ....robot_bridge.messages import CommandReport
+from ....robot_bridge.sites.frame import SiteFrame
+from ...language import tr
+from ..colours import STATE_COLOURS
+from ..command_book import in_words
+from ..picture import RobotView
+from .labels import age_in_words
+
+AWAY = QPoint(18, 14)
+"""From the mouse to the card."""
+
+
+class HoverCard(QLabel):
+    """A card over the canvas that lets every click through."""
+
+    def __init__(self, parent: QWidget):
+        super().__init__(parent)
+        self.setObjectName("fleet_hover_card")
+        self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
+        self.setTextFormat(Qt.TextFormat.RichText)
+        self.setPalette(QToolTip.palette())
+        self.setFont(_smaller(QToolTip.font()))
+        self.setAutoFillBackground(True)
+        self.setFrameShape(QLabel.Shape.Box)
+        self.setMargin(6)
+        self.hide()
+
+    def show_at(self, text: str, mouse: QPoint) -> None:
+        """Show ``text`` beside the mouse, whole."""
+        self.setText(text)
+        self.adjustSize()
+        area = self.parentWidget().rect()
+        at = mouse + AWAY
+        if at.x() + self.width() > area.right():
+            at.setX(max(0, mouse.x() - AWAY.x() - self.width()))
+        if at.y() + self.height() > area.bottom():
+            at.setY(max(0, mouse.y() - AWAY.y() - self.height()))
+        self.move(at)
+        self.show()
+
+
+def card(view: RobotView, task: CommandReport | None, remaining: float | None, frame: SiteFrame) -> str:
+    """Return what is known of a robot as rich text; what it has not said is left out."""
+    report = view.report
+    colour = STATE_COLOURS[view.state].name()
+    head = f'<b>{escape(view.name)}</b> &nbsp;<span style="color:{colour}">■</span> {view.state.value}'
+    rows = [
+        (
+            tr("last message"),
+            tr(
+                "{age_in_words} ago, {escape}",
+                age_in_words=age_in_words(view.age),
+                escape=escape(report.link),
+            ),
+        )
+    ]
+    if view.has_pose:
+        rows.append(("place", tr("{x:.2f}, {y:.2f} m in the site", x=report.x, y=report.y)))
+    if report.accuracy is not None:
+        rows.append(("accuracy", tr("± {accuracy:.2f} m", accuracy=report.accuracy)))
+    if report.theta is not None:
+        compass = (90.0 - math.degrees(frame.heading_to_crs(report.theta))) % 360.0
+        rows.append(("heading", f"{compass:.0f}°"))
+    if report.v is not None:
+        rows.append(("speed", tr("{v:.2f} m/s", v=report.v)))
+    if report.battery is not None:
+        rows.append(("battery", f"{report.battery:.0%}"))
+    if task is not None:
+        left = "" if remaining is None else tr(", {remaining:.1f} m to go", remaining=remaining)
+        rows.append(("task", f"{escape(in_words(task))}: {task.state.value}{left}"))
+    if report.status:
+        rows.append((tr("it says"), escape(report.status)))
+    cells = "".join(f"<tr><td>{name}&nbsp;&nbsp;</td><td>{value}</td></tr>" for name, value in rows)
+    return f"{head}<table>{cells}</table>"
+
+
+def _smaller(font: QFont) -> QFont:
+    """Return a size less than ``font``: a card covers a part of the map."""
+    less = QFont(font)
+    less.setPointSizeF(max(7.5, font.pointSizeF() - 1.0))
+    return less

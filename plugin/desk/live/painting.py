@@ -1,0 +1,75 @@
+"""Paints a scene, from the ground up: trails, ways, targets, draft, robots, names, the border."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+from qgis.PyQt.QtGui import QPainter
+
+from .border_hints import Hint, hints, paint_hints
+from .draft_painting import paint_draft
+from .labels import Labels
+from .names_painting import NamesPainter
+from .plans_painting import PlansPainter
+from .robots_painting import RobotsPainter, circles, paint_circles
+from .scene import PlacedScene
+from .screen import Screen
+from .trail_image import TrailImage
+from .trails import Trails
+
+Points = npt.NDArray[np.float64]
+
+BESIDE = 12.0
+"""Pixels beyond the border at which a robot still reaches in."""
+
+
+class ScenePainter:
+    """Paints scenes; keeps the pictures that it paints again and again."""
+
+    def __init__(self, trails: Trails | None = None) -> None:
+        self._labels = Labels()
+        self._trails = TrailImage(Trails() if trails is None else trails)
+        self._plans = PlansPainter(self._labels)
+        self.robots = RobotsPainter()
+        self._names = NamesPainter(self._labels)
+        self._circles: list = []
+        self._placed: tuple | None = None
+        self.hints: list[Hint] = []
+        """The arrows at the border that were painted last."""
+
+    def prepare(self, placed: PlacedScene | None, screen: Screen) -> None:
+        """Take in a new scene: what is drawn once for each and not for each time it is painted."""
+        if placed is None:
+            self._trails.forget()
+            self._placed = None
+            return
+        self._trails.extend(placed.robots, screen, placed.to_map, placed.scene.now)
+        pixels, seen = self._place(placed, screen)
+        self._circles = circles(placed, pixels, seen, screen, placed.to_map)
+
+    def paint(self, painter: QPainter, placed: PlacedScene, screen: Screen) -> None:
+        """Paint the scene that was prepared last."""
+        pixels, seen = self._place(placed, screen)
+        self._trails.paint(painter, screen)
+        paint_circles(painter, self._circles, placed, screen)
+        self._plans.paint(painter, placed, pixels, screen, self.robots.marks)
+        paint_draft(painter, placed, pixels, screen)
+        self.robots.paint(painter, placed, pixels, seen, screen)
+        self.hints = self._hints(pixels, seen, screen)
+        taken = [(x - 24.0, y, x + 24.0, y + 26.0) for x, y in self._plans.distances]
+        taken += [hint.area for hint in self.hints]
+        self._names.paint(painter, placed, pixels, seen, screen, taken)
+        paint_hints(painter, self.hints, placed, self._labels, screen)
+
+    def _place(self, placed: PlacedScene, screen: Screen) -> tuple[Points, npt.NDArray[np.intp]]:
+        """Return where each robot is, in pixels, and the rows of those that are seen."""
+        if self._placed is None or self._placed[0] is not placed or self._placed[1] != screen:
+            pixels = screen.pixels(placed.robots)
+            self._placed = placed, screen, pixels, np.flatnonzero(screen.seen(pixels, BESIDE))
+        return self._placed[2:]
+
+    def _hints(self, pixels: Points, seen: npt.NDArray[np.intp], screen: Screen) -> list[Hint]:
+        if len(seen) == len(pixels):
+            return []
+        beyond = ~screen.seen(pixels, BESIDE) & np.isfinite(pixels[:, 0])
+        return hints(pixels, np.flatnonzero(beyond), screen)

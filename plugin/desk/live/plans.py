@@ -1,0 +1,78 @@
+"""What robots are about to do: where to, on which way, and how far it still is."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from ....robot_bridge.messages import CommandReport, SetPath
+
+Points = npt.NDArray[np.float64]
+BACK = 5.0
+"""Metres by which a robot may seem to go back on its way: where a way crosses itself, it went on."""
+
+
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """One robot's task: (n, 2) ``points`` in metres of the site frame, the last one the target.
+
+    ``along`` are the metres from the first point to each. A target without a way has one point.
+    """
+
+    command: str
+    robot: str
+    points: Points
+    along: Points
+    cone: bool
+
+    @property
+    def is_way(self) -> bool:
+        """Whether the robot was told which way to go."""
+        return len(self.points) > 1
+
+
+class Plans:
+    """Makes the plans of commands once each, and follows the robots along them."""
+
+    def __init__(self) -> None:
+        self._known: dict[str, Plan | None] = {}
+        self._driven: dict[str, float] = {}
+
+    def of(self, tasks: Iterable[CommandReport]) -> list[Plan]:
+        """Return the plans of ``tasks``; those that say no place have none."""
+        known = {task.command: self._known.get(task.command) or _plan(task) for task in tasks}
+        self._driven = {command: self._driven[command] for command in known if command in self._driven}
+        self._known = known
+        return [plan for plan in known.values() if plan is not None]
+
+    def remaining(self, plan: Plan, at: Points) -> float:
+        """Return the metres that a robot at (2,) ``at`` still has to go, along its way if it has one."""
+        if not plan.is_way:
+            return float(np.hypot(*(plan.points[-1] - at)))
+        start, step = plan.points[:-1], np.diff(plan.points, axis=0)
+        length = np.maximum(np.hypot(*step.T), 1e-9)
+        part = np.clip(((at - start) * step).sum(axis=1) / length**2, 0.0, 1.0)
+        away = np.hypot(*(start + step * part[:, None] - at).T)
+        along = plan.along[:-1] + part * length
+        ahead = along >= self._driven.get(plan.command, 0.0) - BACK
+        nearest = int(np.where(ahead, away, np.inf).argmin() if ahead.any() else away.argmin())
+        self._driven[plan.command] = float(along[nearest])
+        return float(plan.along[-1] - along[nearest] + away[nearest])
+
+
+def _plan(task: CommandReport) -> Plan | None:
+    if task.op == SetPath.__name__:
+        given = task.params.get("points", [])
+    else:
+        given = [[task.params.get("x"), task.params.get("y")]]
+    try:
+        points = np.array(given, dtype=np.float64).reshape(-1, 2)
+    except (TypeError, ValueError):
+        return None
+    if len(points) == 0 or not np.isfinite(points).all():
+        return None
+    along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
+    return Plan(task.command, task.robot, points, along, bool(task.params.get("cone")))

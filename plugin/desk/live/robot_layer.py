@@ -1,0 +1,213 @@
+"""The robots as an ordinary vector layer: attribute table, identify, labels, styling, printing."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from qgis.core import (
+    QgsCoordinateReferenceSystem,
+    QgsFeature,
+    QgsLayerTreeGroup,
+    QgsMapLayerStyle,
+    QgsProject,
+    QgsVectorLayer,
+)
+from qgis.gui import QgsDualView, QgsMapCanvas
+from qgis.PyQt import sip
+from qgis.PyQt.QtCore import QObject, QTimer, pyqtSignal
+from qgis.PyQt.QtWidgets import QApplication
+
+from ....robot_bridge.messages import RobotState, SiteReport
+from ....robot_bridge.sites.frame import SiteFrame
+from ..live_layers import MARK, give_style
+from ..picture import RobotPicture, RobotView
+from .robot_features import made_layer, rows_of
+
+GROUP = "Fleet"
+KIND = "robots"
+AT_ONCE = 100
+"""Robots that are written in one go; more take several, so that the window does not wait for them."""
+
+
+class RobotLayer(QObject):
+    """A memory layer in the site's CRS, in the group "Fleet", kept up to date by writes to its provider.
+
+    The way a user has styled it lasts as long as the project, saved with it.
+    """
+
+    robots_selected = pyqtSignal(list)
+    """The user selected robots by QGIS's own means: on the map or in the attribute table."""
+
+    def __init__(self, project: QgsProject, canvas: QgsMapCanvas, parent: QObject | None = None):
+        super().__init__(parent)
+        self._project = project
+        self._canvas = canvas
+        self._layer: QgsVectorLayer | None = None
+        self._frame: SiteFrame | None = None
+        self._style: QgsMapLayerStyle | None = None
+        self._ids: dict[str, int] = {}
+        self._written: dict[str, RobotView] = {}
+        self._waiting: list[int] = []
+        self._marking = False
+        self.is_new = False
+        """Whether the last write brought robots that were not there before."""
+
+    def __len__(self) -> int:
+        return len(self._ids)
+
+    @property
+    def layer(self) -> QgsVectorLayer | None:
+        """The layer, None while there is none (or its project was closed)."""
+        return self._layer
+
+    def show_site(self, site: SiteReport) -> None:
+        """Make the layer for ``site``, in place of one for another site."""
+        frame = SiteFrame(site.crs, site.origin, site.rotation)
+        if self._layer is not None and frame == self._frame:
+            return
+        self.remove()
+        self._frame = frame
+        was_dirty = self._project.isDirty()
+        self._layer = made_layer(QgsCoordinateReferenceSystem(site.crs))
+        self._layer.setCustomProperty(MARK, KIND)
+        if self._style is not None:
+            self._style.writeToLayer(self._layer)
+        else:
+            give_style(self._project, self._layer)
+        self._layer.willBeDeleted.connect(self._gone)
+        self._layer.selectionChanged.connect(self._selection_changed)
+        self._project.addMapLayer(self._layer, False)
+        self._group().insertLayer(0, self._layer)
+        self._leave_clean(was_dirty)
+
+    def begin(self, robots: int) -> None:
+        """Have every one of the first ``robots`` rows written, unless the last round is still under way."""
+        if not self._waiting:
+            self._waiting = list(range(robots))
+
+    def go_on(self, picture: RobotPicture, now: float) -> None:
+        """Write some of those that wait; the canvas takes it up when all are written."""
+        self.is_new = False
+        if self._layer is None or not self._waiting:
+            return
+        rows, self._waiting = self._waiting[:AT_ONCE], self._waiting[AT_ONCE:]
+        views = [view for view in picture.views(now, rows) if self._has_changed(view)]
+        self._written.update({view.name: view for view in views})
+        self._write(views)
+        if not self._waiting:
+            self._show_written()
+
+    def clear(self) -> None:
+        """Take every robot out of the layer."""
+        if self._layer is not None and self._ids:
+            self._marking = True
+            self._layer.removeSelection()
+            self._marking = False
+            self._layer.dataProvider().truncate()
+            self._show_written()
+        self._forget()
+
+    def mark(self, robots: Iterable[str]) -> None:
+        """Select ``robots`` in the layer, and no others."""
+        if self._layer is None:
+            return
+        ids = [self._ids[robot] for robot in robots if robot in self._ids]
+        if set(ids) == set(self._layer.selectedFeatureIds()):
+            return
+        self._marking = True
+        self._layer.selectByIds(ids)
+        self._marking = False
+
+    def remove(self) -> None:
+        """Take the layer and, when nothing else is in it, the group out of the project."""
+        if self._layer is None:
+            return
+        was_dirty = self._project.isDirty()
+        layer, self._layer = self._layer, None
+        self._forget()
+        if not sip.isdeleted(layer):
+            self._keep_style(layer)
+            layer.willBeDeleted.disconnect(self._gone)
+            layer.selectionChanged.disconnect(self._selection_changed)
+            self._project.removeMapLayer(layer.id())
+        group = self._project.layerTreeRoot().findGroup(GROUP)
+        if group is not None and not group.children():
+            group.parent().removeChildNode(group)
+        self._leave_clean(was_dirty)
+
+    def _has_changed(self, view: RobotView) -> bool:
+        known = self._written.get(view.name)
+        return (
+            known is None
+            or known.told != view.told
+            or known.state is not view.state
+            # The age of a robot that talks is not worth writing all of them anew.
+            or view.state is not RobotState.FRESH
+        )
+
+    def _write(self, views: list[RobotView]) -> None:
+        provider = self._layer.dataProvider()
+        attributes, geometries, added = {}, {}, []
+        for view, (values, geometry) in zip(views, rows_of(views, self._frame), strict=True):
+            if view.name in self._ids:
+                attributes[self._ids[view.name]] = values
+                geometries[self._ids[view.name]] = geometry
+            else:
+                feature = QgsFeature(self._layer.fields())
+                feature.setAttributes(list(values.values()))
+                feature.setGeometry(geometry)
+                added.append(feature)
+        if attributes:
+            provider.changeFeatures(attributes, geometries)
+        if added:
+            _, stored = provider.addFeatures(added)
+            self._ids.update({feature["robot"]: feature.id() for feature in stored})
+            self._layer.updateExtents()
+            self.is_new = True
+
+    def _show_written(self) -> None:
+        # A canvas that is still drawing would begin anew and, on a slow map, never come to its end.
+        self._layer.triggerRepaint(self._canvas.isDrawing())
+        if _is_in_a_table(self._layer):
+            self._layer.dataChanged.emit()
+
+    def _leave_clean(self, was_dirty: bool) -> None:
+        """A layer that comes anew with each link is no change that the user would want to save."""
+        if was_dirty:
+            return
+        self._project.setDirty(False)
+        # QGIS's layer panel notes a change once more when it has laid out the new group.
+        project = self._project
+        QTimer.singleShot(0, lambda: project.setDirty(False))
+
+    def _group(self) -> QgsLayerTreeGroup:
+        root = self._project.layerTreeRoot()
+        return root.findGroup(GROUP) or root.insertGroup(0, GROUP)
+
+    def _keep_style(self, layer: QgsVectorLayer) -> None:
+        self._style = QgsMapLayerStyle()
+        self._style.readFromLayer(layer)
+
+    def _selection_changed(self, selected: list[int]) -> None:
+        if self._marking:
+            return
+        chosen = set(selected)
+        self.robots_selected.emit([robot for robot, fid in self._ids.items() if fid in chosen])
+
+    def _gone(self) -> None:
+        self._layer = self._style = None
+        self._forget()
+
+    def _forget(self) -> None:
+        self._ids.clear()
+        self._written.clear()
+        self._waiting.clear()
+
+
+def _is_in_a_table(layer: QgsVectorLayer) -> bool:
+    """Tell whether an attribute table shows ``layer``; it learns of writes in no other way."""
+    return any(
+        table.masterModel() is not None and table.masterModel().layer() is layer
+        for window in QApplication.topLevelWidgets()
+        for table in window.findChildren(QgsDualView)
+    )

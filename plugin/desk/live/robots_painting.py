@@ -1,0 +1,150 @@
+"""Paints robots: what they are, which are selected, how fast they go and how sure their place is."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import numpy.typing as npt
+from qgis.PyQt.QtCore import QLineF, Qt
+from qgis.PyQt.QtGui import QColor, QPainter, QPen
+
+from ..colours import CASING, PAPER, STATE_COLOURS
+from ..glyphs import HEADINGS, MARK_SIZE, OTHER_RING, RING, cell, mark_atlas, robot_atlas
+from ..picture import STATES
+from .scene import PlacedScene
+from .screen import Screen
+from .sprites import Sprites
+from .strokes import pen, polygon, segments
+
+Points = npt.NDArray[np.float64]
+Rows = npt.NDArray[np.intp]
+
+SIZES = ((150, 1.0), (1500, 0.7), (np.inf, 0.46))
+"""Up to how many robots on the screen each is drawn in which size."""
+NOTICEABLE = 0.7
+"""No robot that needs to be noticed, because it is not fresh, is drawn smaller."""
+VELOCITY_SECONDS = 2.0
+"""A robot's line leads to where it will be after so long."""
+SHORTEST_VELOCITY = 6.0
+MOST_VELOCITIES = 1500
+FINE_VELOCITIES = 300
+"""With more of them the lines are thin: smooth ones would take half of the frame."""
+CORNERS = 32
+SMALLEST_CIRCLE = 12.0
+MOST_CIRCLES = 300
+_CIRCLE = np.column_stack([f(np.arange(CORNERS) * 2 * np.pi / CORNERS) for f in (np.cos, np.sin)])
+
+
+class RobotsPainter:
+    """Paints the robots on one screen at a time."""
+
+    def __init__(self) -> None:
+        self._atlases: dict[float, Sprites] = {}
+        self._marks: dict[float, Sprites] = {}
+        self._ratio = 0.0
+        self.magnification = 1.0
+        """How many times as large as they come robots are drawn."""
+
+    def marks(self, ratio: float, size: float = 1.0) -> Sprites:
+        """Return the marks of :func:`~.desk.glyphs.mark_atlas`."""
+        if ratio != self._ratio:
+            self._atlases.clear()
+            self._marks.clear()
+            self._ratio = ratio
+        if size not in self._marks:
+            self._marks[size] = Sprites(mark_atlas(ratio, size), cell(ratio, MARK_SIZE * size), ratio)
+        return self._marks[size]
+
+    def paint(
+        self, painter: QPainter, placed: PlacedScene, pixels: Points, seen: Rows, screen: Screen
+    ) -> None:
+        """Paint those in rows ``seen``; ``pixels`` (n, 2) is where each robot is."""
+        marks = self.marks(screen.ratio, self.magnification)
+        robots, scene = placed.scene.robots, placed.scene
+        heading = screen.pixels(placed.ahead[seen]) - pixels[seen]
+        _velocities(painter, pixels[seen], heading * robots.v[seen, None] * VELOCITY_SECONDS)
+        chosen = [scene.rows[name] for name in scene.chosen if name in scene.rows]
+        rings = np.full(len(chosen), OTHER_RING)
+        rings[-1:] = RING
+        marks.paint(painter, pixels[chosen], rings)
+        known = np.isfinite(robots.theta[seen])
+        turn = np.arctan2(heading[:, 1], heading[:, 0]) / (2 * np.pi)
+        column = np.where(known, np.round(turn * HEADINGS) % HEADINGS, HEADINGS).astype(np.intp)
+        is_chosen = np.zeros(len(pixels), dtype=bool)
+        is_chosen[chosen] = True
+        self._drawings(painter, pixels[seen], column, robots.state[seen], is_chosen[seen])
+
+    def _drawings(
+        self, painter: QPainter, at: Points, column: Rows, state: Rows, chosen: npt.NDArray[np.bool_]
+    ) -> None:
+        size = next(size for most, size in SIZES if len(at) <= most)
+        worth = np.where(chosen, 1.0, np.where(state > 0, max(size, NOTICEABLE), size))
+        # Those that need to be noticed lie on top.
+        for wanted in sorted({size, max(size, NOTICEABLE), 1.0}):
+            those = np.flatnonzero(worth == wanted)
+            if len(those) == 0:
+                continue
+            drawn = wanted * self.magnification
+            if drawn not in self._atlases:
+                atlas = robot_atlas(self._ratio, drawn)
+                self._atlases[drawn] = Sprites(atlas, cell(self._ratio, drawn), self._ratio)
+            those = those[np.argsort(state[those] % (len(STATES) - 1), kind="stable")]
+            self._atlases[drawn].paint(painter, at[those], column[those], state[those])
+
+
+def circles(
+    placed: PlacedScene, pixels: Points, seen: Rows, screen: Screen, to_map: Callable[[Points], Points]
+) -> list[tuple[int, Points]]:
+    """Return the rows of robots whose accuracy is known and can be seen, with (m, 2) corners on the map."""
+    robots = placed.scene.robots
+    metre = np.hypot(*(screen.pixels(placed.ahead[seen]) - pixels[seen]).T)
+    radius = robots.accuracy[seen]
+    wide = seen[(radius * np.where(metre > 0, metre, 1.0) > SMALLEST_CIRCLE)]
+    if len(wide) > MOST_CIRCLES:
+        wide = wide[np.argsort(-robots.accuracy[wide])[:MOST_CIRCLES]]
+    if len(wide) == 0:
+        return []
+    corners = robots.xy[wide, None, :] + _CIRCLE * robots.accuracy[wide, None, None]
+    on_map = to_map(corners.reshape(-1, 2)).reshape(len(wide), CORNERS, 2)
+    return list(zip(wide.tolist(), on_map, strict=True))
+
+
+def paint_circles(
+    painter: QPainter, found: list[tuple[int, Points]], placed: PlacedScene, screen: Screen
+) -> None:
+    """Paint what :func:`circles` found: the robot is somewhere inside."""
+    for row, corners in found:
+        colour = QColor(STATE_COLOURS[STATES[placed.scene.robots.state[row]]])
+        outline = polygon(screen.pixels(corners))
+        painter.setPen(pen(PAPER, 2.6, 0.55))
+        colour.setAlpha(30)
+        painter.setBrush(colour)
+        painter.drawPolygon(outline)
+        colour.setAlpha(255)
+        painter.setPen(pen(colour, 1.2))
+        painter.setBrush(Qt.BrushStyle.NoBrush)
+        painter.drawPolygon(outline)
+
+
+def _velocities(painter: QPainter, at: Points, way: Points) -> None:
+    """Draw a line from each robot to where it will be soon, where that is far enough to be seen."""
+    # What is NaN compares false.
+    long = np.flatnonzero(np.hypot(*way.T) > SHORTEST_VELOCITY)
+    if len(long) == 0 or len(long) > MOST_VELOCITIES:
+        return
+    start, end = at[long], at[long] + way[long]
+    if len(long) > FINE_VELOCITIES:
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing, False)
+        painter.strokePath(segments(start, end), _flat(pen(PAPER, 1.0)))
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        return
+    lines = [QLineF(*ends) for ends in np.hstack([start, end]).tolist()]
+    for stroke in (pen(CASING, 4.2), pen(PAPER, 2.0)):
+        painter.setPen(_flat(stroke))
+        painter.drawLines(lines)
+
+
+def _flat(stroke: QPen) -> QPen:
+    stroke.setCapStyle(Qt.PenCapStyle.FlatCap)
+    return stroke

@@ -1,0 +1,107 @@
+"""What is to be seen on the canvas, in the site frame, and the same placed in the map's CRS."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+from ..drafts import Draft, Point
+from ..picture import RobotArrays
+from ..placement import Placement
+from .plans import Plan
+
+Points = npt.NDArray[np.float64]
+AHEAD = 1.0
+"""Metres to the second point that shows a heading in whatever CRS the map has."""
+
+
+@dataclass(frozen=True)
+class Scene:
+    """Everything live, in the site frame, at ``now`` of the desk's clock.
+
+    ``chosen`` are the selected robots, the one that commands go to last. ``remaining`` has for commands
+    the metres still to go.
+    """
+
+    robots: RobotArrays
+    now: float = 0.0
+    chosen: tuple[str, ...] = ()
+    plans: list[Plan] = field(default_factory=list)
+    remaining: dict[str, float] = field(default_factory=dict)
+    draft: Draft | None = None
+    cursor: Point | None = None
+    rows: dict[str, int] = field(default_factory=dict)
+    """The rows of the robots that plans, draft and selection name."""
+
+
+@dataclass(frozen=True)
+class PlacedScene:
+    """The same in the map's CRS: (n, 2) coordinates for each part; ``ahead`` is 1 m before each robot.
+
+    Robots without a place have NaN. ``to_map`` places more.
+    """
+
+    scene: Scene
+    robots: Points
+    ahead: Points
+    plans: list[Points]
+    draft: Points
+    cursor: Points
+    to_map: Callable[[Points], Points]
+
+
+class Placer:
+    """Places scenes, each plan once for as long as the map keeps its CRS."""
+
+    def __init__(self) -> None:
+        self._placement: Placement | None = None
+        self._plans: dict[Plan, Points] = {}
+
+    def placed(self, scene: Scene, placement: Placement) -> PlacedScene:
+        """Place everything.
+
+        :raises PlacementError: when a position has no place in the map's CRS.
+        """
+        if placement is not self._placement:
+            self._placement, self._plans = placement, {}
+        known = self._plans
+        new = [plan for plan in scene.plans if plan not in known]
+        robots = scene.robots
+        there = np.flatnonzero(np.isfinite(robots.xy).all(axis=1))
+        theta = robots.theta[there]
+        step = np.nan_to_num(np.column_stack([np.cos(theta), np.sin(theta)])) * AHEAD
+        parts = [
+            robots.xy[there],
+            robots.xy[there] + step,
+            _points(scene.draft.outline if scene.draft else ()),
+            _points([scene.cursor] if scene.cursor else ()),
+            *[plan.points for plan in new],
+        ]
+        ends = np.cumsum([len(part) for part in parts])[:-1]
+        at, before, draft, cursor, *ways = np.split(placement.to_map(np.concatenate(parts)), ends)
+        known.update(zip(new, ways, strict=True))
+        self._plans = {plan: known[plan] for plan in scene.plans}
+        return PlacedScene(
+            scene,
+            _spread(at, there, len(robots.xy)),
+            _spread(before, there, len(robots.xy)),
+            list(self._plans.values()),
+            draft,
+            cursor,
+            placement.to_map,
+        )
+
+
+def _spread(values: Points, rows: npt.NDArray[np.intp], count: int) -> Points:
+    if len(rows) == count:
+        return values
+    out = np.full((count, 2), np.nan)
+    out[rows] = values
+    return out
+
+
+def _points(points: object) -> Points:
+    return np.array(points, dtype=np.float64).reshape(-1, 2)

@@ -1,0 +1,83 @@
+"""Lines and rings that can be seen on any ground: a colour on a dark casing."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+from qgis.PyQt.QtCore import QByteArray, QDataStream, QPointF, Qt
+from qgis.PyQt.QtGui import QBrush, QColor, QPainter, QPainterPath, QPen, QPolygonF
+
+from ..colours import CASING
+
+Points = npt.NDArray[np.float64]
+
+
+def polygon(pixels: Points) -> QPolygonF:
+    """Return (n, 2) pixels as Qt's points."""
+    made = QPolygonF()
+    if len(pixels) == 0:
+        return made
+    made.fill(QPointF(), len(pixels))
+    data = made.data()
+    data.setsize(len(pixels) * 16)
+    data.setwriteable(True)
+    np.frombuffer(data, dtype=np.float64).reshape(-1, 2)[:] = pixels
+    return made
+
+
+_ELEMENT = np.dtype([("kind", ">i4"), ("x", ">f8"), ("y", ">f8")])
+"""An element of a path as QDataStream holds it: 0 moves, 1 draws a line."""
+
+
+def segments(start: Points, end: Points) -> QPainterPath:
+    """Return the lines from (n, 2) ``start`` to ``end`` pixels as one path; an object for each is slow."""
+    elements = np.zeros(2 * len(start), dtype=_ELEMENT)
+    elements["kind"][1::2] = 1
+    for name, axis in (("x", 0), ("y", 1)):
+        elements[name][0::2], elements[name][1::2] = start[:, axis], end[:, axis]
+    count = np.array([len(elements)], dtype=">i4")
+    # After the elements: where the last line began, and by which rule it would be filled.
+    last = np.array([len(elements) - 2, 0], dtype=">i4")
+    data = QByteArray(count.tobytes() + elements.tobytes() + last.tobytes())
+    path = QPainterPath()
+    QDataStream(data) >> path
+    return path
+
+
+def route(painter: QPainter, pixels: Points, colour: QColor) -> None:
+    """Draw a way that ends in a ring."""
+    painter.setBrush(QBrush(Qt.BrushStyle.NoBrush))
+    line = polygon(pixels)
+    for stroke in (pen(CASING, 5.6), pen(colour, 2.8)):
+        painter.setPen(stroke)
+        painter.drawPolyline(line)
+    for point in pixels[-1:]:
+        ring(painter, point, 5.0, colour)
+
+
+def dashes(painter: QPainter, pixels: Points, colour: QColor, style: Qt.PenStyle) -> None:
+    """Draw a broken line."""
+    if len(pixels) < 2:
+        return
+    line = polygon(pixels)
+    painter.setPen(pen(CASING, 3.4, 0.5))
+    painter.drawPolyline(line)
+    stroke = pen(colour, 1.8)
+    stroke.setStyle(style)
+    painter.setPen(stroke)
+    painter.drawPolyline(line)
+
+
+def ring(painter: QPainter, at: Points, radius: float, colour: QColor) -> None:
+    """Draw a circle around ``at``, (2,) pixels."""
+    painter.setBrush(QBrush(Qt.BrushStyle.NoBrush))
+    for stroke in (pen(CASING, 4.6), pen(colour, 2.2)):
+        painter.setPen(stroke)
+        painter.drawEllipse(QPointF(*at), radius, radius)
+
+
+def pen(colour: QColor, width: float, strength: float = 1.0) -> QPen:
+    """Return a pen with round ends; ``strength`` 1 is the colour as it is, 0 nothing."""
+    shade = QColor(colour)
+    shade.setAlphaF(colour.alphaF() * strength)
+    return QPen(shade, width, Qt.PenStyle.SolidLine, Qt.PenCapStyle.RoundCap, Qt.PenJoinStyle.RoundJoin)

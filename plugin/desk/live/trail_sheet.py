@@ -1,0 +1,178 @@
+"""Trails on one screen, in an image that stays: each pixel knows when a robot was there last."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+
+import numpy as np
+import numpy.typing as npt
+from qgis.PyQt.QtGui import QColor, QImage
+
+from ..colours import CASING, TRAIL
+from .screen import Screen
+from .trails import Trails
+
+Points = npt.NDArray[np.float64]
+Pixels = npt.NDArray[np.intp]
+
+SHADES = 64
+BANDS = 16
+"""Frames after which the whole image has faded by as much as it has to: each does the same part of it."""
+FILL_SECONDS = 0.003
+"""What filling may take of one frame."""
+LONGEST_STEP = 4000
+"""Pixels: a longer step between two samples is a robot that was put elsewhere; no trail leads there."""
+NEVER = -1e9
+
+
+class TrailSheet:
+    """The trails as ``screen`` shows them; ``to_map`` takes (n, 2) metres of the site to map coordinates.
+
+    It is made empty and filled from the newest to the oldest, over as many frames as that takes.
+    """
+
+    def __init__(
+        self, trails: Trails, screen: Screen, to_map: Callable[[Points], Points], now: float
+    ) -> None:
+        width, height = math.ceil(screen.width * screen.ratio), math.ceil(screen.height * screen.ratio)
+        self.screen = screen
+        self.filled = False
+        self._trails = trails
+        self._to_map = to_map
+        self._epoch = now
+        self._times = np.full((height, width), NEVER, dtype=np.float32)
+        self._argb = np.zeros((height, width), dtype=np.uint32)
+        form = QImage.Format.Format_ARGB32_Premultiplied
+        self.image = QImage(self._argb.data, width, height, width * 4, form)
+        self._reach = max(1, round(screen.ratio)) if trails.length.wide else 0
+        self._core = _shades(TRAIL, 1.0 if self._reach else 0.85)
+        self._casing = _shades(CASING, 0.45)
+        self._band = 0
+        self._here: Points | None = None
+        self._later: tuple[Points, Points] | None = None
+        self._taken = trails.taken
+
+    def extend(self, xy: Points, now: float) -> None:
+        """Draw on to (n, 2) ``xy``, where the robots are now in map coordinates, NaN where not known."""
+        here = self.screen.pixels(xy) * self.screen.ratio
+        if self._here is None:
+            self._later = here[: len(self._taken)], np.full(len(self._taken), now)
+        else:
+            known = len(self._here)
+            x, y = self._stamp(self._here, here[:known], np.full(known, now))
+            self._colour(x, y)
+        self._here = here
+        # What is filled in this frame is to be seen in this frame.
+        bands = 1 if self.filled else BANDS
+        self._fill()
+        self._fade(now, bands)
+
+    def _fill(self) -> None:
+        """Draw older parts of the trails, each sample to the one after it, while there is time."""
+        until = time.perf_counter() + FILL_SECONDS
+        oldest = self._epoch - self._trails.length.seconds
+        while not self.filled:
+            sample = self._trails.before(self._taken)
+            there = np.flatnonzero(sample[:, 2] >= oldest)
+            if len(there) == 0:
+                self.filled = True
+                return
+            earlier = np.full((len(sample), 2), np.nan)
+            earlier[there] = self.screen.pixels(self._to_map(sample[there, :2])) * self.screen.ratio
+            later, times = self._later
+            self._stamp(earlier, later, times)
+            self._later = earlier, sample[:, 2]
+            self._taken = self._taken - 1
+            if time.perf_counter() > until:
+                return
+
+    def _stamp(self, start: Points, end: Points, times: Points) -> tuple[Pixels, Pixels]:
+        """Note ``times`` in the pixels on the lines from ``start`` to ``end``, (n, 2) device pixels."""
+        x, y, times = _on_lines(start, end, times - self._epoch, self._times.shape)
+        newer = np.flatnonzero(times > self._times[y, x])
+        # Of several robots on one pixel the last one written stays: the newest.
+        newer = newer[np.argsort(times[newer], kind="stable")]
+        x, y = x[newer], y[newer]
+        self._times[y, x] = times[newer]
+        return x, y
+
+    def _colour(self, x: Pixels, y: Pixels) -> None:
+        """Colour new pixels without waiting for their band's turn."""
+        height, width = self._argb.shape
+        reach = range(-self._reach, self._reach + 1)
+        for dx, dy in ((dx, dy) for dx in reach for dy in reach if abs(dx) + abs(dy) <= self._reach):
+            self._argb[np.clip(y + dy, 0, height - 1), np.clip(x + dx, 0, width - 1)] = self._core[0]
+
+    def _fade(self, now: float, bands: int) -> None:
+        """Colour the next ``bands`` anew."""
+        height = len(self._times)
+        rows = -(-height // BANDS)
+        for _ in range(bands):
+            self._colour_band(self._band * rows, min(height, (self._band + 1) * rows), now)
+            self._band = (self._band + 1) % BANDS
+
+    def _colour_band(self, top: int, bottom: int, now: float) -> None:
+        if bottom <= top:
+            return
+        above = max(0, top - 2 * self._reach)
+        times = self._times[above : bottom + 2 * self._reach]
+        inside = slice(top - above, bottom - above)
+        if times.max() < now - self._epoch - self._trails.length.seconds:
+            self._argb[top:bottom] = 0
+            return
+        times = _spread(times, self._reach)
+        band = self._core[self._shade(times[inside], now)]
+        if self._reach:
+            times = _spread(times, self._reach)
+            band = np.where(band == 0, self._casing[self._shade(times[inside], now)], band)
+        self._argb[top:bottom] = band
+
+    def _shade(self, times: npt.NDArray[np.float32], now: float) -> npt.NDArray[np.uint8]:
+        """Return indices into the shades: 0 for what is new, the last one for what has faded away."""
+        age = np.float32(now - self._epoch) - times
+        age *= np.float32((SHADES - 1) / self._trails.length.seconds)
+        return np.clip(age, 0, SHADES - 1, out=age).astype(np.uint8)
+
+
+def _on_lines(
+    start: Points, end: Points, times: Points, shape: tuple[int, int]
+) -> tuple[Pixels, Pixels, Points]:
+    """Return the pixels on the lines, as x and y, each line's first one left out, and the time of each."""
+    height, width = shape
+    # Most of ten thousand robots stay on their pixel from one frame to the next.
+    moved = np.floor(start) != np.floor(end)
+    lines = np.flatnonzero(moved[:, 0] | moved[:, 1])
+    reach = np.abs(end[lines] - start[lines]).max(axis=1)
+    low, high = np.minimum(start[lines], end[lines]), np.maximum(start[lines], end[lines])
+    # What is NaN compares false.
+    on = (high >= 0).all(axis=1) & (low[:, 0] < width) & (low[:, 1] < height) & (reach < LONGEST_STEP)
+    lines = lines[on]
+    steps = np.ceil(reach[on]).astype(np.intp)
+    which = np.repeat(lines, steps)
+    before = np.repeat(np.cumsum(steps) - steps, steps)
+    part = (np.arange(len(which)) - before + 1) / np.repeat(steps, steps)
+    at = start[which] + (end[which] - start[which]) * part[:, None]
+    x, y = np.floor(at).astype(np.intp).T
+    inside = (x >= 0) & (x < width) & (y >= 0) & (y < height)
+    return x[inside], y[inside], times[which[inside]]
+
+
+def _spread(times: npt.NDArray[np.float32], reach: int) -> npt.NDArray[np.float32]:
+    """Return for each pixel the newest of those at most ``reach`` steps away."""
+    for _ in range(reach):
+        out = times.copy()
+        np.maximum(out[1:], times[:-1], out=out[1:])
+        np.maximum(out[:-1], times[1:], out=out[:-1])
+        np.maximum(out[:, 1:], times[:, :-1], out=out[:, 1:])
+        np.maximum(out[:, :-1], times[:, 1:], out=out[:, :-1])
+        times = out
+    return times
+
+
+def _shades(colour: QColor, strength: float) -> npt.NDArray[np.uint32]:
+    """Return ``colour`` from full to nothing, premultiplied ARGB."""
+    alpha = np.linspace(colour.alphaF() * strength, 0.0, SHADES)
+    red, green, blue = (np.round(part * alpha).astype(np.uint32) for part in colour.getRgb()[:3])
+    return np.round(alpha * 255).astype(np.uint32) << 24 | red << 16 | green << 8 | blue

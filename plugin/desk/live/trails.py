@@ -1,0 +1,117 @@
+"""Where each robot came from: samples of its way, all robots in one table."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+Points = npt.NDArray[np.float64]
+
+SHORTEST_STEP = 0.05
+"""Metres: a robot that stands adds nothing."""
+SHORTEST_WAIT = 0.4
+"""Seconds between samples."""
+
+
+@dataclass(frozen=True)
+class TrailLength:
+    """How long trails are with so many robots: many long ones would hide the map."""
+
+    robots: float
+    seconds: float
+    wide: bool
+
+    @property
+    def samples(self) -> int:
+        """How many samples that takes."""
+        return int(self.seconds / SHORTEST_WAIT) + 2
+
+
+LENGTHS = (
+    TrailLength(25, 90.0, True),
+    TrailLength(300, 30.0, True),
+    TrailLength(np.inf, 15.0, False),
+)
+
+
+class Trails:
+    """The last places of every robot in the site frame, with the time when each was seen.
+
+    One row a robot, as in :class:`~.desk.picture.RobotArrays`; a ring of samples in each.
+    """
+
+    def __init__(self) -> None:
+        self.length = LENGTHS[0]
+        self.generation = 0
+        """Counts how often everything was forgotten, or trails got another length."""
+        self._forget()
+
+    def __len__(self) -> int:
+        return len(self._ring)
+
+    @property
+    def taken(self) -> npt.NDArray[np.intp]:
+        """How many samples were taken of each robot so far."""
+        return self._taken.copy()
+
+    def clear(self) -> None:
+        """Forget every trail."""
+        self._forget()
+        self.generation += 1
+
+    def extend(self, xy: Points, now: float) -> None:
+        """Take in where the robots are: (n, 2) metres in the site frame, NaN where not known."""
+        self._provide(len(xy))
+        last = self._last
+        far = np.abs(xy - last[:, :2]).sum(axis=1) >= SHORTEST_STEP
+        # Of a robot without samples the last one is NaN, of which no comparison is true.
+        first = np.isnan(last[:, 2]) & np.isfinite(xy).all(axis=1)
+        rows = np.flatnonzero(first | far & (now - last[:, 2] >= SHORTEST_WAIT))
+        column = self._taken[rows] % self._ring.shape[1]
+        last[rows] = np.column_stack([xy[rows], np.full(len(rows), now)])
+        self._ring[rows, column] = last[rows]
+        self._taken[rows] += 1
+
+    def before(self, taken: npt.NDArray[np.intp]) -> Points:
+        """Return of the first robots the last of so many samples, (n, 3): x, y, time; NaN where gone."""
+        rows = np.arange(len(taken))
+        sample = self._ring[rows, (taken - 1) % self._ring.shape[1]]
+        sample[(taken < 1) | (taken <= self._taken[rows] - self._ring.shape[1])] = np.nan
+        return sample
+
+    def of(self, row: int, now: float) -> Points:
+        """Return the (m, 3) trail of one robot: x, y in metres, age in seconds; oldest first."""
+        samples = np.roll(self._ring[row], -int(self._taken[row]), axis=0)
+        samples = samples[now - samples[:, 2] <= self.length.seconds]
+        return np.column_stack([samples[:, :2], now - samples[:, 2]])
+
+    def _empty(self, robots: int) -> Points:
+        return np.full((robots, self.length.samples, 3), np.nan)
+
+    def _forget(self) -> None:
+        self._ring = self._empty(0)
+        self._taken = np.zeros(0, dtype=np.intp)
+        # Each one's newest sample again: to gather them out of the ring takes ten times as long.
+        self._last = np.empty((0, 3))
+
+    def _provide(self, robots: int) -> None:
+        length = next(length for length in LENGTHS if robots <= length.robots)
+        # There never come fewer robots before everything is forgotten, so trails only grow shorter.
+        if length != self.length:
+            self._cut(length)
+        missing = robots - len(self._ring)
+        if missing > 0:
+            self._ring = np.concatenate([self._ring, self._empty(missing)])
+            self._taken = np.concatenate([self._taken, np.zeros(missing, dtype=np.intp)])
+            self._last = np.concatenate([self._last, np.full((missing, 3), np.nan)])
+
+    def _cut(self, length: TrailLength) -> None:
+        kept = [self.before(self._taken - back) for back in range(length.samples)]
+        self.length = length
+        self._ring = self._empty(len(self._ring))
+        rows = np.arange(len(self._ring))
+        for back, sample in enumerate(kept):
+            self._ring[rows, (self._taken - 1 - back) % length.samples] = sample
+        self.generation += 1

@@ -1,0 +1,1 @@
+"""What robots saw: shown on the map with its images, and accepted or rejected."""

@@ -1,0 +1,156 @@
+"""What an operator makes of one observation: its word on the map, height, radius, and why."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from qgis.PyQt.QtCore import pyqtSignal
+from qgis.PyQt.QtWidgets import (
+    QComboBox,
+    QDoubleSpinBox,
+    QFormLayout,
+    QHBoxLayout,
+    QLabel,
+    QLineEdit,
+    QPushButton,
+    QVBoxLayout,
+    QWidget,
+)
+
+from ....robot_bridge.messages import ObservationReport, ReviewObservation
+from ..observation_book import is_pending
+
+WORDS = ("traffic cone", "barrier", "bin", "bench", "column", "vehicle", "object")
+"""Offered besides what robots said; anything may be written."""
+
+
+class ReviewForm(QWidget):
+    """Shows one observation and asks for its review: ``wanted`` has the request, ``shown`` its place."""
+
+    wanted = pyqtSignal(object)
+    place_wanted = pyqtSignal(int)
+
+    def __init__(self, parent: QWidget | None = None):
+        super().__init__(parent)
+        self._report: ObservationReport | None = None
+        self.about = QLabel()
+        self.about.setObjectName("fleet_observation_about")
+        self.about.setWordWrap(True)
+        self.picture = QLabel()
+        self.picture.setObjectName("fleet_observation_picture")
+        self.semantics = QComboBox()
+        self.semantics.setObjectName("fleet_observation_semantics")
+        self.semantics.setEditable(True)
+        self.semantics.lineEdit().setMaxLength(ReviewObservation.texts["semantics"])
+        self.height = _metres("fleet_observation_height", 1000.0)
+        self.radius = _metres("fleet_observation_radius", 50.0)
+        self.reason = QLineEdit()
+        self.reason.setObjectName("fleet_observation_reason")
+        self.reason.setMaxLength(ReviewObservation.texts["reason"])
+        self.reason.setPlaceholderText("optional")
+        self.go = _button("fleet_observation_go", "Sho&w", "Go to it on the map")
+        self.accept = _button(
+            "fleet_observation_accept",
+            "&Accept",
+            "It stands there: draw it on the maps that robots get from now on",
+        )
+        self.reject = _button("fleet_observation_reject", "Re&ject", "Draw it on no map")
+        self._lay_out()
+        self.go.clicked.connect(lambda: self._report and self.place_wanted.emit(self._report.observation))
+        self.accept.clicked.connect(lambda: self._want(accept=True))
+        self.reject.clicked.connect(lambda: self._want(accept=False))
+        self.show_report(None, (), asked=False)
+
+    def show_report(self, report: ObservationReport | None, words: Iterable[str], *, asked: bool) -> None:
+        """Show ``report``; ``words`` are offered for what it is, ``asked`` while a review is on its way.
+
+        What the operator has written stays for as long as it is the same observation in the same state.
+        """
+        same = (report and (report.observation, report.state)) == (
+            self._report and (self._report.observation, self._report.state)
+        )
+        self._report = report
+        is_object = report is not None and report.media_type is None
+        for field in (self.semantics, self.height, self.radius):
+            field.setEnabled(is_object)
+        self.reason.setEnabled(report is not None)
+        for button in (self.accept, self.reject):
+            button.setEnabled(report is not None and not asked)
+        self.go.setEnabled(report is not None)
+        self.about.setText("" if report is None else _about(report))
+        if same:
+            return
+        self.semantics.clear()
+        self.semantics.addItems(list(dict.fromkeys([*words, *WORDS])))
+        self.semantics.setEditText(((report.semantics or report.label) if report else "") or "")
+        self.height.setValue((report.height if report else None) or 0.0)
+        self.radius.setValue((report.radius if report else None) or 0.0)
+        self.reason.setText((report.reason if report else "") or "")
+
+    def request(self, *, accept: bool) -> ReviewObservation | None:
+        """Return the review as it stands in the form, None without an observation."""
+        report = self._report
+        if report is None:
+            return None
+        details = {}
+        if accept and report.media_type is None:
+            details = {
+                "semantics": self.semantics.currentText().strip() or None,
+                "height": self.height.value() or None,
+                "radius": self.radius.value() or None,
+            }
+        reason = self.reason.text().strip() or None
+        return ReviewObservation(
+            report.observation, accept, reason=reason, revise=not is_pending(report), **details
+        )
+
+    def _want(self, *, accept: bool) -> None:
+        request = self.request(accept=accept)
+        if request is not None:
+            self.wanted.emit(request)
+
+    def _lay_out(self) -> None:
+        form = QFormLayout()
+        form.setContentsMargins(0, 0, 0, 0)
+        form.addRow("It is a", self.semantics)
+        form.addRow("Height", self.height)
+        form.addRow("Radius", self.radius)
+        form.addRow("Reason", self.reason)
+        top = QHBoxLayout()
+        top.addWidget(self.picture)
+        top.addLayout(form, 1)
+        buttons = QHBoxLayout()
+        for button in (self.go, self.accept, self.reject):
+            buttons.addWidget(button, 1)
+        rows = QVBoxLayout(self)
+        rows.setContentsMargins(0, 0, 0, 0)
+        rows.addWidget(self.about)
+        rows.addLayout(top)
+        rows.addLayout(buttons)
+
+
+def _about(report: ObservationReport) -> str:
+    what = "An image of" if report.media_type else "An object:"
+    text = f"{what} {report.object}, told by {report.robot}, at {report.x:.2f}, {report.y:.2f} m. "
+    if is_pending(report):
+        return text + ("It waits for your review." if not report.media_type else "Look at it: is it of use?")
+    by = f" by {report.reviewed_by}" if report.reviewed_by else ""
+    return text + f"It was {report.state.value}{by}; a new review takes the place of that."
+
+
+def _metres(name: str, largest: float) -> QDoubleSpinBox:
+    box = QDoubleSpinBox()
+    box.setObjectName(name)
+    box.setRange(0.0, largest)
+    box.setDecimals(2)
+    box.setSingleStep(0.05)
+    box.setSuffix(" m")
+    box.setSpecialValueText("not known")
+    return box
+
+
+def _button(name: str, text: str, tip: str) -> QPushButton:
+    button = QPushButton(text)
+    button.setObjectName(name)
+    button.setToolTip(tip)
+    return button

@@ -1,0 +1,71 @@
+"""What the map shows, how often, and where files go, as fields."""
+
+from __future__ import annotations
+
+from qgis.gui import QgsFileWidget
+from qgis.PyQt.QtWidgets import QDoubleSpinBox, QFormLayout, QLabel, QWidget
+
+from ...settings.preferences import RANGES, Preferences
+
+SPINS = (
+    ("robot_size", "&Size of robots on the map", " ×", 0.1, 1, "1 is as they come"),
+    (
+        "positions_rate",
+        "Positions asked for, &times a second",
+        " /s",
+        1.0,
+        0,
+        "At most; from the next connection on. Fewer spare a slow network",
+    ),
+    (
+        "layer_seconds",
+        "Layer of robots written anew &every",
+        " s",
+        1.0,
+        0,
+        "The layer Robots (live): attribute table, labels, expressions. The live map goes its own way",
+    ),
+)
+
+
+class PreferencesForm(QWidget):
+    """A field for each of the preferences."""
+
+    def __init__(self, parent: QWidget | None = None):
+        super().__init__(parent)
+        form = QFormLayout(self)
+        form.setContentsMargins(0, 0, 0, 0)
+        form.setFieldGrowthPolicy(QFormLayout.FieldGrowthPolicy.ExpandingFieldsGrow)
+        self._spins: dict[str, QDoubleSpinBox] = {}
+        for name, text, unit, step, decimals, tip in SPINS:
+            spin = QDoubleSpinBox()
+            spin.setObjectName(f"fleet_{name}")
+            spin.setRange(*RANGES[name])
+            spin.setSingleStep(step)
+            spin.setDecimals(decimals)
+            spin.setSuffix(unit)
+            spin.setToolTip(tip)
+            self._spins[name] = spin
+            _add(form, text, spin)
+        self._folder = QgsFileWidget()
+        self._folder.setObjectName("fleet_folder")
+        self._folder.setStorageMode(QgsFileWidget.StorageMode.GetDirectory)
+        self._folder.lineEdit().setPlaceholderText("your documents")
+        _add(form, "&Folder for files that are written", self._folder)
+
+    def show_preferences(self, preferences: Preferences) -> None:
+        """Show these values."""
+        for name, spin in self._spins.items():
+            spin.setValue(getattr(preferences, name))
+        self._folder.setFilePath(preferences.folder)
+
+    def preferences(self) -> Preferences:
+        """Return what stands in the fields."""
+        numbers = {name: spin.value() for name, spin in self._spins.items()}
+        return Preferences(**numbers, folder=self._folder.filePath().strip())
+
+
+def _add(form: QFormLayout, text: str, field: QWidget) -> None:
+    label = QLabel(text)
+    label.setBuddy(field)
+    form.addRow(label, field)

@@ -1,0 +1,177 @@
+"""The page of the as-placed report: table, figures, layer, CSV; and collecting a layout again."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from qgis.PyQt.QtCore import pyqtSignal
+from qgis.PyQt.QtWidgets import (
+    QAbstractItemView,
+    QComboBox,
+    QFileDialog,
+    QHBoxLayout,
+    QLabel,
+    QPushButton,
+    QTableWidget,
+    QTableWidgetItem,
+    QVBoxLayout,
+    QWidget,
+)
+
+from ....robot_bridge.messages import PlacementReport
+from ...language import tr
+from ...settings.preferences import export_path
+from ..desk import Desk
+from ..road_board import time_of_day
+from .as_placed import as_csv, chosen, tally
+
+HEADS = (
+    tr("Cone"),
+    tr("Off [m]"),
+    tr("Robot"),
+    tr("Placed"),
+    tr("Planned x, y"),
+    tr("Stands at x, y"),
+    tr("Collected"),
+)
+THIS_PLAN, EVERYTHING = "plan", "all"
+MANY = 2000
+"""Rows that the table shows at most, the newest; the CSV file has all."""
+
+
+class AsPlacedPage(QWidget):
+    """Shows what was put down of a plan, a layout or all, as the desk knows it."""
+
+    refresh_wanted = pyqtSignal()
+    collect_wanted = pyqtSignal(object)
+    """Ask for a plan that collects a layout (its name), or all that stands (None)."""
+    shown = pyqtSignal()
+    place_wanted = pyqtSignal(float, float)
+
+    def __init__(self, desk: Desk, parent: QWidget | None = None):
+        super().__init__(parent)
+        self._desk = desk
+        self._plan: str | None = None
+        self._expected: int | None = None
+        self.which = QComboBox()
+        self.which.setObjectName("fleet_placed_which")
+        self.figures = QLabel()
+        self.figures.setObjectName("fleet_placed_figures")
+        self.figures.setWordWrap(True)
+        self.table = QTableWidget(0, len(HEADS))
+        self.table.setObjectName("fleet_placed_table")
+        self.table.setHorizontalHeaderLabels(HEADS)
+        self.table.verticalHeader().hide()
+        self.table.verticalHeader().setDefaultSectionSize(20)
+        self.table.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
+        self.table.setSelectionBehavior(QAbstractItemView.SelectionBehavior.SelectRows)
+        self.table.cellDoubleClicked.connect(self._go_there)
+        self.placements: list[PlacementReport] = []
+        self._lay_out()
+        self._fill_choices()
+        self.which.currentIndexChanged.connect(self.show_placed)
+
+    def show_plan(self, plan: str | None, expected: int | None) -> None:
+        """Take the plan that is driven, of which so many cones are to be placed."""
+        if (plan, expected) != (self._plan, self._expected):
+            self._plan, self._expected = plan, expected
+            self.show_placed()
+
+    def show_placed(self, *_: object) -> None:
+        """Show what is known now."""
+        self._fill_choices()
+        self.placements = self._chosen()
+        expected = self._expected if self.which.currentData() == THIS_PLAN else None
+        self.figures.setText(tally(self.placements).in_words(expected))
+        rows = self.placements[-MANY:]
+        self.table.setRowCount(len(rows))
+        for k, one in enumerate(rows):
+            for column, text in enumerate(_texts(one)):
+                self.table.setItem(k, column, QTableWidgetItem(text))
+        self.table.resizeColumnsToContents()
+        self.shown.emit()
+
+    def save(self, path: str) -> None:
+        """Write the report as CSV; raises OSError."""
+        Path(path).write_text(as_csv(self.placements), encoding="utf-8")
+
+    def _chosen(self) -> list[PlacementReport]:
+        what = self.which.currentData()
+        if what == THIS_PLAN:
+            return chosen(self._desk.placements, plan=self._plan or "")
+        return chosen(self._desk.placements, layout=None if what == EVERYTHING else what[1])
+
+    def _fill_choices(self) -> None:
+        layouts = sorted({one.layout for one in self._desk.placements if one.layout})
+        wanted = [(tr("the plan that is driven"), THIS_PLAN), ("everything", EVERYTHING)]
+        wanted += [(tr("layout {name}", name=name), ("layout", name)) for name in layouts]
+        if [self.which.itemData(k) for k in range(self.which.count())] == [data for _, data in wanted]:
+            return
+        now = self.which.currentData()
+        self.which.blockSignals(True)
+        self.which.clear()
+        for text, data in wanted:
+            self.which.addItem(text, data)
+        names = [data for _, data in wanted]
+        self.which.setCurrentIndex(names.index(now) if now in names else 0)
+        self.which.blockSignals(False)
+
+    def _collect(self) -> None:
+        what = self.which.currentData()
+        layouts = {one.layout for one in self.placements if one.layout}
+        if what == THIS_PLAN and len(layouts) == 1:
+            self.collect_wanted.emit(layouts.pop())
+        else:
+            self.collect_wanted.emit(what[1] if isinstance(what, tuple) else None)
+
+    def _save_as(self) -> None:
+        path, _ = QFileDialog.getSaveFileName(
+            self, tr("As-placed report"), export_path("as-placed.csv"), tr("CSV (*.csv)")
+        )
+        if not path:
+            return
+        try:
+            self.save(path)
+        except OSError as error:
+            self._desk.failed.emit(
+                tr(
+                    "The report could not be written as {path}: {error}. Choose another place.",
+                    path=path,
+                    error=error,
+                )
+            )
+
+    def _go_there(self, row: int, _: int) -> None:
+        one = self.placements[-MANY:][row]
+        self.place_wanted.emit(one.x, one.y)
+
+    def _lay_out(self) -> None:
+        rows = QVBoxLayout(self)
+        rows.setContentsMargins(0, 4, 0, 0)
+        top, foot = QHBoxLayout(), QHBoxLayout()
+        top.addWidget(self.which, 1)
+        for row, text, name, action in (
+            (top, tr("Refresh"), "fleet_placed_refresh", self.refresh_wanted.emit),
+            (foot, tr("Save as CSV…"), "fleet_placed_save", self._save_as),
+            (foot, tr("Plan collecting"), "fleet_placed_collect", self._collect),
+        ):
+            button = QPushButton(text)
+            button.setObjectName(name)
+            button.clicked.connect(lambda _=False, action=action: action())
+            row.addWidget(button)
+        rows.addLayout(top)
+        rows.addWidget(self.figures)
+        rows.addWidget(self.table, 1)
+        rows.addLayout(foot)
+
+
+def _texts(one: PlacementReport) -> list[str]:
+    return [
+        one.cone or one.label or "",
+        f"{one.deviation:.3f}",
+        one.robot,
+        time_of_day(one.placed_at),
+        f"{one.planned_x:.2f}, {one.planned_y:.2f}",
+        f"{one.x:.2f}, {one.y:.2f}",
+        time_of_day(one.collected_at),
+    ]

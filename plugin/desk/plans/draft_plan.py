@@ -1,0 +1,204 @@
+"""The plan as it is planned and edited at the desk; nothing of it is known to any robot."""
+
+from __future__ import annotations
+
+import uuid
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from qgis.core import QgsApplication
+from qgis.PyQt.QtCore import QObject, pyqtSignal
+
+from ....robot_bridge.assignment import editing
+from ....robot_bridge.assignment.errors import AssignmentError
+from ....robot_bridge.assignment.job import COLLECT, Job, Robot, Target
+from ....robot_bridge.assignment.plan import Plan
+from ....robot_bridge.assignment.solving import AUTOMATIC, PREVIEW, Wanted, assign
+from ....robot_bridge.messages import QueueTask
+from ....robot_bridge.sites.frame import SiteFrame
+from ...errors import FleetError, PlacementError
+from ...language import tr
+from ..desk import Desk
+from .cone_source import ConeFacts, read_cones, read_stores
+from .near_meetings import Meeting, meetings
+from .plan_task import PlanTask, Work
+from .plan_ways import PlanWays
+from .wanted_job import PlanSettings, settings_in
+
+
+class PlanningError(FleetError):
+    """What cannot be planned as things are: names what is missing, and what to do."""
+
+
+@dataclass(frozen=True)
+class Draft:
+    """A plan with the ground that it is planned on. Its tasks and cones are written down with ``name``."""
+
+    plan: Plan
+    ways: PlanWays
+    facts: Mapping[str, ConeFacts]
+    name: str
+    meetings: tuple[Meeting, ...] = field(default=())
+
+
+class DraftPlan(QObject):
+    """Makes and changes the plan by one :class:`PlanTask` at a time."""
+
+    changed = pyqtSignal()
+    """There is another plan, or none, or one is being made."""
+    refused = pyqtSignal(str)
+
+    def __init__(self, desk: Desk, parent: QObject | None = None):
+        super().__init__(parent)
+        self._desk = desk
+        self.settings: PlanSettings = settings_in(desk.project)
+        self.draft: Draft | None = None
+        self.task: PlanTask | None = None
+
+    @property
+    def busy(self) -> bool:
+        """Whether a plan is being made."""
+        return self.task is not None
+
+    def make(self, *, preview: bool) -> None:
+        """Plan the chosen layer's cones, quickly or well.
+
+        :raises FleetError: naming what is missing.
+        """
+        frame = self._frame()
+        targets, facts = read_cones(self._desk.project, self.settings, frame)
+        self._make(targets, facts, frame, preview)
+
+    def make_collecting(self, tasks: Sequence[QueueTask], *, preview: bool) -> None:
+        """Plan who collects placed cones, given as the gateway's tasks; raises FleetError."""
+        frame = self._frame()
+        targets, facts = [], {}
+        for task in tasks:
+            name = f"{task.cone or task.label or 'cone'} #{task.placement}"
+            targets.append(Target(name, task.x, task.y, 0.0, 0, COLLECT, 1, self.settings.service_s))
+            facts[name] = ConeFacts(task.cone or name, task.layout or "", task.placement, task.theta)
+        self._make(tuple(targets), facts, frame, preview)
+
+    def move(self, target: str, robot: str, trip: int, place: int) -> None:
+        """Let ``robot`` serve ``target`` as number ``place``, from 0, of its trip ``trip``."""
+        self._edit(lambda draft: editing.moved(draft.plan, draft.ways.travel_of, target, robot, trip, place))
+
+    def remove(self, target: str) -> None:
+        """Let nobody serve ``target``."""
+        self._edit(lambda draft: editing.removed(draft.plan, draft.ways.travel_of, target))
+
+    def put(self, draft: Draft | None) -> None:
+        """Show another plan, None for none."""
+        self.cancel()
+        self.draft = draft
+        self.changed.emit()
+
+    def run(self, title: str, work: Work, then: Callable[[Plan], None]) -> None:
+        """Make a plan beside the window's thread; ``then`` gets it."""
+        if self.task is not None:
+            raise PlanningError(tr("A plan is being made. Wait for it, or press Cancel."))
+        task = PlanTask(title, work)
+        task.made.connect(lambda plan: self._made(task, plan, then))
+        task.refused.connect(lambda why: self._refused(task, why))
+        task.taskTerminated.connect(lambda: self._ended(task))
+        self.task = task
+        QgsApplication.taskManager().addTask(task)
+        self.changed.emit()
+
+    def cancel(self) -> None:
+        """Give up what is being made; the plan of before stays."""
+        task, self.task = self.task, None
+        if task is not None:
+            task.cancel()
+            self.changed.emit()
+
+    def shut_down(self) -> None:
+        """Give up what is being made and wait until its thread has left it."""
+        task = self.task
+        self.cancel()
+        if task is not None and task.isActive():
+            task.left.wait(10.0)
+
+    def judged(self, plan: Plan, of: Draft) -> Draft:
+        """Return ``plan`` on the ground of ``of``, with the places where robots come too near each other."""
+        return Draft(plan, of.ways, of.facts, of.name, tuple(meetings(plan, self.settings.apart_m)))
+
+    def _make(self, targets, facts: dict[str, ConeFacts], frame: SiteFrame, preview: bool) -> None:
+        stores = read_stores(self._desk.project, self.settings, frame)
+        try:
+            job = Job(targets, self._robots(), stores, self.settings.finish)
+            wanted = Wanted(self.settings.objective, PREVIEW if preview else AUTOMATIC, self.settings.seconds)
+        except AssignmentError as error:
+            raise PlanningError(str(error)) from error
+        ways = PlanWays(self._desk.project, frame, self.settings)
+        ways.standing = self._standing({one.placement for one in facts.values()})
+        blank = Draft(Plan((), (), (), "", "", "", ""), ways, facts, uuid.uuid4().hex)
+        self.run(
+            tr("Preview of the cone plan") if preview else tr("Cone plan"),
+            lambda told: assign(job, ways.travel_of(job), wanted, told),
+            lambda plan: self._put(plan, blank),
+        )
+
+    def _edit(self, change: Callable[[Draft], Plan]) -> None:
+        draft = self.draft
+        if draft is not None:
+            title = tr("Change of the cone plan")
+            self.run(title, lambda told: change(draft), lambda plan: self._put(plan, draft))
+
+    def _put(self, plan: Plan, of: Draft) -> None:
+        self.draft = self.judged(plan, of)
+
+    def _made(self, task: PlanTask, plan: Plan, then: Callable[[Plan], None]) -> None:
+        if task is self.task:
+            self.task = None
+            then(plan)
+            self.changed.emit()
+
+    def _refused(self, task: PlanTask, why: str) -> None:
+        if task is self.task:
+            self.task = None
+            self.changed.emit()
+            self.refused.emit(why)
+
+    def _ended(self, task: PlanTask) -> None:
+        if task is self.task and task.isCanceled():
+            # Cancelled in QGIS's own list of tasks.
+            self.task = None
+            self.changed.emit()
+
+    def _frame(self) -> SiteFrame:
+        if self._desk.site is None:
+            raise PlacementError(tr("The site is not known yet. Connect to a gateway first."))
+        return self._desk.placement().frame
+
+    def _robots(self) -> tuple[Robot, ...]:
+        views = self._desk.picture.views(self._desk.clock())
+        used = [view for view in views if self.settings.of_robot(view.name).used and is_there(view)]
+        if not used:
+            raise PlanningError(
+                tr("No robot that is there is chosen: tick robots in the table, or connect some.")
+            )
+        return tuple(
+            self.settings.of_robot(view.name).robot(view.name, view.report.x, view.report.y) for view in used
+        )
+
+    def _standing(self, collected: set[int | None]) -> np.ndarray:
+        """Return where cones of before stand and robots that do not take part, (n, 2)."""
+        cones = [
+            (one.x, one.y)
+            for one in self._desk.placements
+            if one.collected_at is None and one.placement not in collected
+        ]
+        views = self._desk.picture.views(self._desk.clock())
+        others = [
+            (view.report.x, view.report.y)
+            for view in views
+            if view.has_pose and not (self.settings.of_robot(view.name).used and is_there(view))
+        ]
+        return np.array([*cones, *others], dtype=float).reshape(-1, 2)
+
+
+def is_there(view) -> bool:
+    """Tell whether a robot can be planned with: it has said where it is, and is not away."""
+    return view.has_pose and view.state.value in ("fresh", "stale")

@@ -1,0 +1,122 @@
+"""What the operator does with a plan: send it, and agree to a new one for what is left."""
+
+from __future__ import annotations
+
+from qgis.PyQt.QtCore import pyqtSignal
+from qgis.PyQt.QtWidgets import QCheckBox, QGridLayout, QLabel, QPushButton, QWidget
+
+from ...language import tr
+from .draft_plan import DraftPlan
+from .driven_plan import DrivenPlan
+from .plan_rows import summary
+
+_WARNING = "color: #C62828; font-weight: bold;"
+
+
+class DrivingBar(QWidget):
+    """Buttons that are usable when they can do something, and a line that says how things stand."""
+
+    send_wanted = pyqtSignal()
+    rest_wanted = pyqtSignal(bool)
+    confirm_wanted = pyqtSignal()
+    discard_wanted = pyqtSignal()
+    clear_wanted = pyqtSignal()
+    by_itself_changed = pyqtSignal(bool)
+
+    def __init__(self, drafts: DraftPlan, driven: DrivenPlan, parent: QWidget | None = None):
+        super().__init__(parent)
+        self._drafts, self._driven = drafts, driven
+        self.text, self.trouble = _label("fleet_plan_text"), _label("fleet_plan_trouble")
+        self.trouble.setStyleSheet(_WARNING)
+        self.send = _button(tr("Send…"), "fleet_plan_send", self.send_wanted)
+        self.clear = _button(tr("Clear"), "fleet_plan_clear", self.clear_wanted)
+        self.rest = QPushButton(tr("Plan what is left"))
+        self.rest.setObjectName("fleet_plan_rest")
+        self.rest.setToolTip(
+            tr(
+                "Hold the robots once they have finished what they are doing, and plan what is left; "
+                "nothing else is sent before you confirm"
+            )
+        )
+        self.rest.clicked.connect(lambda: self.rest_wanted.emit(self.again.isChecked()))
+        self.confirm = _button(tr("Confirm new plan"), "fleet_plan_confirm", self.confirm_wanted)
+        self.discard = _button(tr("Go on as before"), "fleet_plan_discard", self.discard_wanted)
+        self.again = QCheckBox(tr("try failed cones again"))
+        self.again.setObjectName("fleet_plan_again")
+        self.by_itself = QCheckBox(tr("Send new plans without asking"))
+        self.by_itself.setToolTip(
+            tr("When a robot is lost or a cone fails, plan what is left and send it by itself")
+        )
+        self.by_itself.setObjectName("fleet_plan_by_itself")
+        self.by_itself.toggled.connect(self.by_itself_changed)
+        grid = QGridLayout(self)
+        grid.setContentsMargins(0, 0, 0, 0)
+        grid.setSpacing(4)
+        grid.addWidget(self.text, 0, 0, 1, 2)
+        grid.addWidget(self.trouble, 1, 0, 1, 2)
+        grid.addWidget(self.send, 2, 0)
+        grid.addWidget(self.clear, 2, 1)
+        grid.addWidget(self.rest, 3, 0)
+        grid.addWidget(self.again, 3, 1)
+        grid.addWidget(self.confirm, 4, 0)
+        grid.addWidget(self.discard, 4, 1)
+        grid.addWidget(self.by_itself, 5, 0, 1, 2)
+
+    def refresh(self) -> None:
+        """Show how things stand now."""
+        drafts, driven = self._drafts, self._driven
+        idle = not driven.busy
+        self.send.setEnabled(idle and drafts.draft is not None and driven.driven is None)
+        shown = drafts.draft is not None or driven.driven is not None
+        self.clear.setEnabled(idle and shown and not driven.held)
+        watching = driven.driven is not None and not driven.progress.is_finished(driven.driven.plan)
+        self.rest.setVisible(watching and driven.offer is None)
+        self.rest.setEnabled(idle and watching)
+        self.again.setVisible(watching and bool(driven.trouble.failed))
+        self.confirm.setVisible(driven.offer is not None)
+        self.confirm.setEnabled(idle)
+        self.discard.setVisible(bool(driven.held))
+        self.discard.setEnabled(driven.sending is None)
+        self.text.setText(self._in_words())
+        self.trouble.setText(self._wrong())
+        self.trouble.setVisible(bool(self.trouble.text()))
+
+    def _in_words(self) -> str:
+        drafts, driven = self._drafts, self._driven
+        if driven.sending is not None:
+            return tr("Being sent …")
+        if driven.offer is not None:
+            return tr("New plan, not sent yet: {summary}", summary=summary(driven.offer))
+        if driven.driven is not None and driven.progress is not None:
+            done, all_of_them = len(driven.progress.done), len(driven.driven.plan.targets)
+            if driven.progress.is_finished(driven.driven.plan):
+                return tr("Done: {done} of {all_of_them} cones", done=done, all_of_them=all_of_them)
+            return tr("Under way: {done} of {all_of_them} cones", done=done, all_of_them=all_of_them)
+        if drafts.draft is not None:
+            return tr("Not sent yet: {summary}", summary=summary(drafts.draft))
+        return tr("No plan. Choose cones and robots, then Preview or Solve.")
+
+    def _wrong(self) -> str:
+        driven = self._driven
+        shown = driven.offer or driven.driven or self._drafts.draft
+        near = shown.meetings if shown is not None and (driven.driven is None or driven.offer) else ()
+        parts = [meeting.in_words() for meeting in near[:3]]
+        if len(near) > 3:
+            parts.append(tr("and {more} more", more=len(near) - 3))
+        if driven.trouble and driven.offer is None:
+            parts.insert(0, driven.trouble.in_words())
+        return "; ".join(parts)
+
+
+def _label(name: str) -> QLabel:
+    label = QLabel()
+    label.setObjectName(name)
+    label.setWordWrap(True)
+    return label
+
+
+def _button(text: str, name: str, wanted) -> QPushButton:
+    button = QPushButton(text)
+    button.setObjectName(name)
+    button.clicked.connect(lambda _=False: wanted.emit())
+    return button

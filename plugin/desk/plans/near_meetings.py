@@ -1,0 +1,83 @@
+"""Where robots come too near to one another if all goes by the plan."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+import numpy.typing as npt
+
+from ....robot_bridge.assignment.plan import Plan, RobotPlan
+from ...language import tr
+
+Floats = npt.NDArray[np.float64]
+STEP_S = 0.5
+
+
+@dataclass(frozen=True)
+class Meeting:
+    """``robot`` and ``other`` are ``metres`` apart at (x, y), site frame, ``at_s`` after the plan's begin."""
+
+    robot: str
+    other: str
+    at_s: float
+    metres: float
+    x: float
+    y: float
+
+    def in_words(self) -> str:
+        """Return who meets whom, where and when."""
+        minutes, seconds = divmod(round(self.at_s), 60)
+        return tr(
+            "{robot} and {other} come within {metres:.1f} m at {x:.0f}, {y:.0f} m after "
+            "{minutes}:{seconds:02d}",
+            robot=self.robot,
+            other=self.other,
+            metres=self.metres,
+            x=self.x,
+            y=self.y,
+            minutes=minutes,
+            seconds=seconds,
+        )
+
+
+def meetings(plan: Plan, least: float) -> list[Meeting]:
+    """Return for each two robots when they come nearer than ``least`` metres first, soonest first."""
+    driving = [one for one in plan.robots if not one.lost]
+    if len(driving) < 2:
+        return []
+    begin = min(one.robot.ready_s for one in driving)
+    times = np.arange(begin, max(one.end_s for one in driving) + STEP_S, STEP_S)
+    places = {one.robot.id: positions(one, times) for one in driving}
+    return sorted(_found(places, times, least), key=lambda one: one.at_s)
+
+
+def positions(one: RobotPlan, times: Floats) -> Floats:
+    """Return where the robot is at ``times``, (n,) seconds from the plan's begin, as (n, 2) metres."""
+    clock, places = [one.robot.ready_s], [np.array([[one.robot.x, one.robot.y]])]
+    knots = [np.array([one.robot.ready_s])]
+    for stop in one.stops:
+        path = np.array(stop.path)
+        along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(path, axis=0).T))])
+        length = max(along[-1], 1e-9)
+        knots += [clock[-1] + (stop.arrival_s - clock[-1]) * along / length, np.array([stop.end_s])]
+        places += [path, path[-1:]]
+        clock.append(stop.end_s)
+    at, where = np.concatenate(knots), np.concatenate(places)
+    return np.column_stack([np.interp(times, at, where[:, axis]) for axis in (0, 1)])
+
+
+def _found(places: dict[str, Floats], times: Floats, least: float) -> Iterator[Meeting]:
+    for (robot, here), (other, there) in combinations(places.items(), 2):
+        apart = np.hypot(*(here - there).T)
+        near = np.flatnonzero(apart < least)
+        if len(near) == 0:
+            continue
+        # The nearest point of the first time that they meet says more than the moment it begins.
+        breaks = np.flatnonzero(np.diff(near) > 1)
+        run = near[: breaks[0] + 1] if len(breaks) else near
+        k = int(run[apart[run].argmin()])
+        x, y = (here[k] + there[k]) / 2
+        yield Meeting(robot, other, float(times[k]), float(apart[k]), float(x), float(y))

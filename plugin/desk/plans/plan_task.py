@@ -1,0 +1,62 @@
+"""Makes a plan beside the window's thread, with progress and cancel."""
+
+from __future__ import annotations
+
+import threading
+import traceback
+from collections.abc import Callable
+
+from qgis.core import QgsTask
+from qgis.PyQt.QtCore import pyqtSignal
+
+from ....robot_bridge.assignment.errors import AssignmentError, CancelledError
+from ....robot_bridge.assignment.plan import Plan
+from ....robot_bridge.roads.errors import RoadsError
+from ...errors import FleetError
+from ...language import tr
+
+Work = Callable[[Callable[[float], bool]], Plan]
+"""Makes a plan; what it is given is told the share that is done, 0 to 1, and returns whether to go on."""
+
+
+class PlanTask(QgsTask):
+    """Does ``work``. Unless cancelled, ``made`` or ``refused`` is emitted in the window's thread."""
+
+    made = pyqtSignal(object)
+    refused = pyqtSignal(str)
+
+    def __init__(self, title: str, work: Work):
+        super().__init__(title, QgsTask.Flag.CanCancel)
+        self._work = work
+        self._plan: Plan | None = None
+        self._why = ""
+        self.left = threading.Event()
+        """Set once the worker has left :meth:`run`."""
+
+    def run(self) -> bool:
+        try:
+            self._plan = self._work(self._told)
+        except CancelledError:
+            pass
+        except (AssignmentError, RoadsError, FleetError) as error:
+            self._why = str(error)
+        except Exception:
+            self._why = tr(
+                "The plan could not be made. Please report this:\n{format_exc}",
+                format_exc=traceback.format_exc(),
+            )
+        finally:
+            self.left.set()
+        return self._plan is not None
+
+    def finished(self, done: bool) -> None:
+        if self.isCanceled():
+            return
+        if self._plan is not None:
+            self.made.emit(self._plan)
+        else:
+            self.refused.emit(self._why)
+
+    def _told(self, share: float) -> bool:
+        self.setProgress(100.0 * share)
+        return not self.isCanceled()

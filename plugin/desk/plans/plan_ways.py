@@ -1,0 +1,113 @@
+"""How the robots of a plan get from place to place: straight nearby, along the roads farther off."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+from qgis.core import (
+    QgsCoordinateReferenceSystem,
+    QgsExpressionContext,
+    QgsExpressionContextUtils,
+    QgsFeedback,
+    QgsProject,
+)
+
+from ....robot_bridge.assignment.job import Job
+from ....robot_bridge.assignment.road_travel import RoadTravel
+from ....robot_bridge.assignment.travel import StraightTravel, Travel
+from ....robot_bridge.roads.centrelines import centrelines
+from ....robot_bridge.roads.network import build_network
+from ....robot_bridge.roads.routes import Router
+from ....robot_bridge.sites.frame import SiteFrame
+from ...language import tr
+from ...sites.ground_reading import DEFAULT_WIDTH_M, read_areas, read_centrelines
+from ...sites.obstacle_source import obstacle_sources
+from ...sites.placing import SitePlacing
+from ...sites.roles import KEEPOUT, ROAD_CENTRELINE, LayerExpressions, layers_with_role
+from ...sites.site_crs import stated_crs
+from .clear_paths import ClearTravel
+from .keepout_edges import edges_through
+from .wanted_job import PlanSettings
+
+Floats = npt.NDArray[np.float64]
+
+
+class PlanWays:
+    """The ground of one plan; made in the window's thread, used by one task after the other.
+
+    ``standing`` (n, 2) is what stands beside the plan's own cones: cones of before, robots that are lost.
+    """
+
+    def __init__(self, project: QgsProject, frame: SiteFrame, settings: PlanSettings) -> None:
+        self.settings = settings
+        self.standing: Floats = np.empty((0, 2))
+        self._router: Router | None = None
+        self._read = not settings.on_roads
+        crs = stated_crs(QgsCoordinateReferenceSystem(frame.crs))
+        self._site = SitePlacing(crs, frame, project.transformContext())
+        context = QgsExpressionContext(QgsExpressionContextUtils.globalProjectLayerScopes(None))
+
+        def sources(role: str):
+            layers = layers_with_role(project, role) if settings.on_roads else []
+            return obstacle_sources(layers, LayerExpressions(), context)
+
+        self._roads, self._keepouts = sources(ROAD_CENTRELINE), sources(KEEPOUT)
+
+    @property
+    def has_roads(self) -> bool:
+        """Whether the project has roads to plan along."""
+        return bool(self._roads)
+
+    def travel_of(self, job: Job) -> Travel:
+        """Return the ways between the places of ``job``, clear of its cones and of what stands.
+
+        :raises RoadsError: when a place is too far from every road; LayerReadingError for a layer of roads
+            that cannot be read.
+        """
+        router = self._opened()
+        travel: Travel = StraightTravel(job)
+        if router is not None:
+            travel = _NearOrByRoad(job, travel, RoadTravel(job, router), self.settings.direct_m)
+        obstacles = np.concatenate([job.places[job.first_target :], self.standing])
+        return ClearTravel(travel, job.places, obstacles, self.settings.clearance_m)
+
+    def _opened(self) -> Router | None:
+        if not self._read:
+            self._read = True
+            self._router = self._network()
+        return self._router
+
+    def _network(self) -> Router | None:
+        feedback = QgsFeedback()
+        roads = read_centrelines(self._roads, self._site, DEFAULT_WIDTH_M, feedback).items
+        if not roads:
+            return None
+        network = build_network(
+            centrelines(
+                [road.points for road in roads],
+                width=[road.width_m for road in roads],
+                surface=[road.surface for road in roads],
+                direction=[road.direction for road in roads],
+                speed=[road.speed_ms for road in roads],
+                closed=[road.closed for road in roads],
+                level=[road.level for road in roads],
+            )
+        )
+        router = Router(network)
+        areas = read_areas(self._keepouts, self._site, KEEPOUT, feedback).items
+        router.close(edges_through(network, [area.rings for area in areas]))
+        return router
+
+
+class _NearOrByRoad:
+    """Straight up to ``nearby`` metres, by road farther off."""
+
+    def __init__(self, job: Job, straight: Travel, roads: Travel, nearby: float) -> None:
+        self._straight, self._roads = straight, roads
+        self._near = straight.metres <= nearby
+        self.metres: Floats = np.where(self._near, straight.metres, roads.metres)
+        self.name = tr("{name}, straight within {nearby:g} m", name=roads.name, nearby=nearby)
+
+    def path(self, start: int, goal: int) -> Floats:
+        """Return the points from place to place."""
+        return (self._straight if self._near[start][goal] else self._roads).path(start, goal)

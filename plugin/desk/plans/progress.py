@@ -1,0 +1,201 @@
+"""How far the robots are with a plan that was sent, from what the gateway tells of their queues."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+
+from ....robot_bridge.assignment.job import Robot
+from ....robot_bridge.assignment.plan import Plan
+from ....robot_bridge.assignment.replanning import Situation
+from ....robot_bridge.messages import PlacementReport, QueueReport, RobotState, TaskReport, TaskState
+from ...language import tr
+from .cone_source import ConeFacts
+from .task_rows import SentStop
+
+AWAY = (RobotState.LOST, RobotState.OFFLINE)
+_OPEN = (TaskState.WAITING, TaskState.CURRENT, TaskState.FAILED)
+_GIVEN_UP = (TaskState.SKIPPED, TaskState.REMOVED, TaskState.FAILED)
+
+
+@dataclass
+class Progress:
+    """What became of each stop that was sent, by its task, and of each cone, by its target's id.
+
+    Only the newest ends of a queue are told, so what was heard once is kept.
+    """
+
+    name: str
+    facts: Mapping[str, ConeFacts]
+    began_at: float
+    stops: dict[str, SentStop] = field(default_factory=dict)
+    reports: dict[str, TaskReport] = field(default_factory=dict)
+    placed: dict[str, PlacementReport] = field(default_factory=dict)
+    done: set[str] = field(default_factory=set)
+
+    def sent(self, stops: Iterable[SentStop]) -> None:
+        """Note stops that are in a robot's queue from now on."""
+        self.stops.update({one.task: one for one in stops})
+
+    def forget(self, tasks: Iterable[str]) -> None:
+        """Pass over tasks that others took the place of."""
+        for task in tasks:
+            self.stops.pop(task, None)
+
+    def take_queue(self, queue: QueueReport) -> None:
+        """Take in how a robot's queue stands."""
+        open_ones = {task.task for task in queue.tasks}
+        for task in (*reversed(queue.ended), *queue.tasks):
+            self._note(task)
+        theirs = [task for task, one in self.stops.items() if one.robot == queue.robot]
+        for task in theirs:
+            known = self.reports.get(task)
+            if task not in open_ones and known is not None and known.state in _OPEN:
+                # It ended while nobody listened; of a cone, what was written down says the rest.
+                self.reports[task] = replace(known, state=TaskState.DONE)
+
+    def take_placement(self, report: PlacementReport) -> None:
+        """Take in a cone that was put down or collected."""
+        for target, facts in self.facts.items():
+            if facts.placement is not None:
+                if facts.placement == report.placement and report.collected_at is not None:
+                    self.placed[target] = report
+                    self.done.add(target)
+            elif report.plan == self.name and report.cone == facts.cone:
+                self.placed[target] = report
+                self.done.add(target)
+
+    def state_of(self, target: str) -> TaskState | None:
+        """Return what became of a cone, None before it was sent."""
+        if target in self.done:
+            return TaskState.DONE
+        found = self._newest(target)
+        return None if found is None else found.state
+
+    def why_not(self, target: str) -> str:
+        """Return why a cone failed or was given up, nothing for another."""
+        found = self._newest(target)
+        return (found.reason or "") if found is not None and found.state in _GIVEN_UP else ""
+
+    def is_finished(self, plan: Plan) -> bool:
+        """Tell whether every cone of ``plan`` is done or left out."""
+        out = {one.target.id for one in plan.left_out}
+        return all(target.id in self.done or target.id in out for target in plan.targets)
+
+    def _note(self, task: TaskReport) -> None:
+        stop = self.stops.get(task.task)
+        if stop is None:
+            return
+        self.reports[task.task] = task
+        if task.state is TaskState.DONE and stop.stop.is_target:
+            self.done.add(stop.stop.id)
+
+    def _newest(self, target: str) -> TaskReport | None:
+        tasks = [task for task, one in self.stops.items() if one.stop.id == target and task in self.reports]
+        return self.reports[tasks[-1]] if tasks else None
+
+
+@dataclass(frozen=True)
+class Trouble:
+    """Why a plan does not go on as it is: robots that are away, and cones that failed, with why."""
+
+    away: tuple[str, ...] = ()
+    failed: tuple[tuple[str, str], ...] = ()
+
+    def __bool__(self) -> bool:
+        return bool(self.away or self.failed)
+
+    def in_words(self) -> str:
+        """Return what happened, for the operator."""
+        parts = [tr("{robot} is lost or offline", robot=robot) for robot in self.away]
+        parts += [
+            tr(
+                "cone {cone} failed{why}",
+                cone=cone,
+                why=f": {why}" if why else "",
+            )
+            for cone, why in self.failed
+        ]
+        return "; ".join(parts)
+
+
+def trouble_of(plan: Plan, progress: Progress, queues: Mapping[str, QueueReport]) -> Trouble:
+    """Return what is wrong: a robot with cones to come that is away, a cone of this plan that failed."""
+    away, failed = [], []
+    for one in plan.robots:
+        if one.lost:
+            continue
+        left = [stop.id for stop in one.stops if stop.is_target and stop.id not in progress.done]
+        report = queues.get(one.robot.id)
+        if left and report is not None and report.robot_state in AWAY:
+            away.append(one.robot.id)
+        failed += [
+            (target, progress.why_not(target))
+            for target in left
+            if progress.state_of(target) in (TaskState.FAILED, TaskState.SKIPPED)
+        ]
+    return Trouble(tuple(away), tuple(failed))
+
+
+def situation_of(
+    plan: Plan,
+    progress: Progress,
+    places: Mapping[str, tuple[float, float]],
+    trouble: Trouble,
+    now: float,
+    *,
+    try_again: bool,
+) -> Situation:
+    """Return how things are at ``now``, seconds since 1970, for a plan of what is left.
+
+    What a robot is doing it finishes: that counts as done, and the robot is where it ends. ``places`` is
+    where robots are (metres, site frame). With ``try_again`` cones that failed are tried by somebody again.
+    """
+    now_s = max(now - progress.began_at, 0.0)
+    done, robots, currents = set(progress.done), {}, current_tasks(progress)
+    for one in plan.robots:
+        name = one.robot.id
+        if one.lost or name in trouble.away:
+            continue
+        robot = replace(one.robot, ready_s=now_s)
+        if name in places:
+            robot = replace(robot, x=places[name][0], y=places[name][1])
+        robot = _loaded(robot, plan, progress, name)
+        if name in currents:
+            current = progress.stops[currents[name]].stop
+            done |= {current.id} if current.is_target else set()
+            robot = replace(robot, x=current.x, y=current.y, ready_s=max(current.end_s, now_s))
+        robots[name] = robot
+    failed = {} if try_again else {cone: why or "failed" for cone, why in trouble.failed}
+    return Situation(now_s, frozenset(done), frozenset(trouble.away), failed, robots)
+
+
+def current_tasks(progress: Progress) -> dict[str, str]:
+    """Return the task that each robot is doing, by the robot."""
+    return {
+        one.robot: task
+        for task, one in progress.stops.items()
+        if task in progress.reports and progress.reports[task].state is TaskState.CURRENT
+    }
+
+
+def cones_under_way(progress: Progress) -> set[str]:
+    """Return the cones that robots are at."""
+    return {progress.stops[task].stop.id for task in current_tasks(progress).values()}
+
+
+def _loaded(robot: Robot, plan: Plan, progress: Progress, name: str) -> Robot:
+    """Return the robot with what it carries once what it is doing is done."""
+    own = plan.robot(name)
+    theirs = [(task, one.stop) for task, one in progress.stops.items() if one.robot == name]
+    behind = [stop for task, stop in theirs if _is_behind(progress, task)]
+    stops = [stop for stop in (own.stops if own is not None else ()) if stop in behind]
+    if not stops:
+        return robot
+    return replace(robot, aboard=stops[-1].aboard, collected=stops[-1].collected)
+
+
+def _is_behind(progress: Progress, task: str) -> bool:
+    report, stop = progress.reports.get(task), progress.stops[task].stop
+    done = stop.is_target and stop.id in progress.done
+    return done or (report is not None and report.state in (TaskState.DONE, TaskState.CURRENT))

@@ -1,0 +1,202 @@
+"""Sends a plan to the robots' queues, step by step; stops at what is refused and says how far it came."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from qgis.PyQt.QtCore import QObject, pyqtSignal
+
+from ....robot_bridge.messages import (
+    PauseQueue,
+    QueueReport,
+    QueueState,
+    QueueTask,
+    ResumeQueue,
+    SetQueue,
+    Share,
+    SharedTask,
+    TakeOver,
+    TaskState,
+)
+from ...errors import NotSentError
+from ...language import tr
+from ...wire.outbox import Answer
+from ..desk import Desk
+
+Request = SetQueue | PauseQueue | ResumeQueue | TakeOver
+
+
+@dataclass(frozen=True)
+class Step:
+    """One request, made when it is its turn: by then the queue's revision is known. None: nothing to do."""
+
+    words: str
+    request: Callable[[], Request | None]
+
+
+class Sending(QObject):
+    """Asks for one step after the other, each when the one before is done."""
+
+    ended = pyqtSignal(bool, str)
+    """Whether all of it was done, and what was refused."""
+
+    def __init__(self, desk: Desk, steps: Sequence[Step], parent: QObject | None = None):
+        super().__init__(parent)
+        self._desk = desk
+        self._steps = list(steps)
+        self._key: str | None = None
+        self._now: Step | None = None
+        self._sent: Request | None = None
+        self.done: list[str] = []
+        """What was done, in words."""
+        desk.answered.connect(self._answered)
+
+    def start(self) -> None:
+        """Ask for the first step."""
+        self._next()
+
+    def _next(self) -> None:
+        while self._steps:
+            self._now = self._steps.pop(0)
+            try:
+                self._sent = self._now.request()
+                if self._sent is None:
+                    continue
+                self._key = self._desk.ask(self._sent, self._now.words)
+            except NotSentError as error:
+                self._end(False, str(error))
+            return
+        self._end(True, "")
+
+    def _answered(self, answer: Answer) -> None:
+        if self._key is None or answer.order.key != self._key:
+            return
+        self._key = None
+        if answer.error is not None and not self._is_done_already():
+            self._end(False, f"{self._now.words}: {answer.error}")
+            return
+        self.done.append(self._now.words)
+        self._next()
+
+    def _is_done_already(self) -> bool:
+        """Tell whether what was refused was done before: its answer was lost with the link."""
+        if not isinstance(self._sent, SetQueue) or not self._sent.tasks:
+            return False
+        report = self._desk.queues.get(self._sent.robot)
+        if report is None:
+            return False
+        there = {task.task for task in (*report.tasks, *report.ended)}
+        return all(task.task in there for task in self._sent.tasks)
+
+    def _end(self, done: bool, why: str) -> None:
+        self._desk.answered.disconnect(self._answered)
+        self._key = None
+        left = [step.words for step in self._steps]
+        if not done and left:
+            why = tr("{why} Not done therefore: {left}.", why=why, left=", ".join(left))
+        if not done and self.done:
+            why = tr("{why} Done before: {done}.", why=why, done=", ".join(self.done))
+        self.ended.emit(done, why)
+
+
+def paused_at(desk: Desk, robots: Iterable[str]) -> dict[str, float | None]:
+    """Return since when the queues of ``robots`` are paused, of those that are.
+
+    A pause of another time is another's: whoever lets a robot go on says which pause was seen.
+    """
+    reports = (desk.queues.get(robot) for robot in robots)
+    return {one.robot: one.at for one in reports if one is not None and one.state is QueueState.PAUSED}
+
+
+def has_failed(desk: Desk, robot: str) -> bool:
+    """Tell whether a robot's queue stands still because of a task that failed."""
+    report = desk.queues.get(robot)
+    return report is not None and any(task.state is TaskState.FAILED for task in report.tasks)
+
+
+def first_steps(desk: Desk, tasks: Mapping[str, Sequence[QueueTask]]) -> list[Step]:
+    """Return what fills the robots' queues, and lets those go on that are paused now."""
+    steps, seen = [], paused_at(desk, tasks)
+    for robot, theirs in tasks.items():
+        if theirs:
+            steps += [_filling(desk, robot, theirs), _resuming(desk, robot, seen)]
+    return steps
+
+
+def holding_steps(robots: Sequence[str], reason: str) -> list[Step]:
+    """Return what holds robots: they finish what they are doing, and are sent nothing more."""
+    return [
+        Step(
+            tr(
+                "holding {robot}",
+                robot=robot,
+            ),
+            lambda robot=robot: PauseQueue(robot, reason),
+        )
+        for robot in robots
+    ]
+
+
+def going_on_steps(desk: Desk, held: Mapping[str, float | None]) -> list[Step]:
+    """Return what lets robots go on that are held since the times of ``held``, and by nobody since."""
+    return [_resuming(desk, robot, held) for robot in held]
+
+
+def later_steps(
+    desk: Desk,
+    tasks: Mapping[str, Sequence[QueueTask]],
+    away: Sequence[str],
+    held: Mapping[str, float | None],
+    reason: str,
+) -> list[Step]:
+    """Return what hands the tasks of robots that are ``away`` to others, and gives every robot its new list.
+
+    The robots of ``tasks`` are to be held before, so that nobody sets off in between.
+    """
+    staying = list(tasks)
+    steps = [_taking(desk, robot, staying[0], reason) for robot in away] if staying else []
+    steps += [_filling(desk, robot, theirs) for robot, theirs in tasks.items()]
+    return steps + going_on_steps(desk, held)
+
+
+def _filling(desk: Desk, robot: str, tasks: Sequence[QueueTask]) -> Step:
+    return Step(
+        tr(
+            "the queue of {robot}",
+            robot=robot,
+        ),
+        lambda: SetQueue(robot, desk.queues.revision(robot), list(tasks)),
+    )
+
+
+def _resuming(desk: Desk, robot: str, seen: Mapping[str, float | None]) -> Step:
+    def request() -> ResumeQueue | None:
+        report = desk.queues.get(robot)
+        if report is None or report.state is not QueueState.PAUSED:
+            return None
+        if robot not in seen or seen[robot] != report.at:
+            # Somebody holds it since: it is not ours to let go.
+            return None
+        return ResumeQueue(robot, report.revision)
+
+    return Step(tr("letting {robot} go on", robot=robot), request)
+
+
+def _taking(desk: Desk, lost: str, taker: str, reason: str) -> Step:
+    def request() -> TakeOver | None:
+        report = desk.queues.get(lost)
+        if report is None or not report.tasks:
+            return None
+        own = _waiting(desk.queues.get(taker))
+        tasks = [SharedTask(task) for task in (*own, *(task.task for task in report.tasks))]
+        share = Share(taker, desk.queues.revision(taker), tasks)
+        return TakeOver(lost, report.revision, [share], reason)
+
+    return Step(tr("taking over from {lost}", lost=lost), request)
+
+
+def _waiting(report: QueueReport | None) -> list[str]:
+    tasks: Sequence[Any] = () if report is None else report.tasks
+    return [task.task for task in tasks if task.state is not TaskState.CURRENT]

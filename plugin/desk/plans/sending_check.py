@@ -1,0 +1,97 @@
+"""What the operator is told before a plan is sent, and after."""
+
+from __future__ import annotations
+
+import math
+
+from ....robot_bridge.assignment.plan import Plan
+from ....robot_bridge.messages import QueueState, TaskState
+from ...language import tr
+from ..desk import Desk
+from .draft_plan import Draft
+from .plan_rows import summary
+
+MOVED = 1.0
+"""Metres that a robot may have moved since the plan was made."""
+
+
+def before_sending(desk: Desk, draft: Draft) -> str:
+    """Return what sending will do, and what speaks against it."""
+    driving = [one for one in draft.plan.robots if one.stops and not one.lost]
+    lines = [summary(draft) + ".", ""]
+    lines += [
+        tr(
+            "{id}: {sum} cones",
+            id=one.robot.id,
+            sum=sum(stop.is_target for stop in one.stops),
+        )
+        for one in driving
+    ]
+    doubts = [doubt for one in driving for doubt in _doubts(desk, one.robot)]
+    doubts += [meeting.in_words() for meeting in draft.meetings]
+    if doubts:
+        lines += ["", tr("Mind:"), *(f"• {doubt}" for doubt in doubts)]
+    return "\n".join([*lines, "", tr("The robots set off at once.")])
+
+
+def after_sending(desk: Desk, plan: Plan) -> list[str]:
+    """Return which robots do not set off, since somebody holds them."""
+    texts = []
+    for one in plan.robots:
+        report = desk.queues.get(one.robot.id)
+        if one.stops and not one.lost and report is not None and report.state is QueueState.PAUSED:
+            texts.append(
+                tr(
+                    "The queue of {robot} stays paused ({reason}): its cones wait until it is resumed.",
+                    robot=report.robot,
+                    reason=report.reason or "",
+                )
+            )
+    return texts
+
+
+def _doubts(desk: Desk, robot) -> list[str]:
+    doubts = []
+    view = desk.picture.view(robot.id, desk.clock())
+    if view is None or not view.has_pose:
+        doubts.append(tr("it is not known where {id} is", id=robot.id))
+    else:
+        away = math.hypot(view.report.x - robot.x, view.report.y - robot.y)
+        if away > MOVED:
+            doubts.append(
+                tr(
+                    "{id} is {away:.1f} m from where the plan begins: better plan anew",
+                    id=robot.id,
+                    away=away,
+                )
+            )
+        if view.state.value not in ("fresh", "stale"):
+            doubts.append(
+                tr(
+                    "{id} is {state}: it gets its queue when it is heard of again",
+                    id=robot.id,
+                    state=view.state.value,
+                )
+            )
+    queue = desk.queues.get(robot.id)
+    if queue is not None:
+        waiting = sum(task.state is not TaskState.CURRENT for task in queue.tasks)
+        if waiting:
+            doubts.append(
+                tr(
+                    "{waiting} tasks that wait in the queue of {id} are replaced",
+                    waiting=waiting,
+                    id=robot.id,
+                )
+            )
+        if any(task.state is TaskState.CURRENT for task in queue.tasks):
+            doubts.append(tr("{id} finishes first what it is doing", id=robot.id))
+        if queue.state is QueueState.PAUSED:
+            doubts.append(
+                tr(
+                    "the queue of {id} is paused ({reason}): it is resumed",
+                    id=robot.id,
+                    reason=queue.reason or tr("no reason"),
+                )
+            )
+    return doubts

@@ -1,0 +1,107 @@
+"""What the operator changes in the robots' queues, from the press of a button to the gateway's answer."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from qgis.PyQt.QtCore import QObject, pyqtSignal
+
+from ....robot_bridge.messages import (
+    AddTasks,
+    MakeCurrent,
+    MoveTask,
+    PauseQueue,
+    QueueTask,
+    RemoveTask,
+    ResumeQueue,
+)
+from ...errors import FleetError
+from ...wire.outbox import Answer
+from ..desk import Desk
+
+Request = AddTasks | MoveTask | RemoveTask | MakeCurrent | PauseQueue | ResumeQueue
+
+CHANGED_MEANWHILE = "Not done: the queue has changed since you saw it. This is how it stands now."
+
+
+class QueueEdits(QObject):
+    """Asks for changes at the revision that is shown, so that none of another operator's is undone unseen.
+
+    Each method returns the order's key, None when it could not be sent: then the desk has said why.
+    """
+
+    changed = pyqtSignal()
+    """Something was asked for, or the gateway answered."""
+
+    def __init__(self, desk: Desk, parent: QObject | None = None):
+        super().__init__(parent)
+        self._desk = desk
+        self._asked: dict[str, str] = {}
+        self._conflicts: dict[str, str] = {}
+        desk.answered.connect(self._answered)
+        desk.site_changed.connect(self._clear)
+
+    def is_asked(self, robot: str) -> bool:
+        """Tell whether the gateway has not answered yet what was asked of this queue."""
+        return robot in self._asked.values()
+
+    def conflict(self, robot: str) -> str:
+        """Return what became of a change that came too late; empty after the next one."""
+        return self._conflicts.get(robot, "")
+
+    def add(
+        self, robot: str, tasks: Sequence[QueueTask], words: str, override: str | None = None
+    ) -> str | None:
+        """Put tasks at the end of a robot's queue; ``words`` say what they are, ``override`` as AddTasks."""
+        request = AddTasks(robot, self._revision(robot), list(tasks), override=override)
+        return self._change(request, words)
+
+    def move(self, robot: str, task: str, before: str | None) -> str | None:
+        """Move a task in front of task ``before``, or to the end."""
+        request = MoveTask(robot, self._revision(robot), task, before)
+        return self._change(request, f"Moving a task of {robot}")
+
+    def remove(self, robot: str, task: str) -> str | None:
+        """Take a task out of a queue."""
+        request = RemoveTask(robot, self._revision(robot), task)
+        return self._change(request, f"Removing a task of {robot}")
+
+    def make_current(self, robot: str, task: str) -> str | None:
+        """Let a task be done first, at once unless the queue is paused."""
+        request = MakeCurrent(robot, self._revision(robot), task)
+        return self._change(request, f"A task of {robot} first")
+
+    def pause(self, robot: str) -> str | None:
+        """Send a robot no further task."""
+        return self._change(PauseQueue(robot), f"Pausing the queue of {robot}")
+
+    def resume(self, robot: str) -> str | None:
+        """Let a queue that is paused go on."""
+        return self._change(ResumeQueue(robot, self._revision(robot)), f"Resuming the queue of {robot}")
+
+    def _revision(self, robot: str) -> int:
+        return self._desk.queues.revision(robot)
+
+    def _change(self, request: Request, words: str) -> str | None:
+        try:
+            key = self._desk.ask(request, words)
+        except FleetError as error:
+            self._desk.failed.emit(str(error))
+            return None
+        self._asked[key] = request.robot
+        self._conflicts.pop(request.robot, None)
+        self.changed.emit()
+        return key
+
+    def _answered(self, answer: Answer) -> None:
+        robot = self._asked.pop(answer.order.key, None)
+        if robot is None:
+            return
+        if answer.outdated:
+            self._conflicts[robot] = CHANGED_MEANWHILE
+        self.changed.emit()
+
+    def _clear(self) -> None:
+        self._asked.clear()
+        self._conflicts.clear()
+        self.changed.emit()

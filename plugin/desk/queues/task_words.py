@@ -1,0 +1,76 @@
+"""Tasks and queues in words."""
+
+from __future__ import annotations
+
+import time
+
+from ....robot_bridge.messages import QueueReport, QueueState, RobotState, TaskKind, TaskReport, TaskState
+from ...language import tr, tr_count
+
+KINDS = {TaskKind.DRIVE: tr("drive"), TaskKind.PLACE: tr("place cone"), TaskKind.COLLECT: tr("collect cone")}
+
+
+def task_in_words(task: TaskReport) -> str:
+    """Return what is done where, as in ``place cone K7 at 12.30, 40.00``."""
+    name = f" {task.label or task.cone}" if task.label or task.cone else ""
+    way = tr(", a path of {path_points} points", path_points=task.path_points) if task.path_points else ""
+    return tr(
+        "{kind}{name} at {x:.2f}, {y:.2f}{way}",
+        kind=KINDS[task.kind],
+        name=name,
+        x=task.x,
+        y=task.y,
+        way=way,
+    )
+
+
+def state_in_words(task: TaskReport) -> str:
+    """Return how far a task is, and why where there is something to say."""
+    text = tr("now") if task.state is TaskState.CURRENT else task.state.value
+    return f"{text}: {task.reason}" if task.reason else text
+
+
+def queue_in_words(queue: QueueReport) -> str:
+    """Return whether a queue goes on, and who paused it when and why."""
+    count = tr_count(len(queue.tasks), "1 task", "%n tasks")
+    if queue.state is QueueState.PAUSED:
+        when = f", {clock(queue.at)}" if queue.at is not None else ""
+        # The gateway's reasons name who did it; where they do not, the name stands alone.
+        why = queue.reason or (tr("by {by}", by=queue.by) if queue.by else "")
+        text = tr(
+            "{robot}: {count}, PAUSED{when}{why}",
+            robot=queue.robot,
+            count=count,
+            when=when,
+            why=f": {why}" if why else "",
+        )
+    else:
+        text = f"{queue.robot}: {count}, {tr('running') if queue.tasks else tr('nothing to do')}"
+    if queue.robot_state in (RobotState.LOST, RobotState.OFFLINE):
+        text += tr(
+            ". The robot is {state}: it is sent nothing until it is heard again",
+            state=queue.robot_state.value,
+        )
+    return text
+
+
+def last_ended_in_words(queue: QueueReport) -> str:
+    """Return what ended last; empty where nothing did."""
+    if not queue.ended:
+        return ""
+    task = queue.ended[0]
+    off = "" if task.deviation is None else tr(", {deviation:.2f} m off", deviation=task.deviation)
+    why = f": {task.reason}" if task.reason else ""
+    return tr(
+        "Last: {task} {state} {time}{off}{why}",
+        task=task_in_words(task),
+        state=task.state.value,
+        time=clock(task.ended_at),
+        off=off,
+        why=why,
+    )
+
+
+def clock(at: float | None) -> str:
+    """Return a time as the operator's clock shows it; nothing for none."""
+    return "" if at is None else time.strftime("%H:%M:%S", time.localtime(at))

@@ -1,0 +1,1 @@
+"""What was: stored positions and commands, played beside the live map."""

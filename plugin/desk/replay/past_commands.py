@@ -1,0 +1,49 @@
+"""Commands as they were at a moment, and as marks on a time line; no I/O, no Qt."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from ....robot_bridge.messages import Abort, CommandReport, CommandState
+from ..command_book import UNDER_WAY, in_words
+
+
+@dataclass(frozen=True)
+class Mark:
+    """One step of a command on the time line: when, what it came to, and in words."""
+
+    at: float
+    state: CommandState
+    text: str
+
+
+def under_way_at(reports: Iterable[CommandReport], moment: float) -> list[CommandReport]:
+    """Return what robots were doing at ``moment``: of each the newest command sent and not ended then."""
+    found: dict[str, CommandReport] = {}
+    for report in sorted((one for one in reports if one.steps), key=lambda one: one.steps[0].at):
+        so_far = [step.state for step in report.steps if step.at <= moment]
+        if not so_far or report.op == Abort.__name__:
+            continue
+        if so_far[-1] in UNDER_WAY:
+            found[report.robot] = report
+        elif found.get(report.robot) is report:
+            del found[report.robot]
+    return list(found.values())
+
+
+def marks(
+    reports: Iterable[CommandReport], since: float, until: float, robots: Iterable[str] = ()
+) -> list[Mark]:
+    """Return when commands were sent and how they ended from ``since`` to ``until``: of ``robots`` or all."""
+    wanted = set(robots)
+    found = []
+    for report in reports:
+        if wanted and report.robot not in wanted:
+            continue
+        for step in report.steps:
+            told = step.state not in UNDER_WAY or step.state is CommandState.QUEUED
+            if told and since <= step.at <= until:
+                text = f"{report.robot}: {in_words(report)} · {step.state.value} by {step.by}"
+                found.append(Mark(step.at, step.state, text + (f" ({step.reason})" if step.reason else "")))
+    return sorted(found, key=lambda mark: mark.at)

@@ -1,0 +1,181 @@
+"""The panel of the replay: a time is loaded, played and looked at, while the live map goes on."""
+
+from __future__ import annotations
+
+from qgis.gui import QgsDockWidget
+from qgis.PyQt.QtWidgets import QComboBox, QHBoxLayout, QLabel, QToolButton, QVBoxLayout, QWidget
+
+from ...errors import FleetError
+from ..desk import Desk
+from .clockwork import SPEEDS, Clockwork, in_words
+from .fetching import Fetching
+from .past_commands import marks
+from .replay_layer import ReplayLayer
+from .replay_map import ReplayMap
+from .stretch_form import StretchForm
+from .time_line import TimeLine
+
+BANNER = "background: #7B1FA2; color: white; font-weight: bold; padding: 3px 8px;"
+
+
+class ReplayDock(QgsDockWidget):
+    """Puts the parts together. :meth:`remove` undoes what they did outside of it."""
+
+    def __init__(self, desk: Desk, parent: QWidget | None = None):
+        super().__init__("Replay", parent)
+        self.setObjectName("fleet_replay_dock")
+        self._desk = desk
+        self._told = ""
+        self.fetching = Fetching(desk, self)
+        self.clockwork = Clockwork(desk.canvas, self)
+        self.layer = ReplayLayer(desk.project, self)
+        self.form = StretchForm()
+        self.map = ReplayMap(desk.canvas)
+        self.map.setTemporalController(self.clockwork.controller)
+        self.banner = QLabel()
+        self.banner.setObjectName("fleet_replay_banner")
+        self.banner.setStyleSheet(BANNER)
+        self.banner.setWordWrap(True)
+        self.line = TimeLine()
+        self.play = QToolButton()
+        self.play.setObjectName("fleet_replay_play")
+        self.play.setText("▶")
+        self.play.setToolTip("Play, or hold (Space)")
+        self.play.setShortcut("Space")
+        self.speed = QComboBox()
+        self.speed.setObjectName("fleet_replay_speed")
+        self.speed.setToolTip("How much faster than it was")
+        self.speed.addItems([f"× {speed:g}" for speed in SPEEDS])
+        self.speed.setCurrentIndex(SPEEDS.index(1))
+        self._lay_out()
+        self._wire()
+        self._say("Choose a time and press Load.")
+
+    def remove(self) -> None:
+        """Stop the clock, take the layer out of the project, leave the live map alone."""
+        self.fetching.forget()
+        self.clockwork.remove()
+        self.layer.remove()
+        self.map.remove()
+
+    def load(self) -> None:
+        """Fetch the time in the form and begin to show it."""
+        since, until = self.form.stretch()
+        if self._desk.site is None:
+            self._desk.complained.emit("There is nothing to replay yet. Connect to a gateway first.")
+            return
+        if until <= since:
+            self._desk.complained.emit("The replay's time ends before it begins. Correct one of the two.")
+            return
+        robots = list(self._desk.selection) if self.form.selected.isChecked() else []
+        if self.form.selected.isChecked() and not robots:
+            self._desk.complained.emit("No robot is selected to be replayed. Select one, or replay all.")
+            return
+        try:
+            self.fetching.begin(since, until, robots)
+        except FleetError as error:
+            self._desk.failed.emit(f"The replay was not loaded: {error}")
+            return
+        self._robots = robots
+        self.layer.remove()
+        self.map.begin(self._desk.site)
+        self.line.show_time(since, until)
+        self.clockwork.show(since, until)
+        self.form.show_busy(True)
+        self._say("Loading …")
+
+    def _wire(self) -> None:
+        self.form.wanted.connect(self.load)
+        self.form.stop_wanted.connect(self.fetching.stop)
+        self.fetching.progressed.connect(self._progressed)
+        self.fetching.ended.connect(self._ended)
+        self.layer.failed.connect(self._desk.complained)
+        self.line.wanted.connect(self.clockwork.seek)
+        self.clockwork.moved.connect(self._show)
+        self.clockwork.playing_changed.connect(lambda on: self.play.setText("⏸" if on else "▶"))
+        self.play.clicked.connect(lambda: self.clockwork.play(not self.clockwork.is_playing))
+        self.speed.currentIndexChanged.connect(lambda k: self.clockwork.set_speed(SPEEDS[k]))
+        self._desk.commands_changed.connect(self._show_marks)
+        self._desk.site_changed.connect(self._site_changed)
+        self._robots: list[str] = []
+        self._site = self._desk.site.id if self._desk.site else None
+
+    def _progressed(self) -> None:
+        self._say(
+            f"Loading … {len(self.fetching.history)} positions, up to {in_words(self.fetching.reached)}"
+        )
+
+    def _ended(self, why: str) -> None:
+        self.form.show_busy(False)
+        history = self.fetching.history
+        if why:
+            self._desk.complained.emit(why)
+        if not len(history):
+            self._say(why or "No positions are stored of that time.")
+            return
+        if self._desk.site is not None:
+            self.layer.show(history, self._desk.site)
+        self._say(f"positions: {len(history)}, robots: {len(history.names)}" + (" · NOT ALL" if why else ""))
+        self._show_marks()
+        self._show(self.clockwork.moment)
+        try:
+            self.map.show_all(history)
+        except FleetError as error:
+            self._desk.complained.emit(str(error))
+
+    def _show(self, moment: float) -> None:
+        self.line.show_moment(moment)
+        self._show_banner(moment)
+        if not self.fetching.history.is_arranged:
+            # It is shown when all of it is there.
+            return
+        try:
+            self.map.show_moment(self.fetching.history, self._desk.book, moment, self._desk.selection)
+        except FleetError as error:
+            self.clockwork.play(False)
+            self._desk.complained.emit(str(error))
+
+    def _show_marks(self, *_: object) -> None:
+        if self.clockwork.is_set:
+            since, until = self.clockwork.since, self.clockwork.until
+            self.line.show_marks(marks(self._desk.book, since, until, self._robots))
+
+    def _site_changed(self) -> None:
+        site = self._desk.site.id if self._desk.site else None
+        if site == self._site:
+            return
+        # Another site's history has no place here.
+        self._site = site
+        self.fetching.forget()
+        self.form.show_busy(False)
+        self.clockwork.play(False)
+        self.layer.remove()
+        self.map.show_nothing()
+        self.line.show_time(0.0, 0.0)
+        self._say("Choose a time and press Load.")
+
+    def _say(self, text: str) -> None:
+        self._told = text
+        self._show_banner(self.clockwork.moment)
+
+    def _show_banner(self, moment: float) -> None:
+        if not self.clockwork.is_set:
+            self.banner.setText(f"REPLAY · {self._told}")
+            return
+        self.banner.setText(f"REPLAY, not live · {in_words(moment)} · {self._told}")
+
+    def _lay_out(self) -> None:
+        bottom = QHBoxLayout()
+        bottom.addWidget(self.play)
+        bottom.addWidget(self.speed)
+        bottom.addWidget(self.line, 1)
+        body = QWidget()
+        rows = QVBoxLayout(body)
+        rows.setContentsMargins(6, 4, 6, 6)
+        rows.setSpacing(4)
+        rows.addWidget(self.form)
+        rows.addWidget(self.banner)
+        rows.addWidget(self.map, 1)
+        rows.addLayout(bottom)
+        self.map.setMinimumHeight(180)
+        self.setWidget(body)

@@ -1,0 +1,180 @@
+"""What robots drove as a line layer with times: QGIS's temporal controller plays it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from qgis.core import (
+    QgsApplication,
+    QgsCoordinateReferenceSystem,
+    QgsFeature,
+    QgsFields,
+    QgsGeometry,
+    QgsLineString,
+    QgsProject,
+    QgsTask,
+    QgsVectorLayer,
+)
+from qgis.PyQt.QtCore import QObject, QTimer, pyqtSignal
+
+from ....robot_bridge.messages import SiteReport
+from ....robot_bridge.sites.frame import SiteFrame
+from ..live_layers import MARK, give_style
+from ..road_layers import GROUP
+from .clockwork import local
+from .history import SILENT_AFTER, History
+from .replay_map import OWN_LAYER
+
+STYLE = Path(__file__).parents[3] / "resources" / "styles" / "trajectories.qml"
+FIELDS = (
+    "field=robot:string&field=begin:datetime&field=end:datetime&field=length_m:double&field=mean_speed:double"
+)
+MOST_LINES = 20_000
+"""With more the lines are made longer."""
+PIECE = 5.0
+"""Seconds of a drive that one line is long, so that it appears as it is driven."""
+AT_ONCE = 300
+"""Lines written in one go, so that the window does not wait for them."""
+
+
+class ReplayLayer(QObject):
+    """The layer *Trajectories (replay)*, made beside the window and written bit by bit."""
+
+    failed = pyqtSignal(str)
+
+    def __init__(self, project: QgsProject, parent: QObject | None = None):
+        super().__init__(parent)
+        self._project = project
+        self._id: str | None = None
+        self._task: LinesTask | None = None
+        self._waiting: list[QgsFeature] = []
+        self._timer = QTimer(self)
+        self._timer.setInterval(0)
+        self._timer.timeout.connect(self._write)
+
+    @property
+    def layer(self) -> QgsVectorLayer | None:
+        """The layer, None while there is none, or the user took it out."""
+        return self._project.mapLayer(self._id) if self._id is not None else None
+
+    @property
+    def is_busy(self) -> bool:
+        """Whether lines are still being made or written."""
+        return self._task is not None or bool(self._waiting)
+
+    def show(self, history: History, site: SiteReport) -> None:
+        """Show what is in ``history`` in place of what was shown."""
+        self.remove()
+        if not len(history):
+            return
+        layer = self._make(QgsCoordinateReferenceSystem(site.crs))
+        frame = SiteFrame(site.crs, site.origin, site.rotation)
+        self._task = LinesTask(history.table, list(history.names), frame, layer.fields())
+        self._task.taskCompleted.connect(self._made)
+        self._task.taskTerminated.connect(self._gone)
+        QgsApplication.taskManager().addTask(self._task)
+
+    def remove(self) -> None:
+        """Take the layer out of the project."""
+        self._timer.stop()
+        self._waiting = []
+        if self._task is not None:
+            self._task.taskCompleted.disconnect(self._made)
+            self._task.taskTerminated.disconnect(self._gone)
+            self._task.cancel()
+            self._task = None
+        if self.layer is not None:
+            dirty = self._project.isDirty()
+            self._project.removeMapLayer(self._id)
+            root = self._project.layerTreeRoot()
+            group = root.findGroup(GROUP)
+            if group is not None and not group.children():
+                root.removeChildNode(group)
+            self._project.setDirty(dirty)
+        self._id = None
+
+    def _make(self, crs: QgsCoordinateReferenceSystem) -> QgsVectorLayer:
+        dirty = self._project.isDirty()
+        layer = QgsVectorLayer(f"LineString?{FIELDS}", "Trajectories (replay)", "memory")
+        layer.setCrs(crs)
+        layer.setCustomProperty(MARK, OWN_LAYER)
+        layer.setCustomProperty("skipMemoryLayersCheck", 1)
+        if not give_style(self._project, layer):
+            layer.loadNamedStyle(str(STYLE))
+        self._project.addMapLayer(layer, False)
+        root = self._project.layerTreeRoot()
+        (root.findGroup(GROUP) or root.insertGroup(0, GROUP)).addLayer(layer)
+        self._id = layer.id()
+        self._project.setDirty(dirty)
+        return layer
+
+    def _made(self) -> None:
+        self._waiting, self._task = self._task.features, None
+        self._timer.start()
+
+    def _gone(self) -> None:
+        self._task = None
+        self.failed.emit("The trajectories are not drawn: they could not be made into lines.")
+
+    def _write(self) -> None:
+        layer = self.layer
+        if layer is None:
+            self._waiting = []
+        batch, self._waiting = self._waiting[:AT_ONCE], self._waiting[AT_ONCE:]
+        if batch and not layer.dataProvider().addFeatures(batch)[0]:
+            self._waiting = []
+            self.failed.emit(f"Not all trajectories are drawn: {layer.dataProvider().lastError()}")
+        if not self._waiting:
+            self._timer.stop()
+            if layer is not None:
+                layer.updateExtents()
+                layer.triggerRepaint()
+
+
+class LinesTask(QgsTask):
+    """Makes the lines of ``table``, the positions of a :class:`~.history.History`."""
+
+    def __init__(self, table: np.ndarray, names: list[str], frame: SiteFrame, fields: QgsFields):
+        super().__init__("Drawing what robots drove", QgsTask.Flag.CanCancel)
+        self._table, self._names, self._frame, self._fields = table, names, frame, fields
+        self.features: list[QgsFeature] = []
+
+    def run(self) -> bool:
+        xy = self._frame.to_crs(self._table[:, 2:4])
+        times = self._table[:, 1]
+        # A robot that was heard of all the time has the most lines.
+        span = len(self._names) * (times.max() - times.min())
+        for rows in pieces(self._table[:, 0], times, max(PIECE, span / MOST_LINES)):
+            if self.isCanceled():
+                return False
+            self.features.append(self._line(rows, xy[rows]))
+        return True
+
+    def _line(self, rows: np.ndarray, xy: np.ndarray) -> QgsFeature:
+        begin, end = float(self._table[rows[0], 1]), float(self._table[rows[-1], 1])
+        length = float(np.hypot(*np.diff(xy, axis=0).T).sum())
+        feature = QgsFeature(self._fields)
+        feature.setGeometry(QgsGeometry(QgsLineString(xy[:, 0].tolist(), xy[:, 1].tolist())))
+        robot = self._names[int(self._table[rows[0], 0])]
+        feature.setAttributes([robot, local(begin), local(end), length, length / (end - begin)])
+        return feature
+
+
+def pieces(robots: np.ndarray, times: np.ndarray, seconds: float) -> list[np.ndarray]:
+    """Return the rows of each line: of one robot, without a silence, about ``seconds`` long at most.
+
+    ``robots`` and ``times`` are sorted by robot and time. A piece begins where the one before it ends.
+    """
+    found = []
+    parted = (np.diff(robots) != 0) | (np.diff(times) > SILENT_AFTER)
+    for part in np.split(np.arange(len(times)), np.flatnonzero(parted) + 1):
+        if len(part) < 2:
+            continue
+        bins = np.floor((times[part] - times[part[0]]) / seconds)
+        ends = [0, *(np.flatnonzero(np.diff(bins)) + 1).tolist(), len(part) - 1]
+        for first, last in zip(ends, ends[1:]):  # noqa: B905, RUF007
+            piece = part[first : last + 1]
+            if len(piece) > 1 and times[piece[-1]] > times[piece[0]]:
+                found.append(piece)
+    return found

@@ -1,0 +1,143 @@
+"""The time that is replayed as a line: what was commanded when, and which moment is shown."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from qgis.PyQt.QtCore import QEvent, QPointF, QRectF, QSize, Qt, pyqtSignal
+from qgis.PyQt.QtGui import QColor, QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QPen, QPolygonF
+from qgis.PyQt.QtWidgets import QToolTip, QWidget
+
+from ....robot_bridge.messages import CommandState
+from .clockwork import in_words
+from .past_commands import Mark
+
+EDGE = 9.0
+"""Pixels left and right of the line."""
+NEAR = 6.0
+"""Pixels within which the mouse means a mark."""
+PLAYHEAD = QColor(123, 31, 162)
+SENT = QColor(33, 102, 172)
+COLOURS = {
+    CommandState.QUEUED: SENT,
+    CommandState.REACHED: QColor(46, 125, 50),
+    CommandState.FAILED: QColor(198, 40, 40),
+}
+OTHER = QColor(239, 108, 0)
+"""For what was aborted, expired or superseded."""
+STEP, LONG_STEP = 1.0, 10.0
+"""Seconds that an arrow key goes, alone and with Shift."""
+
+
+class TimeLine(QWidget):
+    """``wanted`` has the moment that was clicked or gone to by keys.
+
+    What was sent is a mark upwards, what became of it one downwards.
+    """
+
+    wanted = pyqtSignal(float)
+
+    def __init__(self, parent: QWidget | None = None):
+        super().__init__(parent)
+        self.setObjectName("fleet_replay_line")
+        self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+        self.setMouseTracking(True)
+        self.setMinimumHeight(40)
+        self.since = self.until = self.moment = 0.0
+        self.marks: list[Mark] = []
+        self._times = np.empty(0)
+
+    def sizeHint(self) -> QSize:
+        return QSize(400, 40)
+
+    def show_time(self, since: float, until: float) -> None:
+        """Be the line from ``since`` to ``until``."""
+        self.since, self.until = since, until
+        self.update()
+
+    def show_marks(self, marks: Sequence[Mark]) -> None:
+        """Show these commands."""
+        self.marks = list(marks)
+        self._times = np.array([mark.at for mark in marks])
+        self.update()
+
+    def show_moment(self, moment: float) -> None:
+        """Show which moment is shown."""
+        self.moment = moment
+        self.update()
+
+    def pixel(self, moment: float) -> float:
+        """Return where on the line a moment is."""
+        span = max(self.until - self.since, 1e-9)
+        return EDGE + (self.width() - 2 * EDGE) * (moment - self.since) / span
+
+    def mark_at(self, x: float) -> Mark | None:
+        """Return the mark nearest to pixel ``x``, None when there is none nearby."""
+        if not len(self._times):
+            return None
+        away = np.abs(np.array([self.pixel(at) for at in self._times.tolist()]) - x)
+        nearest = int(away.argmin())
+        return self.marks[nearest] if away[nearest] <= NEAR else None
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        middle = self.height() / 2
+        painter.setPen(QPen(self.palette().mid().color(), 3.0))
+        painter.drawLine(QPointF(EDGE, middle), QPointF(self.width() - EDGE, middle))
+        if self.until <= self.since:
+            return
+        for mark in self.marks:
+            x = self.pixel(mark.at)
+            up = mark.state is CommandState.QUEUED
+            painter.setPen(QPen(COLOURS.get(mark.state, OTHER), 2.0))
+            painter.drawLine(QPointF(x, middle), QPointF(x, middle + (-13 if up else 13)))
+        x = self.pixel(self.moment)
+        painter.setPen(QPen(PLAYHEAD, 2.0))
+        painter.drawLine(QPointF(x, 6), QPointF(x, self.height() - 6))
+        painter.setBrush(PLAYHEAD)
+        painter.drawPolygon(QPolygonF([QPointF(x - 5, 1), QPointF(x + 5, 1), QPointF(x, 9)]))
+        if self.hasFocus():
+            painter.setBrush(Qt.BrushStyle.NoBrush)
+            painter.setPen(QPen(self.palette().highlight().color(), 1.0))
+            painter.drawRect(QRectF(0.5, 0.5, self.width() - 1, self.height() - 1))
+
+    def mousePressEvent(self, event: QMouseEvent) -> None:
+        if event.button() == Qt.MouseButton.LeftButton:
+            self._want(self._moment_at(event.pos().x()))
+
+    def mouseMoveEvent(self, event: QMouseEvent) -> None:
+        if event.buttons() & Qt.MouseButton.LeftButton:
+            self._want(self._moment_at(event.pos().x()))
+
+    def event(self, event: QEvent) -> bool:
+        if event.type() == QEvent.Type.ToolTip and self.until > self.since:
+            mark = self.mark_at(event.pos().x())
+            at = self._moment_at(event.pos().x()) if mark is None else mark.at
+            QToolTip.showText(
+                self.mapToGlobal(event.pos()), in_words(at) + ("" if mark is None else f"\n{mark.text}"), self
+            )
+            return True
+        return super().event(event)
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        step = LONG_STEP if event.modifiers() & Qt.KeyboardModifier.ShiftModifier else STEP
+        places = {
+            Qt.Key.Key_Left: self.moment - step,
+            Qt.Key.Key_Right: self.moment + step,
+            Qt.Key.Key_Home: self.since,
+            Qt.Key.Key_End: self.until,
+        }
+        if event.key() in places:
+            self._want(places[event.key()])
+        else:
+            super().keyPressEvent(event)
+
+    def _moment_at(self, x: float) -> float:
+        span = max(self.width() - 2 * EDGE, 1.0)
+        return self.since + (self.until - self.since) * (x - EDGE) / span
+
+    def _want(self, moment: float) -> None:
+        if self.until > self.since:
+            self.wanted.emit(min(max(moment, self.since), self.until))

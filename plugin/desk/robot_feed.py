@@ -1,0 +1,58 @@
+"""Passes the robots on to QGIS's expressions, twice a second."""
+
+from __future__ import annotations
+
+import numpy as np
+from qgis.core import QgsCoordinateReferenceSystem
+from qgis.PyQt.QtCore import QObject
+
+from ...robot_bridge.sites.frame import SiteFrame
+from ..expressions.robots_now import FleetNow, RobotsNow
+from .desk import PULL_EVERY_MS, Desk
+from .picture import STATES
+
+EVERY = 500 // PULL_EVERY_MS
+_NAMES = np.array([state.value for state in STATES], dtype=object)
+
+
+class RobotFeed(QObject):
+    """Makes a new picture for expressions out of the desk's; :meth:`remove` leaves them without one."""
+
+    def __init__(self, desk: Desk, fleet: FleetNow):
+        super().__init__(desk)
+        self._desk, self._fleet = desk, fleet
+        self._pulls = 0
+        self._rows: dict[str, int] = {}
+        self._generation = -1
+        desk.pulled.connect(self._pulled)
+        desk.site_changed.connect(self.feed)
+
+    def remove(self) -> None:
+        """Feed nothing more."""
+        self._fleet.robots = None
+
+    def feed(self) -> None:
+        """Make the picture of this moment."""
+        desk, now = self._desk, self._desk.clock()
+        if desk.site is None:
+            self._fleet.robots = None
+            return
+        robots = desk.picture.arrays(now)
+        if self._generation != desk.picture.generation or len(self._rows) != len(robots.names):
+            self._generation = desk.picture.generation
+            self._rows = {name: row for row, name in enumerate(robots.names)}
+        frame = SiteFrame(desk.site.crs, desk.site.origin, desk.site.rotation)
+        self._fleet.robots = RobotsNow(
+            crs=QgsCoordinateReferenceSystem(desk.site.crs),
+            rows=self._rows,
+            states=_NAMES[robots.state].tolist(),
+            xy=frame.to_crs(robots.xy),
+            age=robots.age,
+            battery=desk.picture.column("battery"),
+            taken=now,
+        )
+
+    def _pulled(self) -> None:
+        self._pulls += 1
+        if self._pulls % EVERY == 0:
+            self.feed()

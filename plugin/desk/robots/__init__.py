@@ -1,0 +1,1 @@
+"""The table of robots, and all that is known of one of them."""

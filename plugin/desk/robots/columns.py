@@ -1,0 +1,97 @@
+"""The columns of the robot table: what stands in them, and what they are sorted by."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ....robot_bridge.messages import CommandReport, CommandState, SetPath, SetPosEnd
+from ...language import tr
+from ...wire.sightings import STATES
+
+
+@dataclass(frozen=True)
+class Column:
+    """One column, by its ``title`` in the code and its ``head`` for the operator.
+
+    ``widest`` is the longest text it has room for, ``first`` whether it is shown at first.
+    """
+
+    title: str
+    head: str
+    widest: str
+    tip: str
+    is_number: bool = False
+    first: bool = True
+
+
+COLUMNS = (
+    Column("Robot", tr("Robot"), "robot-000", tr("The robot's name")),
+    Column("State", tr("State"), "offline", tr("How far what is known of it can be trusted")),
+    Column("Task", tr("Task"), "", tr("What it is doing, or what it says")),
+    Column("Speed", tr("Speed"), "0.0 m/s", tr("Its speed, as it says"), True, False),
+    Column("Batt.", tr("Batt."), "100%", tr("How full its battery is"), True),
+    Column("Age", tr("Age"), "00.0 s", tr("How long ago anything was heard of it"), True),
+    Column("Ping", tr("Ping"), "000 ms", tr("How long its link takes there and back"), True),
+    Column(
+        "Off",
+        tr("Off"),
+        "00.00 m",
+        tr("How far it is beside its path, or from the target that it reached last"),
+        True,
+    ),
+    Column("Link", tr("Link"), "ws", tr("How it is connected")),
+    Column(
+        "Position",
+        tr("Position"),
+        "500000.00, 5200000.00",
+        tr("Where it is, in the CRS chosen under Columns"),
+        True,
+        False,
+    ),
+)
+TITLES = tuple(column.title for column in COLUMNS)
+TASK = TITLES.index("Task")
+POSITION = TITLES.index("Position")
+SHORT = {"websocket": "ws"}
+"""Links whose names do not fit into a column."""
+
+
+def short_link(told: dict) -> str:
+    """Return how a robot is connected, short."""
+    link = str(told.get("link", ""))
+    return SHORT.get(link, link)
+
+
+def task_in_words(task: CommandReport | None, told: dict) -> str:
+    """Return what a robot is doing, else what it says of itself."""
+    if task is None:
+        return str(told.get("status") or (tr("stopped") if told.get("stopped") else ""))
+    if task.state is CommandState.ACKNOWLEDGED:
+        if task.op == SetPath.__name__:
+            return tr("on its route")
+        return tr("to its cone") if task.params.get("cone") else tr("to its target")
+    target = tr("cone") if task.params.get("cone") else tr("target")
+    name = {SetPosEnd.__name__: target, SetPath.__name__: tr("route")}.get(task.op, task.op)
+    return f"{name} {task.state.value}"
+
+
+def number_in_words(title: str, value: float) -> str:
+    """Return a number of a column as text, nothing for one that is not known."""
+    if np.isnan(value):
+        return ""
+    if title == "Speed":
+        return f"{value:.1f} m/s"
+    if title == "Batt.":
+        return f"{value:.0%}"
+    if title == "Ping":
+        return f"{value * 1000:.0f} ms"
+    if title == "Off":
+        return f"{value:.2f} m"
+    return f"{value:.1f} s" if value < 3600 else f"{value / 3600:.1f} h"
+
+
+def state_in_words(code: int) -> str:
+    """Return a state by its number."""
+    return STATES[code].value

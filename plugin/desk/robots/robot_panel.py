@@ -1,0 +1,125 @@
+"""The table of robots with what is above it: a search, which robots are listed, and which columns."""
+
+from __future__ import annotations
+
+from qgis.core import QgsCoordinateReferenceSystem
+from qgis.gui import QgsFilterLineEdit, QgsProjectionSelectionDialog
+from qgis.PyQt.QtWidgets import (
+    QComboBox,
+    QHBoxLayout,
+    QLabel,
+    QMenu,
+    QSizePolicy,
+    QToolButton,
+    QVBoxLayout,
+    QWidget,
+)
+
+from ...language import tr
+from ..desk import Desk
+from .columns import COLUMNS
+from .fleet_rows import Which
+from .robot_table import RobotTable
+
+WGS84 = "EPSG:4326"
+WHICH = {
+    Which.ALL: tr("All robots"),
+    Which.TROUBLED: tr("With alarms, or not fresh"),
+    Which.BUSY: tr("With a task"),
+    Which.IDLE: tr("Without a task"),
+}
+
+
+class RobotPanel(QWidget):
+    """What is typed narrows the list at once; the line says how many of how many are listed."""
+
+    def __init__(self, desk: Desk, parent: QWidget | None = None):
+        super().__init__(parent)
+        self._desk = desk
+        self.table = RobotTable(desk)
+        self._search = QgsFilterLineEdit()
+        self._search.setObjectName("fleet_robot_search")
+        self._search.setShowSearchIcon(True)
+        self._search.setPlaceholderText(tr("Search robots"))
+        self._search.setToolTip(tr("Name, state, task or link; several words have to be there all"))
+        self._which = QComboBox()
+        self._which.setObjectName("fleet_robot_filter")
+        self._which.addItems([WHICH[which] for which in Which])
+        self._which.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
+        self._which.setMinimumContentsLength(11)
+        self._count = QLabel()
+        self._count.setObjectName("fleet_robot_count")
+        self._columns = QToolButton()
+        self._columns.setObjectName("fleet_robot_columns")
+        self._columns.setText(tr("Columns"))
+        self._columns.setToolTip(tr("Which columns are shown, and in which CRS positions are"))
+        self._columns.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
+        self._columns.setMenu(QMenu(self._columns))
+        self._columns.menu().aboutToShow.connect(self._fill_menu)
+        head = QHBoxLayout()
+        head.setSpacing(4)
+        head.addWidget(self._search, 1)
+        head.addWidget(self._which)
+        head.addWidget(self._count)
+        head.addWidget(self._columns)
+        self._count.setSizePolicy(QSizePolicy.Policy.Minimum, QSizePolicy.Policy.Preferred)
+        rows = QVBoxLayout(self)
+        rows.setContentsMargins(0, 0, 0, 0)
+        rows.setSpacing(4)
+        rows.addLayout(head)
+        rows.addWidget(self.table, 1)
+        self._search.textChanged.connect(self._narrow)
+        self._which.currentIndexChanged.connect(self._narrow)
+        self.table.refreshed.connect(self._show_count)
+
+    def mark_troubled(self, robots: set[str]) -> None:
+        """Say which robots have alarms."""
+        self.table.robots.troubled = robots
+
+    def _narrow(self, *_what: object) -> None:
+        self.table.robots.text = self._search.text()
+        self.table.robots.which = list(Which)[self._which.currentIndex()]
+        self.table.refresh()
+
+    def _show_count(self) -> None:
+        listed, all_ = self.table.robots.rowCount(), self.table.robots.count()
+        part = tr("{listed} of {all}", listed=listed, all=all_)
+        self._count.setText(f"{listed}" if listed == all_ else part)
+
+    def _fill_menu(self) -> None:
+        menu = self._columns.menu()
+        menu.clear()
+        for number, column in enumerate(COLUMNS):
+            if number == 0:
+                continue
+            action = menu.addAction(f"{column.head}: {column.tip[0].lower()}{column.tip[1:]}")
+            action.setCheckable(True)
+            action.setChecked(not self.table.isColumnHidden(number))
+            action.toggled.connect(lambda on, number=number: self.table.show_column(number, on))
+        menu.addSeparator()
+        positions = self.table.positions
+        inside = menu.addSection(tr("Positions in: {crs}", crs=positions.name))
+        inside.setObjectName("fleet_position_crs")
+        self._add_crs(menu, tr("Site frame (metres)"), QgsCoordinateReferenceSystem())
+        project = self._desk.project.crs()
+        if project.isValid():
+            self._add_crs(menu, tr("CRS of the project ({crs})", crs=project.authid()), project)
+        self._add_crs(menu, tr("Latitude, longitude (WGS 84)"), QgsCoordinateReferenceSystem(WGS84))
+        menu.addAction(tr("Another CRS…")).triggered.connect(self._ask_for_crs)
+
+    def _add_crs(self, menu: QMenu, text: str, crs: QgsCoordinateReferenceSystem) -> None:
+        chosen = self.table.positions.crs
+        action = menu.addAction(text)
+        action.setCheckable(True)
+        action.setChecked(crs == chosen if crs.isValid() else not chosen.isValid())
+        action.triggered.connect(lambda: self._choose(crs))
+
+    def _choose(self, crs: QgsCoordinateReferenceSystem) -> None:
+        self.table.positions.choose(crs)
+        self.table.show_column(len(COLUMNS) - 1, True)
+
+    def _ask_for_crs(self) -> None:
+        dialog = QgsProjectionSelectionDialog(self)
+        dialog.setCrs(self.table.positions.crs)
+        if dialog.exec():
+            self._choose(dialog.crs())

@@ -1,0 +1,154 @@
+"""The table of robots."""
+
+from __future__ import annotations
+
+from qgis.core import QgsSettings
+from qgis.PyQt.QtCore import (
+    QItemSelection,
+    QItemSelectionModel,
+    QItemSelectionRange,
+    QModelIndex,
+    Qt,
+    pyqtSignal,
+)
+from qgis.PyQt.QtWidgets import QAbstractItemView, QHeaderView, QTableView, QWidget
+
+from ...errors import PlacementError
+from ...language import tr
+from ..desk import PULL_EVERY_MS, Desk
+from ..small_views import shrink
+from .columns import COLUMNS, TASK
+from .position_crs import PositionCrs
+from .robot_model import RobotModel
+
+REFRESH_EVERY = 500 // PULL_EVERY_MS
+MANY = 500
+"""With more robots the table is renewed half as often, with ten times as many four times as seldom."""
+HIDDEN_KEY = "fleet_supervisor/robot_table/hidden"
+TASK_WIDTH = 70
+
+
+class RobotTable(QTableView):
+    """Shows the desk's robots; its selection and the desk's are one."""
+
+    zoom_wanted = pyqtSignal(str)
+    refreshed = pyqtSignal()
+    """The rows are those of this moment."""
+
+    def __init__(self, desk: Desk, parent: QWidget | None = None):
+        super().__init__(parent)
+        self.setObjectName("fleet_robot_table")
+        self._desk = desk
+        self._pulls = 0
+        self._marking = self._is_reset = False
+        self.positions = PositionCrs(desk.project, self)
+        self._model = RobotModel(desk.picture, desk.book, self)
+        self._model.place_in_words = self._place
+        self.setModel(self._model)
+        self._model.modelReset.connect(self._reset)
+        self._set_up()
+        self.selectionModel().selectionChanged.connect(self._selected_here)
+        self.doubleClicked.connect(lambda index: self.zoom_wanted.emit(self._name(index)))
+        self.positions.changed.connect(self.refresh)
+        desk.selection_changed.connect(self._selected_elsewhere)
+        desk.pulled.connect(self._pulled)
+
+    @property
+    def robots(self) -> RobotModel:
+        """What it shows: which robots are listed is set there."""
+        return self._model
+
+    def refresh(self) -> None:
+        """Show what the desk knows at this moment."""
+        # Rows that come and go with a filter take their selection with them; the desk's stays.
+        self._marking = True
+        self._model.show(self._desk.clock())
+        self._marking = False
+        if self._is_reset:
+            # Rows that only changed places took their selection along.
+            self._is_reset = False
+            self._mark()
+        self.refreshed.emit()
+
+    def show_column(self, column: int, shown: bool) -> None:
+        """Show or hide a column, in later sessions as well."""
+        self.setColumnHidden(column, not shown)
+        hidden = [COLUMNS[c].title for c in range(len(COLUMNS)) if self.isColumnHidden(c)]
+        QgsSettings().setValue(HIDDEN_KEY, ",".join(hidden))
+
+    def _set_up(self) -> None:
+        self.setSelectionBehavior(QAbstractItemView.SelectionBehavior.SelectRows)
+        self.setSelectionMode(QAbstractItemView.SelectionMode.ExtendedSelection)
+        self.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
+        self.setAlternatingRowColors(True)
+        self.setShowGrid(False)
+        self.setWordWrap(False)
+        self.setSortingEnabled(True)
+        self.sortByColumn(0, Qt.SortOrder.AscendingOrder)
+        self.verticalHeader().hide()
+        shrink(self)
+        metrics = self.fontMetrics()
+        self.verticalHeader().setDefaultSectionSize(metrics.height() + 8)
+        header = self.horizontalHeader()
+        header.setHighlightSections(False)
+        header.setMinimumSectionSize(24)
+        hidden = QgsSettings().value(HIDDEN_KEY)
+        for number, column in enumerate(COLUMNS):
+            extra = 28 if number == 0 else 9
+            widest = max(map(metrics.horizontalAdvance, (column.head, column.widest)))
+            self.setColumnWidth(number, max(widest + extra, TASK_WIDTH if number == TASK else 0))
+            by_choice = column.first if hidden is None else column.title not in str(hidden).split(",")
+            self.setColumnHidden(number, not by_choice)
+        header.setSectionResizeMode(TASK, QHeaderView.ResizeMode.Stretch)
+
+    def _pulled(self) -> None:
+        self._pulls += 1
+        count = len(self._desk.picture)
+        every = REFRESH_EVERY * (1 if count <= MANY else 2 if count <= 10 * MANY else 4)
+        if self._pulls % every == 0 or count != self._model.count():
+            self.refresh()
+
+    def _name(self, index: QModelIndex) -> str:
+        return self._model.name_at(index.row())
+
+    def _place(self, x: float, y: float) -> str:
+        try:
+            return self.positions.place_in_words(x, y, self._desk.placement())
+        except PlacementError:
+            return tr("no such place")
+
+    def _selected_here(self) -> None:
+        rows = self.selectionModel().selectedRows()
+        if self._marking or not rows:
+            return
+        names = [self._name(index) for index in rows]
+        # Drafts are made for the one that was clicked last.
+        current = self.currentIndex()
+        last = self._name(current) if current.isValid() else ""
+        names.sort(key=lambda name: name == last)
+        self._desk.select_all(names)
+
+    def _selected_elsewhere(self) -> None:
+        self._mark()
+        rows = self._model.rows_of(self._desk.selection)
+        if len(rows) == 1:
+            self.scrollTo(self._model.index(rows[0], 0))
+
+    def _reset(self) -> None:
+        self._is_reset = True
+
+    def _mark(self) -> None:
+        rows = self._model.rows_of(self._desk.selection)
+        if set(rows) == {i.row() for i in self.selectionModel().selectedRows()}:
+            return
+        wanted = QItemSelection()
+        for row in rows:
+            index = self._model.index(row, 0)
+            wanted.append(QItemSelectionRange(index))
+        flags = QItemSelectionModel.SelectionFlag
+        self._marking = True
+        if rows:
+            # Keys go on from the robot that drafts are made for.
+            self.selectionModel().setCurrentIndex(self._model.index(rows[-1], 0), flags.NoUpdate)
+        self.selectionModel().select(wanted, flags.ClearAndSelect | flags.Rows)
+        self._marking = False

@@ -1,0 +1,131 @@
+"""The way along the roads to where the mouse is: asked of the gateway, one at a time and newest first."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from qgis.PyQt.QtCore import QObject, pyqtSignal
+
+from ...robot_bridge.messages import GetRoute, RouteReport, route_report, to_json
+from ..errors import NotSentError
+from ..language import tr
+from ..wire.outbox import Answer, Order
+from .drafts import Point
+
+UNANSWERED_AFTER = 3.0
+"""Seconds after which a question is taken to be lost, so that the next is asked."""
+
+
+@dataclass(frozen=True)
+class Question:
+    """A robot's way from where it is, or from ``start``, to ``goal``; ``taken`` when that was clicked."""
+
+    robot: str
+    start: Point | None
+    goal: Point
+    taken: bool = False
+
+
+class RoutePreview(QObject):
+    """Asks as often as the gateway answers, and never twice at once: what is shown is never long outdated."""
+
+    shown = pyqtSignal()
+    """There is another way to show, or none."""
+    answered = pyqtSignal(object, object)
+    """A question that was taken: the :class:`Question` and its RouteReport."""
+    refused = pyqtSignal(str)
+    """There is no way to where the operator clicked: why."""
+
+    def __init__(
+        self,
+        submit: Callable[[Order], None],
+        clock: Callable[[], float],
+        parent: QObject | None = None,
+    ):
+        super().__init__(parent)
+        self._submit = submit
+        self._clock = clock
+        self._numbers = itertools.count(1)
+        self._asked: tuple[str, Question, float] | None = None
+        self._next: Question | None = None
+        self.route: RouteReport | None = None
+        self.why_not = ""
+        """Why there is no way to where the mouse is."""
+
+    def want(self, question: Question) -> None:
+        """Ask for a way, now or when the question before is answered; raises NotSentError."""
+        if self._asked is not None and self._clock() - self._asked[2] < UNANSWERED_AFTER:
+            if self._next is None or not self._next.taken or question.taken:
+                self._next = question
+            return
+        self._ask(question)
+
+    def forget(self) -> None:
+        """Show no way, and take no answer any more."""
+        self._asked = self._next = self.route = None
+        self.why_not = ""
+        self.shown.emit()
+
+    def take(self, answer: Answer) -> bool:
+        """Take in the answer to a question; false when it is one to something else."""
+        if answer.order.method != GetRoute.method:
+            return False
+        if self._asked is None or answer.order.key != self._asked[0]:
+            return True
+        question, self._asked = self._asked[1], None
+        self._show(question, answer)
+        following, self._next = self._next, None
+        if following is not None:
+            try:
+                self._ask(following)
+            except NotSentError:
+                self.forget()
+        return True
+
+    def _show(self, question: Question, answer: Answer) -> None:
+        self.route, self.why_not = None, answer.error or ""
+        if answer.error is None:
+            try:
+                self.route = route_report(answer.result or {})
+            except (KeyError, TypeError, ValueError):
+                self.why_not = tr("the gateway's answer holds no way; it may be older than this plugin")
+        self.shown.emit()
+        if question.taken and self.route is not None:
+            self.answered.emit(question, self.route)
+        elif question.taken:
+            self.refused.emit(self.why_not)
+
+    def _ask(self, question: Question) -> None:
+        from_robot = question.start is None
+        request = GetRoute(*question.goal, robot=question.robot if from_robot else None, start=question.start)
+        key = f"route-{id(self)}-{next(self._numbers)}"
+        self._submit(Order(key, request.method, to_json(request), self._clock()))
+        self._asked = key, question, self._clock()
+
+
+def in_words(route: RouteReport) -> str:
+    """Return a way's length, time and surfaces."""
+    minutes, seconds = divmod(round(route.seconds), 60)
+    time = (
+        tr(
+            "{minutes} min {seconds} s",
+            minutes=minutes,
+            seconds=seconds,
+        )
+        if minutes
+        else tr("{seconds} s", seconds=seconds)
+    )
+    parts = [
+        tr(
+            "{metres:.0f} m {surface}",
+            metres=one.metres,
+            surface=one.surface or tr("surface not known"),
+        )
+        for one in route.surfaces
+    ]
+    text = ", ".join([tr("{metres:.1f} m", metres=route.metres), time, *parts])
+    if route.tight:
+        text += tr("; {tight} corners tighter than the robot turns", tight=len(route.tight))
+    return f"{text}; {route.note}" if route.note else text

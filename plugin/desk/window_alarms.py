@@ -1,0 +1,62 @@
+"""The alarms in the QGIS window: watched, listed in the Fleet panel, counted in the message bar."""
+
+from __future__ import annotations
+
+from qgis.gui import QgisInterface
+from qgis.PyQt.QtCore import QObject
+from qgis.PyQt.QtGui import QPalette
+
+from ..language import tr
+from ..sites.surface_store import SurfaceStore
+from .alarms.alarm_bar import AlarmBar
+from .alarms.alarm_panel import AlarmPanel
+from .alarms.colours import letters
+from .alarms.watch import AlarmWatch
+from .window import DeskWindow
+
+
+class WindowAlarms(QObject):
+    """Puts the alarms beside the other lists of the Fleet panel. :meth:`remove` undoes the constructor."""
+
+    def __init__(self, iface: QgisInterface, window: DeskWindow, surfaces: SurfaceStore):
+        super().__init__(window)
+        self._window = window
+        self.watch = AlarmWatch(window.desk, surfaces, self)
+        self.panel = AlarmPanel(self.watch)
+        self.bar = AlarmBar(iface.messageBar(), self.watch, self)
+        self._tabs = window.dock.tabs
+        self._tabs.addTab(self.panel, tr("Alarms"))
+        window.dock.details.alarms_of = self.watch.board.of
+        self.watch.changed.connect(self._changed)
+        self.panel.robots_wanted.connect(self._go)
+        self.panel.counted.connect(self._count)
+        self.bar.wanted.connect(self._show)
+
+    def remove(self) -> None:
+        """Watch no more and take panel and message away."""
+        self.bar.remove()
+        self.watch.remove()
+        self.panel.remove()
+        self._window.dock.details.alarms_of = lambda robot: []
+        self._tabs.removeTab(self._tabs.indexOf(self.panel))
+        self.panel.deleteLater()
+        self.deleteLater()
+
+    def _changed(self) -> None:
+        alarms = self.watch.board.alarms()
+        robots = {name for alarm in alarms for name in (alarm.robot, alarm.other) if name}
+        self._window.dock.robots.mark_troubled(robots)
+
+    def _count(self, new: int) -> None:
+        tab = self._tabs.indexOf(self.panel)
+        self._tabs.setTabText(tab, tr("Alarms ({number})", number=new) if new else tr("Alarms"))
+        plain = self._tabs.palette().color(QPalette.ColorRole.WindowText)
+        self._tabs.tabBar().setTabTextColor(tab, letters(True) if new else plain)
+
+    def _go(self, robots: list[str]) -> None:
+        self._window.desk.select_all(robots)
+        self._window.view.zoom_to(*robots)
+
+    def _show(self) -> None:
+        self._window.dock.setUserVisible(True)
+        self._tabs.setCurrentWidget(self.panel)

@@ -1,0 +1,1 @@
+"""The guides in QGIS, beside the part that is asked about."""

@@ -1,0 +1,84 @@
+"""Robots in QGIS's locator: ``rb name`` goes there and selects."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+from qgis.core import QgsFeedback, QgsLocatorContext, QgsLocatorFilter, QgsLocatorResult
+from qgis.PyQt.QtGui import QIcon
+
+from ..expressions.robots_now import FleetNow, RobotsNow
+
+NAME = "fleet_robots"
+MOST = 50
+"""Results: nobody reads more, and the list is made anew with each letter."""
+
+
+class RobotFilter(QgsLocatorFilter):
+    """Finds robots by any part of their name; ``go`` is called with the one that was chosen.
+
+    QGIS looks in a thread of its own, with a clone of the filter.
+    """
+
+    def __init__(self, fleet: FleetNow, icons: Mapping[str, QIcon], go: Callable[[str], None]):
+        super().__init__()
+        self._fleet, self._icons, self._go = fleet, icons, go
+        self._robots: RobotsNow | None = None
+
+    def clone(self):
+        return RobotFilter(self._fleet, self._icons, self._go)
+
+    def name(self):
+        return NAME
+
+    def displayName(self):
+        return "Robots"
+
+    def prefix(self):
+        # Shorter ones of plugins are passed over, unless the user has chosen them: see RobotLocator.
+        return "robot"
+
+    def priority(self):
+        return QgsLocatorFilter.Priority.High
+
+    def prepare(self, _string, _context):
+        self._robots = self._fleet.robots
+        return []
+
+    def fetchResults(self, string: str, context: QgsLocatorContext, feedback: QgsFeedback):
+        robots = self._robots
+        if robots is None or (not string.strip() and not context.usingPrefix):
+            return
+        for score, name in ranked(string, list(robots.rows))[:MOST]:
+            if feedback.isCanceled():
+                return
+            self.resultFetched.emit(self._result(name, robots, score))
+
+    def triggerResult(self, result: QgsLocatorResult):
+        self._go(result.displayString)
+
+    def _result(self, name: str, robots: RobotsNow, score: float) -> QgsLocatorResult:
+        state, age = robots.state(name), robots.silence(name)
+        result = QgsLocatorResult()
+        result.displayString = name
+        result.description = f"{state}, heard of {age:.0f} s ago" if age is not None else str(state)
+        result.group = "Robots"
+        result.score = score
+        if state in self._icons:
+            result.icon = self._icons[state]
+        return result
+
+
+def ranked(wanted: str, names: list[str]) -> list[tuple[float, str]]:
+    """Return the names that ``wanted`` is a part of, each with a score from 0 to 1, the best first.
+
+    A name that is the same comes before one that begins so, and that before one that has it within.
+    """
+    wanted = wanted.strip().casefold()
+    found = []
+    for name in names:
+        at = name.casefold().find(wanted)
+        if at >= 0:
+            same = len(name) == len(wanted)
+            found.append((1.0 if same else 0.9 if at == 0 else 0.6, name))
+    return sorted(found, key=lambda one: (-one[0], len(one[1]), one[1]))

@@ -1,0 +1,41 @@
+"""Puts the filter for robots into QGIS's locator and takes it out again."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from qgis.core import QgsSettings
+from qgis.gui import QgisInterface
+from qgis.PyQt.QtGui import QIcon
+
+from ..desk.glyphs import state_icon
+from ..desk.picture import STATES
+from ..expressions.robots_now import FleetNow
+from .robot_filter import NAME, RobotFilter
+
+PREFIX = "rb"
+_SETTING = f"locator_filters/prefix_{NAME}"
+
+
+class RobotLocator:
+    """The filter as long as the plugin is loaded. :meth:`remove` undoes the constructor."""
+
+    def __init__(self, iface: QgisInterface, fleet: FleetNow, go: Callable[[str], None]):
+        self._iface, self._filter = iface, RobotFilter(fleet, _icons(), go)
+        settings = QgsSettings()
+        # As if the user had chosen it: of plugins themselves QGIS takes none of less than three letters.
+        if not settings.value(_SETTING, "", section=QgsSettings.Section.Gui):
+            settings.setValue(_SETTING, PREFIX, QgsSettings.Section.Gui)
+        iface.registerLocatorFilter(self._filter)
+
+    def remove(self) -> None:
+        """Take the filter out; QGIS deletes it. A prefix of the user's own stays."""
+        self._iface.deregisterLocatorFilter(self._filter)
+        settings = QgsSettings()
+        if settings.value(_SETTING, "", section=QgsSettings.Section.Gui) == PREFIX:
+            settings.remove(_SETTING, QgsSettings.Section.Gui)
+
+
+def _icons() -> dict[str, QIcon]:
+    # Made here: the filter looks in a thread, where pictures cannot be drawn.
+    return {state.value: state_icon(state) for state in STATES}

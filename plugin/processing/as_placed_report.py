@@ -1,0 +1,127 @@
+"""``fleet:asplacedreport``: placed cones in, a PDF of how they stand against their plan out."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from qgis.core import (
+    QgsProcessing,
+    QgsProcessingAlgorithm,
+    QgsProcessingException,
+    QgsProcessingOutputNumber,
+    QgsProcessingParameterCrs,
+    QgsProcessingParameterFeatureSource,
+    QgsProcessingParameterFileDestination,
+    QgsProcessingParameterMultipleLayers,
+    QgsProcessingParameterNumber,
+    QgsProcessingParameterString,
+)
+
+from .errors import ParameterError, shown_by_processing
+from .fleet_algorithm import FleetAlgorithm
+from .placed_cones import deviations, read_cones
+from .report_layout import Report, write_pdf
+
+INPUT, OUTPUT = "INPUT", "OUTPUT"
+TOLERANCE, TITLE, BACKGROUND, CRS = "TOLERANCE", "TITLE", "BACKGROUND", "CRS"
+NUMBERS = {
+    "CONE_COUNT": "Cones",
+    "WITHIN_COUNT": "Cones within the tolerance",
+    "MEAN": "Mean deviation [m]",
+    "RMS": "Root mean square deviation [m]",
+    "P95": "95 % deviate at most [m]",
+    "MAX": "Largest deviation [m]",
+    "PAGE_COUNT": "Pages",
+    "WARNING_COUNT": "Warnings",
+}
+
+
+class AsPlacedReport(FleetAlgorithm):
+    """Lays out figures, histogram, map and table of placed cones."""
+
+    GROUP = ("records", "Records")
+    NAME = "asplacedreport"
+    TITLE = "As-placed report"
+    SUMMARY = "Writes a PDF of how placed cones stand against their plan: figures, histogram, map and table."
+    ICON = "as_placed_report.svg"
+    TAGS = ("cone", "placed", "planned", "deviation", "report", "pdf", "layout", "histogram")
+    HELP = """
+    <p>Compares where cones stand with where they were to stand, and writes a PDF: how many are within the
+    tolerance, a histogram of the deviations, a map and a table of every cone, worst first.</p>
+    <p>The cones are a layer of the GeoPackage that <i>robot-bridge placements export cones.gpkg --site
+    site</i> writes, or its CSV; for a CSV, which has none, give the site's CRS. A cone stands where the
+    robot was when it had reached its target, and from there the site's cone offset: the gateway's
+    knowledge, no survey.</p>
+    <p>On the map a cross is the plan and a circle the cone, red where it is beyond the tolerance.
+    Deviations are small: the lines from the crosses are longer than they are by the factor that the map
+    names. Give background layers, such as roads, to be drawn beneath.</p>
+    <pre>qgis_process run fleet:asplacedreport -- INPUT="cones.gpkg|layername=placed" TOLERANCE=0.2
+    OUTPUT=report.pdf</pre>
+    """
+
+    def flags(self):
+        # Print layouts belong to the main thread.
+        return super().flags() | QgsProcessingAlgorithm.Flag.FlagNoThreading
+
+    def initAlgorithm(self, configuration=None):
+        kinds = QgsProcessing.SourceType
+        self.addParameter(QgsProcessingParameterFeatureSource(INPUT, "Placed cones", [kinds.TypeVector]))
+        real = QgsProcessingParameterNumber.Type.Double
+        self.addParameter(
+            QgsProcessingParameterNumber(TOLERANCE, "Tolerance [m]", real, 0.20, minValue=0.001, maxValue=100)
+        )
+        self.addParameter(QgsProcessingParameterString(TITLE, "Title", "Cones as placed and as planned"))
+        self.addParameter(
+            QgsProcessingParameterMultipleLayers(
+                BACKGROUND, "Background of the map", kinds.TypeMapLayer, optional=True
+            )
+        )
+        self.addParameter(QgsProcessingParameterCrs(CRS, "Site CRS (default: the layer's)", optional=True))
+        self.addParameter(QgsProcessingParameterFileDestination(OUTPUT, "Report", "PDF files (*.pdf)"))
+        for name, title in NUMBERS.items():
+            self.addOutput(QgsProcessingOutputNumber(name, title))
+
+    def processAlgorithm(self, parameters, context, feedback):
+        source = self.parameterAsSource(parameters, INPUT, context)
+        if source is None:
+            raise QgsProcessingException(self.invalidSourceError(parameters, INPUT))
+        with shown_by_processing():
+            read = read_cones(source, feedback)
+            if read is None:
+                return {}
+            cones, odd = read
+            if odd:
+                feedback.pushWarning(
+                    f"{odd} features have no planned or no placed position; they are left out."
+                )
+            tolerance = self.parameterAsDouble(parameters, TOLERANCE, context)
+            figures = deviations(cones, tolerance)
+            report = Report(
+                title=self.parameterAsString(parameters, TITLE, context),
+                cones=sorted(cones, key=lambda cone: -cone.deviation),
+                figures=figures,
+                tolerance=tolerance,
+                crs=self._crs(parameters, context, source),
+                background=self.parameterAsLayerList(parameters, BACKGROUND, context),
+            )
+            file = Path(self.parameterAsFileOutput(parameters, OUTPUT, context))
+            pages = write_pdf(report, file, context.transformContext(), feedback)
+            if pages is None:
+                return {}
+        feedback.pushInfo(
+            f"{figures.within} of {figures.count} cones are within {tolerance:g} m; the worst is "
+            f"{figures.most:.3f} m off."
+        )
+        numbers = (*vars(figures).values(), pages, int(odd > 0))
+        return {OUTPUT: str(file), **dict(zip(NUMBERS, numbers, strict=True))}
+
+    def _crs(self, parameters, context, source):
+        crs = self.parameterAsCrs(parameters, CRS, context)
+        if not crs.isValid():
+            crs = source.sourceCrs()
+        if not crs.isValid():
+            raise ParameterError(
+                "The CRS of the placed cones is not known, as of a CSV: give CRS, the site's, such as "
+                "EPSG:32633."
+            )
+        return crs

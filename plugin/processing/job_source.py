@@ -1,0 +1,233 @@
+"""Cones, robots and stores, read from point layers by the names of their fields."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from qgis.core import (
+    NULL,
+    QgsCoordinateReferenceSystem,
+    QgsCoordinateTransform,
+    QgsCsException,
+    QgsProcessing,
+    QgsProcessingFeatureSource,
+    QgsProcessingParameterDefinition,
+    QgsProcessingParameterEnum,
+    QgsProcessingParameterFeatureSource,
+    QgsProcessingParameterNumber,
+    QgsProcessingParameterString,
+)
+
+from ...robot_bridge.assignment.job import COLLECT, FINISHES, PLACE, TO_STORE, Job, Robot, Store, Target
+from ..language import tr
+from .cone_layer import theta_of
+from .errors import ParameterError
+
+CONES, ROBOTS, STORES = "CONES", "ROBOTS", "STORES"
+TASK, FINISH, STAGE_FIELD = "TASK", "FINISH", "STAGE_FIELD"
+_REAL = QgsProcessingParameterNumber.Type.Double
+_WHOLE = QgsProcessingParameterNumber.Type.Integer
+_NAMES = ("id", "robot", "name")
+"""Fields that may hold the id of a feature; the first that the layer has."""
+_NUMBERS = {
+    "CAPACITY": (tr("Cones that a robot carries (default of field capacity)"), _WHOLE, 8, 1),
+    "SPEED": (tr("Speed of a robot [m/s] (default of field speed)"), _REAL, 1.0, 0.01),
+    "RANGE": (
+        tr("Metres that a robot's battery lasts, 0 for any (default of field range_m)"),
+        _REAL,
+        0.0,
+        0.0,
+    ),
+    "SERVICE_TIME": (tr("Seconds to place or collect a cone (default of field service_s)"), _REAL, 10.0, 0.0),
+    "STORE_TIME": (tr("Seconds of a visit to a store (default of its field service_s)"), _REAL, 30.0, 0.0),
+}
+
+
+def job_parameters() -> list[QgsProcessingParameterDefinition]:
+    """Return the parameters that say what is to be done and by whom."""
+    points = [QgsProcessing.SourceType.TypeVectorPoint]
+    return [
+        QgsProcessingParameterFeatureSource(CONES, tr("Cones"), points),
+        QgsProcessingParameterFeatureSource(ROBOTS, tr("Robots, where they are"), points),
+        QgsProcessingParameterFeatureSource(STORES, tr("Stores of cones"), points, optional=True),
+        QgsProcessingParameterEnum(
+            TASK,
+            tr("What is done with cones (default of field task)"),
+            options=[PLACE, COLLECT],
+            defaultValue=PLACE,
+            usesStaticStrings=True,
+        ),
+        QgsProcessingParameterString(
+            STAGE_FIELD, tr("Field of the stage: cones of lower ones come first"), "stage", optional=True
+        ),
+        *(
+            QgsProcessingParameterNumber(name, title, kind, value, minValue=least)
+            for name, (title, kind, value, least) in _NUMBERS.items()
+        ),
+        QgsProcessingParameterEnum(
+            FINISH,
+            tr("Where robots go at the end"),
+            options=list(FINISHES),
+            defaultValue=TO_STORE,
+            usesStaticStrings=True,
+        ),
+    ]
+
+
+class JobSource:
+    """The layers of one run."""
+
+    def __init__(self, algorithm, parameters, context) -> None:
+        self._algorithm, self._parameters, self._context = algorithm, parameters, context
+
+    def source(self, name: str) -> QgsProcessingFeatureSource | None:
+        """Return the layer of parameter ``name``; None where it is not given.
+
+        :raises ParameterError: when it cannot be opened.
+        """
+        given = self._parameters.get(name)
+        source = self._algorithm.parameterAsSource(self._parameters, name, self._context)
+        if source is None and given not in (None, ""):
+            raise ParameterError(
+                tr(
+                    "{name} {given} cannot be opened: check the file and the layer's name.",
+                    name=name,
+                    given=given,
+                )
+            )
+        return source
+
+    def read(self, crs: QgsCoordinateReferenceSystem) -> Job:
+        """Return what is to be done, with coordinates in ``crs``.
+
+        :raises ParameterError: naming layer, feature and field that cannot be used; JobError when what they
+            say cannot be planned for.
+        """
+        number = {name: self._number(name) for name in _NUMBERS}
+        return Job(
+            tuple(self._target(row, number) for row in self._rows(CONES, crs)),
+            tuple(_robot(row, number) for row in self._rows(ROBOTS, crs)),
+            tuple(
+                Store(row.name(), row.x, row.y, row.number("service_s", number["STORE_TIME"]))
+                for row in self._rows(STORES, crs)
+            ),
+            self._algorithm.parameterAsEnumString(self._parameters, FINISH, self._context),
+        )
+
+    def _number(self, name: str) -> float:
+        return self._algorithm.parameterAsDouble(self._parameters, name, self._context)
+
+    def _target(self, row: _Row, number: dict[str, float]) -> Target:
+        text = self._algorithm.parameterAsString
+        stage = text(self._parameters, STAGE_FIELD, self._context).strip()
+        task = self._algorithm.parameterAsEnumString(self._parameters, TASK, self._context)
+        return Target(
+            row.name(),
+            row.x,
+            row.y,
+            theta_of(row.number("heading", 90.0)),
+            row.whole(stage, 0) if stage else 0,
+            str(row.values.get("task") or task),
+            row.whole("demand", 1),
+            row.number("service_s", number["SERVICE_TIME"]),
+        )
+
+    def _rows(self, name: str, crs: QgsCoordinateReferenceSystem) -> Iterator[_Row]:
+        source = self.source(name)
+        if source is None:
+            return
+        transform = QgsCoordinateTransform(source.sourceCrs(), crs, self._context.transformContext())
+        fields = source.fields().names()
+        for feature in source.getFeatures():
+            layer = tr("{sourcename}, feature {id}", sourcename=source.sourceName(), id=feature.id())
+            geometry = feature.geometry()
+            try:
+                geometry.transform(transform)
+                points = list(geometry.vertices())
+            except QgsCsException:
+                points = []
+            if len(points) != 1 or not all(math.isfinite(v) for v in (points[0].x(), points[0].y())):
+                raise ParameterError(
+                    tr(
+                        "{layer} is not one point with a place in {authid}: correct it.",
+                        layer=layer,
+                        authid=crs.authid(),
+                    )
+                )
+            values = {
+                field: None if value == NULL else value
+                for field, value in zip(fields, feature.attributes(), strict=True)
+            }
+            yield _Row(layer, feature.id(), points[0].x(), points[0].y(), values)
+
+
+@dataclass(frozen=True)
+class _Row:
+    """One feature: what it is called in errors, its place, and its values by field."""
+
+    layer: str
+    number_in_layer: int
+    x: float
+    y: float
+    values: dict[str, Any]
+
+    def name(self) -> str:
+        """Return the id; the feature's own where no field has one."""
+        return next(
+            (str(self.values[field]) for field in _NAMES if self.values.get(field) is not None),
+            str(self.number_in_layer),
+        )
+
+    def number(self, field: str, otherwise: float) -> float:
+        """Return the number in ``field``; ``otherwise`` where the layer has no such field, or no value."""
+        value = self.values.get(field)
+        if value is None or value == "":
+            return otherwise
+        try:
+            return float(value)
+        except (TypeError, ValueError) as error:
+            text = tr(
+                "{layer}: {field} is {value!r}, which is no number; correct it.",
+                layer=self.layer,
+                field=field,
+                value=value,
+            )
+            raise ParameterError(text) from error
+
+    def whole(self, field: str, otherwise: float) -> int:
+        """Return the whole number in ``field``."""
+        value = self.number(field, otherwise)
+        if value != int(value):
+            raise ParameterError(
+                tr(
+                    "{layer}: {field} is {value:g}; give a whole number.",
+                    layer=self.layer,
+                    field=field,
+                    value=value,
+                )
+            )
+        return int(value)
+
+
+def _robot(row: _Row, number: dict[str, float]) -> Robot:
+    # Of a range, 0 says that it does not matter.
+    metres = row.number("range_m", number["RANGE"] or math.inf)
+    return Robot(
+        row.name(),
+        row.x,
+        row.y,
+        row.whole("capacity", number["CAPACITY"]),
+        row.number("speed", number["SPEED"]),
+        metres,
+        row.whole("aboard", 0),
+        row.whole("collected", 0),
+        row.number("ready_s", 0.0),
+    )
+
+
+def layers_crs(sources: Sequence[QgsProcessingFeatureSource | None]) -> list[QgsCoordinateReferenceSystem]:
+    """Return the CRSs of the layers that are given."""
+    return [source.sourceCrs() for source in sources if source is not None]

@@ -1,0 +1,1 @@
+"""What QGIS keeps for the plugin between sessions: connections, tokens, preferences."""

@@ -1,0 +1,85 @@
+"""A gateway under a name, as operators keep it; and several of them as a file, to be handed on."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from ..errors import FleetError
+from ..wire.addresses import check_address
+
+FORMAT = "fleet-supervisor-connections"
+VERSION = 1
+CHOOSE = "Choose a file that Export wrote."
+
+
+class BadConnectionError(FleetError):
+    """A connection, or a file of them, cannot be used as it is."""
+
+
+@dataclass(frozen=True)
+class GatewayConnection:
+    """What it takes to connect. ``auth`` is the id of an authentication configuration of QGIS, or empty."""
+
+    name: str
+    url: str
+    operator: str = ""
+    ca_file: str = ""
+    auth: str = ""
+
+    def checked(self) -> GatewayConnection:
+        """Return the connection without blanks around its values.
+
+        :raises FleetError: when the name is empty or the URL cannot be a gateway's.
+        """
+        name = " ".join(self.name.split())
+        if not name:
+            raise BadConnectionError("The connection has no name. Give it one, such as the site's.")
+        url = check_address(self.url)
+        return GatewayConnection(name, url, self.operator.strip(), self.ca_file.strip(), self.auth)
+
+
+def connections_text(connections: Sequence[GatewayConnection]) -> str:
+    """Return connections as JSON, without tokens and without what only this computer's QGIS knows."""
+    rows = [
+        {"name": one.name, "url": one.url, "operator": one.operator, "ca_file": one.ca_file}
+        for one in connections
+    ]
+    content = {"format": FORMAT, "version": VERSION, "connections": rows}
+    return json.dumps(content, indent=2, ensure_ascii=False) + "\n"
+
+
+def connections_in(text: str, source: str) -> list[GatewayConnection]:
+    """Return the connections in ``text``, the content of the file ``source``.
+
+    :raises FleetError: naming ``source``, the entry and what is wrong with it.
+    """
+    try:
+        content = json.loads(text)
+    except ValueError as error:
+        raise BadConnectionError(f"{source} is not JSON: {error}. {CHOOSE}") from error
+    if not isinstance(content, dict) or content.get("format") != FORMAT:
+        raise BadConnectionError(f"{source} holds no connections to gateways. {CHOOSE}")
+    if content.get("version") != VERSION:
+        raise BadConnectionError(
+            f"{source} is of version {content.get('version')}; this plugin reads version {VERSION}. "
+            "Update the plugin."
+        )
+    rows = content.get("connections")
+    if not isinstance(rows, list):
+        raise BadConnectionError(f"{source} has no list named connections. {CHOOSE}")
+    return [_connection(row, number, source) for number, row in enumerate(rows, 1)]
+
+
+def _connection(row: Any, number: int, source: str) -> GatewayConnection:
+    keys = ("name", "url", "operator", "ca_file")
+    if not isinstance(row, dict) or not all(isinstance(row.get(key, ""), str) for key in keys):
+        raise BadConnectionError(
+            f"{source}: connection {number} is not a set of texts named {', '.join(keys)}. {CHOOSE}"
+        )
+    try:
+        return GatewayConnection(*(row.get(key, "") for key in keys)).checked()
+    except FleetError as error:
+        raise BadConnectionError(f"{source}: connection {number}: {error}") from error

@@ -1,0 +1,42 @@
+"""Many coordinates through one transform, together and not point by point."""
+
+from __future__ import annotations
+
+import struct
+
+import numpy as np
+from qgis.core import QgsCoordinateTransform, QgsCsException, QgsGeometry, QgsPointXY
+
+_LINE_HEADER = struct.Struct("<BII")
+_LINE_STRING = 2
+
+
+def moved_together(xy: np.ndarray, transform: QgsCoordinateTransform) -> np.ndarray:
+    """Return (n, 2) coordinates through ``transform``.
+
+    :raises QgsCsException: when one of them has no place in the target CRS, unless QGIS makes it infinite.
+    """
+    if len(xy) == 0 or transform.isShortCircuited():
+        return np.asarray(xy, dtype=np.float64).reshape(-1, 2)
+    geometry = QgsGeometry()
+    # A line string of one point is none, so the first point goes twice.
+    line = np.concatenate([xy[:1], xy])
+    geometry.fromWkb(_LINE_HEADER.pack(1, _LINE_STRING, len(line)) + line.astype("<f8").tobytes())
+    geometry.transform(transform)
+    return np.frombuffer(bytes(geometry.asWkb()), dtype="<f8", offset=_LINE_HEADER.size).reshape(-1, 2)[1:]
+
+
+def moved(xy: np.ndarray, transform: QgsCoordinateTransform) -> np.ndarray:
+    """Return (n, 2) coordinates through ``transform``, not finite where the target CRS has no place."""
+    try:
+        return moved_together(xy, transform)
+    except QgsCsException:
+        return np.array([_moved_alone(x, y, transform) for x, y in xy.tolist()])
+
+
+def _moved_alone(x: float, y: float, transform: QgsCoordinateTransform) -> tuple[float, float]:
+    try:
+        point = transform.transform(QgsPointXY(x, y))
+    except QgsCsException:
+        return float("nan"), float("nan")
+    return point.x(), point.y()

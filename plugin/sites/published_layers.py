@@ -1,0 +1,145 @@
+"""The layers of a published site, as layers of a project: named, styled, and with their roles."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+
+from qgis.core import QgsLayerTreeGroup, QgsProject, QgsVectorLayer
+
+from ...robot_bridge.sites.geopackage import GEOPACKAGE_FILE
+from ...robot_bridge.sites.layers import CENTRELINES, KEEPOUTS, OBSTACLES, SURFACES
+from ...robot_bridge.sites.settings import SETTINGS_FILE
+from ...robot_bridge.sites.settings_toml import value_text
+from .errors import PublicationError
+from .roles import (
+    KEEPOUT,
+    OBSTACLE,
+    ROAD_CENTRELINE,
+    ROAD_SURFACE,
+    LayerExpressions,
+    LayerSetup,
+    keep_setup,
+    layers_with_role,
+)
+
+GROUP = "Fleet"
+AGAIN = "Publish the site again."
+STYLES = Path(__file__).parents[2] / "resources" / "styles"
+
+
+@dataclass(frozen=True)
+class _Part:
+    layer: str
+    title: str
+    style: str
+    setup: LayerSetup
+
+
+PARTS = (
+    _Part(
+        KEEPOUTS.name,
+        "Keepouts",
+        "keepouts.qml",
+        LayerSetup(KEEPOUT, LayerExpressions(semantics='"name"')),
+    ),
+    _Part(
+        OBSTACLES.name,
+        "Obstacles",
+        "",
+        LayerSetup(
+            OBSTACLE,
+            LayerExpressions(
+                height='"height_m"', semantics='"semantics"', outdoor='"outdoor"', base='"base_m"'
+            ),
+        ),
+    ),
+    _Part(
+        CENTRELINES.name,
+        "Road centrelines",
+        "road_centrelines.qml",
+        LayerSetup(ROAD_CENTRELINE, LayerExpressions(semantics='"surface"', width='"width_m"')),
+    ),
+    _Part(
+        SURFACES.name,
+        "Road surfaces",
+        "road_surfaces.qml",
+        LayerSetup(ROAD_SURFACE, LayerExpressions(semantics='"surface"')),
+    ),
+)
+"""From top to bottom."""
+
+
+@dataclass(frozen=True)
+class LoadedSite:
+    """What was loaded: the site's name, its layers, and the titles of those whose role others have."""
+
+    name: str
+    layers: list[QgsVectorLayer]
+    without_role: list[str]
+
+
+def site_folder(path: Path) -> Path | None:
+    """Return the folder of the published site that ``path`` is, or is a file of; None for anything else."""
+    folder = path if path.is_dir() else path.parent
+    if path.is_file() and path.name not in (SETTINGS_FILE, GEOPACKAGE_FILE):
+        return None
+    return folder if (folder / SETTINGS_FILE).is_file() else None
+
+
+def load_site(folder: Path, project: QgsProject) -> LoadedSite:
+    """Put the layers of the site published in ``folder`` into ``project``, in a group of its name.
+
+    A role that other layers of the project have already is left to those: nothing shall count twice.
+
+    :raises PublicationError: when a part is missing or cannot be read; nothing is loaded then.
+    """
+    name = _site_name(folder)
+    file = folder / GEOPACKAGE_FILE
+    if not file.is_file():
+        raise PublicationError(f"{folder} has a {SETTINGS_FILE} and no {GEOPACKAGE_FILE}. {AGAIN}")
+    opened = [(part, QgsVectorLayer(f"{file}|layername={part.layer}", part.title, "ogr")) for part in PARTS]
+    unread = [part.layer for part, layer in opened if not layer.isValid()]
+    if unread:
+        raise PublicationError(f"{file} has no layer {', '.join(unread)} that can be read. {AGAIN}")
+    taken = {part.setup.role for part in PARTS if layers_with_role(project, part.setup.role)}
+    group = _group(project, name)
+    for part, layer in opened:
+        if part.setup.role not in taken:
+            keep_setup(layer, part.setup)
+        if part.style:
+            layer.loadNamedStyle(str(STYLES / part.style))
+        project.addMapLayer(layer, False)
+        group.addLayer(layer)
+    titles = [part.title for part in PARTS if part.setup.role in taken]
+    return LoadedSite(name, [layer for _, layer in opened], titles)
+
+
+def loaded_already(folder: Path, project: QgsProject) -> list[QgsVectorLayer]:
+    """Return the layers of ``project`` that are of the site published in ``folder``."""
+    file = str((folder / GEOPACKAGE_FILE).resolve())
+    layers = project.mapLayers().values()
+    return [layer for layer in layers if str(Path(layer.source().split("|")[0]).resolve()) == file]
+
+
+def _site_name(folder: Path) -> str:
+    file = folder / SETTINGS_FILE
+    try:
+        text = file.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise PublicationError(f"{file} cannot be read: {error}") from error
+    for key in ("name", "id"):
+        value = value_text(text, "site", key) or ""
+        try:
+            return str(json.loads(value))
+        except ValueError:
+            if len(value) > 2:
+                return value[1:-1]
+    raise PublicationError(f"{file} names no site: it has no table [site] with a name. {AGAIN}")
+
+
+def _group(project: QgsProject, name: str) -> QgsLayerTreeGroup:
+    root = project.layerTreeRoot()
+    fleet = root.findGroup(GROUP) or root.insertGroup(0, GROUP)
+    return fleet.addGroup(name)

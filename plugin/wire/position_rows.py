@@ -1,0 +1,79 @@
+"""Positions that come as a JSON object for each robot, made into a table."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ...robot_bridge.messages import POSITION_ALWAYS, POSITION_NUMBERS
+from .sightings import AT, COLUMNS, STATES, WORDED, Sightings
+
+_STATE_CODES = {state.value: code for code, state in enumerate(STATES)}
+
+
+def sightings(told: Sequence[dict[str, Any]], received: float) -> Sightings:
+    """Return the reports of one message, all of which arrived at ``received``.
+
+    :raises ValueError: when a number is none, or not finite, or a text is none; it names it and the robot.
+    :raises KeyError: when a report lacks its robot, state, age or link.
+    """
+    # What is told twice counts as told last, in the place where it was told first.
+    told = list({values["robot"]: values for values in told}.values())
+    names = [values["robot"] for values in told]
+    if not all(isinstance(name, str) for name in names):
+        raise ValueError("the name of a robot is not a text")
+    if not all("link" in values and "age" in values for values in told):
+        raise KeyError("link or age of a robot")
+    numbers = np.empty((len(COLUMNS), len(names)))
+    words: dict[str | None, float] = {None: np.nan}
+    for name in POSITION_NUMBERS:
+        numbers[AT[name]] = _numbers_of(name, names, [values.get(name) for values in told])
+    for name in WORDED:
+        numbers[AT[name]] = _places_of(name, names, [values.get(name) for values in told], words)
+    numbers[AT["state"]] = [_state_code(values["state"]) for values in told]
+    numbers[AT["stopped"]] = [values.get("stopped", False) is True for values in told]
+    numbers[AT["received"]] = received
+    return Sightings(names, numbers, [word for word in words if word is not None])
+
+
+def _numbers_of(name: str, names: list[str], values: list[Any]) -> npt.NDArray[np.float64]:
+    column = _as_numbers(values, may_miss=name not in POSITION_ALWAYS)
+    if column is not None:
+        return column
+    for robot, value in zip(names, values, strict=True):
+        if _as_numbers([value], may_miss=name not in POSITION_ALWAYS) is None:
+            raise ValueError(f"{name} of robot {robot} is {value!r}, not a finite number")
+    raise AssertionError("each is a number by itself")
+
+
+def _as_numbers(values: list[Any], *, may_miss: bool) -> npt.NDArray[np.float64] | None:
+    """Return finite numbers, and NaN for None where they may miss; None when anything else is among them."""
+    kinds = set(map(type, values))
+    if not kinds <= {float, int, type(None)}:
+        return None
+    missing = values.count(None) if type(None) in kinds else 0
+    try:
+        column = np.array(values, dtype=np.float64)
+    except OverflowError:
+        return None
+    is_right = (may_miss or not missing) and np.isfinite(column).sum() + missing == len(values)
+    return column if is_right else None
+
+
+def _places_of(name: str, names: list[str], values: list[Any], words: dict[str | None, float]) -> list[float]:
+    """Return the place of each text among ``words``, which grow by those that are new."""
+    for robot, value in zip(names, values, strict=True):
+        if not isinstance(value, str) and (value is not None or name in POSITION_ALWAYS):
+            raise ValueError(f"{name} of robot {robot} is {value!r}, not a text")
+    # None is among them as well, so that a new word's place is one less than how many there are.
+    return [words.setdefault(value, len(words) - 1) for value in values]
+
+
+def _state_code(state: Any) -> int:
+    try:
+        return _STATE_CODES[state]
+    except (KeyError, TypeError):
+        raise ValueError(f"{state!r} is not a robot's state; known are {', '.join(_STATE_CODES)}") from None

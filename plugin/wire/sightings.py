@@ -1,0 +1,132 @@
+"""Robots as the gateway told them: a table of numbers, one row a robot.
+
+Ten thousand robots ten times a second are too many to make an object of each. A snapshot becomes columns on
+the connection's thread; the window's thread works on whole columns and makes a report only of the robot that
+somebody looks at.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ...robot_bridge.messages import (
+    POSITION_NUMBERS,
+    POSITION_TEXTS,
+    RobotReport,
+    RobotState,
+    robot_report,
+)
+
+STATES = (RobotState.FRESH, RobotState.STALE, RobotState.LOST, RobotState.OFFLINE)
+WORDED = tuple(name for name in POSITION_TEXTS if name != "state")
+COLUMNS = (*POSITION_NUMBERS, *WORDED, "state", "stopped", "received")
+"""``state`` is an index into :data:`STATES`, ``received`` is on the monotonic clock, those of :data:`WORDED`
+are indices into the words of the table; NaN is what is not known."""
+AT = {name: column for column, name in enumerate(COLUMNS)}
+SPARE_WORDS = 1000
+"""Words beyond two for each robot before those are forgotten that no robot says any more."""
+_TEXTS_AT = [AT[name] for name in WORDED]
+
+Numbers = npt.NDArray[np.float64]
+
+
+class Sightings:
+    """The newest that was told of each robot, one row each. A robot keeps its row.
+
+    ``names`` has the n names, no two the same; ``numbers`` is (len(COLUMNS), n); ``words`` are the texts that
+    it points at. All are the table's own from then on.
+    """
+
+    def __init__(
+        self, names: list[str] | None = None, numbers: Numbers | None = None, words: list[str] | None = None
+    ) -> None:
+        self.names = [] if names is None else names
+        self._numbers = np.empty((len(COLUMNS), 0)) if numbers is None else numbers
+        self._rows = dict(zip(self.names, range(len(self.names)), strict=True))
+        self._words = [] if words is None else words
+        self._places = dict(zip(self._words, range(len(self._words)), strict=True))
+
+    def __len__(self) -> int:
+        return len(self.names)
+
+    def __contains__(self, name: str) -> bool:
+        return name in self._rows
+
+    def column(self, name: str) -> Numbers:
+        """Return one of :data:`COLUMNS`, a view that holds until the next :meth:`merge`."""
+        return self._numbers[AT[name], : len(self.names)]
+
+    def texts(self, name: str) -> tuple[Numbers, list[str]]:
+        """Return one of :data:`WORDED` as (n,) places in the words, NaN where none, and the words."""
+        return self.column(name), self._words
+
+    def row(self, name: str) -> int | None:
+        """Return the row of robot ``name``, None if nothing was told of it."""
+        return self._rows.get(name)
+
+    def told(self, row: int) -> dict[str, Any]:
+        """Return what was told last of the robot in ``row``: what its report holds, as JSON values."""
+        values = zip(COLUMNS, self._numbers[:, row].tolist(), strict=True)
+        # NaN is the one value that is not equal to itself.
+        found: dict[str, Any] = {name: value for name, value in values if value == value}
+        for name in WORDED:
+            if name in found:
+                found[name] = self._words[int(found[name])]
+        del found["received"]
+        found["robot"] = self.names[row]
+        found["state"] = STATES[int(found["state"])].value
+        found["stopped"] = found["stopped"] == 1.0
+        return found
+
+    def report(self, row: int) -> RobotReport:
+        """Return what was told last of the robot in ``row``."""
+        return robot_report(self.told(row))
+
+    def merge(self, newer: Sightings) -> None:
+        """Take over what is in ``newer`` unless it arrived before what is known."""
+        count, received = len(newer), AT["received"]
+        numbers = newer._numbers[:, :count].copy()
+        numbers[_TEXTS_AT] = self._as_own_words(numbers[_TEXTS_AT], newer._words)
+        if newer.names == self.names and (numbers[received] >= self.column("received")).all():
+            # Everything anew, as when all robots drive: no need to look for each one's row.
+            self._numbers = numbers
+        else:
+            rows = self._rows_of(newer.names)
+            taken = np.flatnonzero(numbers[received] >= self._numbers[received, rows])
+            self._numbers[:, rows[taken]] = numbers[:, taken]
+        if len(self._words) > SPARE_WORDS + 2 * len(self):
+            self._forget_words()
+
+    def _as_own_words(self, places: Numbers, words: list[str]) -> Numbers:
+        """Return ``places`` in ``words`` as places in this table's own, which grow by those that are new."""
+        own = [self._places.setdefault(word, len(self._places)) for word in words]
+        self._words += list(self._places)[len(self._words) :]
+        # What is not known points at the last one, which is none.
+        known = np.array([*own, np.nan])
+        return known[np.nan_to_num(places, nan=len(words)).astype(np.intp)]
+
+    def _forget_words(self) -> None:
+        """Keep the words that some robot says."""
+        texts = self._numbers[_TEXTS_AT, : len(self)]
+        used = np.unique(texts[np.isfinite(texts)]).astype(np.intp)
+        words, self._words, self._places = self._words, [], {}
+        moved = np.full(len(words) + 1, np.nan)
+        moved[used] = np.arange(len(used))
+        self._words = [words[place] for place in used.tolist()]
+        self._places = dict(zip(self._words, range(len(used)), strict=True))
+        self._numbers[_TEXTS_AT, : len(self)] = moved[np.nan_to_num(texts, nan=len(words)).astype(np.intp)]
+
+    def _rows_of(self, names: list[str]) -> npt.NDArray[np.intp]:
+        known = self._rows
+        for name in names:
+            if name not in known:
+                known[name] = len(self.names)
+                self.names.append(name)
+        missing = len(self.names) - self._numbers.shape[1]
+        if missing > 0:
+            more = np.full((len(COLUMNS), max(16, missing, self._numbers.shape[1])), -np.inf)
+            self._numbers = np.concatenate([self._numbers, more], axis=1)
+        return np.fromiter(map(known.__getitem__, names), dtype=np.intp, count=len(names))

@@ -1,0 +1,294 @@
+"""Alarms as the operator meets them, on real widgets: panel, message bar, log, settings."""
+
+import csv
+import json
+import time
+
+import pytest
+from fleet_supervisor.plugin.desk.alarms.stored_limits import read_limits, write_limits
+from fleet_supervisor.plugin.desk.alarms.thresholds import AlarmKind, Thresholds
+from fleet_supervisor.robot_bridge.messages import CommandState, RobotState
+from qgis.core import QgsFeature, QgsGeometry, QgsProject, QgsRectangle, QgsSettings, QgsVectorLayer
+from qgis.PyQt.QtCore import Qt
+from qgis.PyQt.QtTest import QTest
+from qgis.PyQt.QtWidgets import (
+    QApplication,
+    QCheckBox,
+    QDialogButtonBox,
+    QDoubleSpinBox,
+    QLabel,
+    QPushButton,
+    QTableView,
+    QToolButton,
+)
+
+LEFT = Qt.MouseButton.LeftButton
+
+
+@pytest.fixture(autouse=True)
+def settings():
+    QgsSettings().remove("fleet_supervisor")
+    yield
+    QgsSettings().remove("fleet_supervisor")
+
+
+@pytest.fixture
+def at_alarms(at_desk):
+    """The desk with the panel of alarms in front."""
+    at_desk.dock.tabs.setCurrentIndex(alarm_tab(at_desk))
+    return at_desk
+
+
+def alarm_tab(window) -> int:
+    tabs = window.dock.tabs
+    return next(k for k in range(tabs.count()) if tabs.tabText(k).startswith("Alarms"))
+
+
+def alarms(window) -> list[tuple[str, str]]:
+    model = window.dock.findChild(QTableView, "fleet_alarms").model()
+    return [tuple(model.index(row, column).data() for column in (1, 2)) for row in range(model.rowCount())]
+
+
+def bar_texts(iface) -> list[str]:
+    return [label.text() for label in iface.bar.findChildren(QLabel, "fleet_alarm_text")]
+
+
+def press(window, name, kind=QPushButton):
+    QTest.mouseClick(window.findChild(kind, name), LEFT)
+
+
+def choose(window, row):
+    view = window.dock.findChild(QTableView, "fleet_alarms")
+    QTest.mouseClick(view.viewport(), LEFT, pos=view.visualRect(view.model().index(row, 1)).center())
+    return view
+
+
+# --- each alarm, from the wire to the panel ---
+
+
+def test_a_low_battery(at_alarms, gateway, make_robot, wait):
+    gateway.show(make_robot("r1", 50, 40, battery=0.12))
+    wait(lambda: alarms(at_alarms) == [("r1 has 12% of its battery left", "new")])
+    gateway.show(make_robot("r1", 50, 40, battery=0.9))
+    wait(lambda: alarms(at_alarms) == [("r1 has 12% of its battery left", "over")])
+
+
+def test_a_lost_robot(at_alarms, gateway, make_robot, wait):
+    gateway.show(make_robot("r1", 50, 40, age=30.0, state=RobotState.LOST))
+    wait(lambda: alarms(at_alarms) == [("r1 is lost: nothing is heard of it; last at 50.0, 40.0 m", "new")])
+
+
+def test_a_robot_outside_the_site(at_alarms, gateway, make_robot, wait):
+    gateway.show(make_robot("r1", 203, 40))
+    wait(lambda: alarms(at_alarms) == [("r1 is outside the site at 203.0, 40.0 m", "new")])
+
+
+def test_two_robots_too_close(at_alarms, gateway, make_robot, wait):
+    gateway.show(make_robot("r1", 79.5, 60))
+    wait(lambda: alarms(at_alarms) == [("r1 and r2 are 0.5 m apart at 79.5, 60.0 m", "new")])
+
+
+def test_a_robot_that_stands_with_a_task(at_alarms, gateway, make_robot, iface, wait):
+    QgsSettings().setValue("fleet_supervisor/alarms/stopped_after", 1)
+    panel = at_alarms.dock.findChild(QTableView, "fleet_alarms").parent()
+    panel._watch.set_limits(read_limits())
+    gateway.show(make_robot("r1", 50, 40, v=0.0), make_robot("r2", 80, 60, v=0.0))
+    command = gateway._queue("command-1", "r1", "SetPosEnd", {"x": 70.0, "y": 40.0, "cone": True})
+    gateway.step(command.command, CommandState.DELIVERED, "gateway")
+    for _ in range(12):
+        # It has not accepted the task yet.
+        gateway.show(make_robot("r1", 50, 40, v=0.0))
+        QTest.qWait(200)
+    assert alarms(at_alarms) == []
+    gateway.step(command.command, CommandState.ACKNOWLEDGED, "r1")
+    keep = time.monotonic() + 8
+    while not alarms(at_alarms) and time.monotonic() < keep:
+        gateway.show(make_robot("r1", 50, 40, v=0.0), make_robot("r2", 80, 60, v=0.0))
+        QTest.qWait(200)
+    assert alarms(at_alarms) == [("r1 has a task and stands at 50.0, 40.0 m", "new")]
+
+
+def test_a_robot_off_the_road_of_the_project(at_alarms, gateway, make_robot, wait):
+    road = QgsVectorLayer("Polygon?crs=EPSG:32633", "asphalt", "memory")
+    feature = QgsFeature()
+    feature.setGeometry(QgsGeometry.fromRect(QgsRectangle(488000, 5190000, 488200, 5190062)))
+    road.dataProvider().addFeatures([feature])
+    road.setCustomProperty("fleet/role", "road_surface")
+    note = at_alarms.dock.findChild(QLabel, "fleet_alarm_note")
+    wait(lambda: "no layer of the project has the role road surface" in note.text())
+    QgsProject.instance().addMapLayer(road)
+    gateway.show(make_robot("r2", 80, 62.3))
+    wait(lambda: not note.text(), 10)
+    QTest.qWait(1600)
+    assert alarms(at_alarms) == []
+    gateway.show(make_robot("r2", 80, 63))
+    wait(lambda: alarms(at_alarms) == [("r2 is off the road at 80.0, 63.0 m", "new")])
+    gateway.show(make_robot("r2", 80, 61.9))
+    wait(lambda: alarms(at_alarms) == [("r2 is off the road at 80.0, 63.0 m", "over")])
+
+
+def test_a_layer_of_surfaces_without_areas_is_named_and_nobody_off_the_road(at_alarms, wait):
+    line = QgsVectorLayer("LineString?crs=EPSG:32633", "kerbs", "memory")
+    line.setCustomProperty("fleet/role", "road_surface")
+    QgsProject.instance().addMapLayer(line)
+    note = at_alarms.dock.findChild(QLabel, "fleet_alarm_note")
+    wait(lambda: "Off the road is not watched" in note.text() and "kerbs" in note.text())
+    assert alarms(at_alarms) == []
+
+
+# --- what the operator does about it ---
+
+
+def test_acknowledging_one_takes_it_from_the_new_ones(at_alarms, gateway, make_robot, wait):
+    gateway.show(make_robot("r1", 50, 40, battery=0.1), make_robot("r2", 80, 60, battery=0.1))
+    wait(lambda: len(alarms(at_alarms)) == 2)
+    assert at_alarms.dock.tabs.tabText(alarm_tab(at_alarms)) == "Alarms (2)"
+    button = at_alarms.dock.findChild(QPushButton, "fleet_acknowledge")
+    assert not button.isEnabled()
+    choose(at_alarms, 0)
+    chosen = alarms(at_alarms)[0][0]
+    QTest.mouseClick(button, LEFT)
+    assert alarms(at_alarms)[1] == (chosen, "seen")
+    assert at_alarms.dock.tabs.tabText(alarm_tab(at_alarms)) == "Alarms (1)"
+    gateway.show(make_robot("r1", 50, 40), make_robot("r2", 80, 60))
+    wait(lambda: [state for _, state in alarms(at_alarms)] == ["over"])
+
+
+def test_a_double_click_goes_to_both_robots(at_alarms, gateway, make_robot, iface, wait):
+    gateway.show(make_robot("r1", 79.5, 60))
+    wait(lambda: len(alarms(at_alarms)) == 1)
+    iface.look_at(0, 0, 20, 20)
+    view = choose(at_alarms, 0)
+    QTest.mouseDClick(view.viewport(), LEFT, pos=view.visualRect(view.model().index(0, 1)).center())
+    assert at_alarms.desk.selection == ("r2", "r1")
+    centre = iface.canvas.extent().center()
+    assert (centre.x() - 488000, centre.y() - 5190000) == pytest.approx((79.75, 60), abs=0.5)
+
+
+def test_the_message_bar_has_one_item_that_counts(at_desk, gateway, make_robot, iface, wait):
+    crowd = [make_robot(f"n{k}", 5.0 * k, 20, battery=0.1) for k in range(30)]
+    gateway.show(*crowd)
+    wait(lambda: bar_texts(iface) and "30 alarms" in bar_texts(iface)[0])
+    assert len(bar_texts(iface)) == 1
+    assert bar_texts(iface)[0].endswith("; and 28 more")
+    gateway.show(make_robot("n31", 500, 20))
+    wait(lambda: "31 alarms: n31 is outside the site" in bar_texts(iface)[-1])
+    wait(lambda: len(bar_texts(iface)) == 1)
+    assert len([text for text in iface.texts() if "battery" in text]) == 0
+
+
+def test_the_bar_shows_the_panel_and_goes_when_all_is_seen(at_desk, gateway, make_robot, iface, wait):
+    gateway.show(make_robot("r1", 50, 40, battery=0.1))
+    wait(lambda: bar_texts(iface))
+    press(iface.bar, "fleet_show_alarms", QToolButton)
+    assert at_desk.dock.tabs.currentIndex() == alarm_tab(at_desk)
+    press(iface.bar, "fleet_bar_acknowledge", QToolButton)
+    wait(lambda: not bar_texts(iface))
+    assert [state for _, state in alarms(at_desk)] == ["seen"]
+
+
+def test_closed_the_bar_comes_back_with_the_next_alarm_only(at_desk, gateway, make_robot, iface, wait):
+    gateway.show(make_robot("r1", 50, 40, battery=0.1))
+    wait(lambda: bar_texts(iface))
+    iface.bar.clearWidgets()
+    QApplication.processEvents()
+    gateway.show(make_robot("r1", 50, 40))
+    wait(lambda: [state for _, state in alarms(at_desk)] == ["over"])
+    assert not iface.bar.currentItem()
+    gateway.show(make_robot("r1", 50, 40, battery=0.1))
+    wait(lambda: iface.bar.currentItem() and "alarm" in bar_texts(iface)[-1])
+
+
+def test_the_log_is_written_as_csv(at_alarms, gateway, make_robot, tmp_path, wait):
+    gateway.show(make_robot("r1", 50, 40, battery=0.1))
+    wait(lambda: alarms(at_alarms))
+    press(at_alarms.dock, "fleet_acknowledge_all")
+    press(at_alarms.dock, "fleet_alarm_log")
+    dialog = QApplication.topLevelWidgets()
+    dialog = next(w for w in dialog if w.objectName() == "fleet_alarm_log_dialog")
+    model = dialog.findChild(QTableView, "fleet_alarm_events").model()
+    assert [model.index(row, 1).data() for row in range(2)] == ["acknowledged", "began"]
+    target = tmp_path / "alarms.csv"
+    dialog.export(str(target))
+    rows = list(csv.DictReader(target.open(encoding="utf-8-sig")))
+    assert [(row["change"], row["robot"], row["kind"], row["x"]) for row in rows] == [
+        ("began", "r1", "low battery", "50.0"),
+        ("acknowledged", "r1", "low battery", "50.0"),
+    ]
+    assert rows[1]["by"] and not rows[0]["by"]
+    dialog.export(str(tmp_path / "missing" / "alarms.csv"))
+    assert "was not written" in dialog.findChild(QLabel, "fleet_alarm_log_said").text()
+    dialog.close()
+
+
+def test_settings_hold_at_once(at_alarms, gateway, make_robot, wait):
+    press(at_alarms.dock, "fleet_alarm_limits")
+    open_ones = (w for w in QApplication.topLevelWidgets() if w.isVisible())
+    dialog = next(w for w in open_ones if w.objectName() == "fleet_thresholds")
+    dialog.findChild(QDoubleSpinBox, "fleet_low_battery").setValue(85)
+    dialog.findChild(QDoubleSpinBox, "fleet_too_close").setValue(2.5)
+    dialog.findChild(QCheckBox, "fleet_watch_outside_site").setChecked(False)
+    assert not dialog.findChild(QDoubleSpinBox, "fleet_outside_margin").isEnabled()
+    QTest.mouseClick(dialog.findChild(QDialogButtonBox).button(QDialogButtonBox.StandardButton.Ok), LEFT)
+    wait(lambda: len(alarms(at_alarms)) == 2)
+    kept = at_alarms.dock.findChild(QTableView, "fleet_alarms").parent()._watch.board.limits
+    assert (kept.low_battery, kept.too_close) == (0.85, 2.5)
+    assert kept.kinds == frozenset(AlarmKind) - {AlarmKind.OUTSIDE_SITE}
+    note = at_alarms.dock.findChild(QLabel, "fleet_alarm_note")
+    wait(lambda: "Switched off: outside the site" in note.text())
+
+
+def test_settings_are_kept():
+    limits = Thresholds(low_battery=0.85, stopped_after=30.0, kinds=frozenset({AlarmKind.LOST}))
+    write_limits(limits)
+    assert read_limits() == limits
+
+
+def test_broken_settings_count_as_never_set():
+    QgsSettings().setValue("fleet_supervisor/alarms/low_battery", "much")
+    QgsSettings().setValue("fleet_supervisor/alarms/too_close", -4)
+    assert read_limits().low_battery == 0.20
+    assert read_limits().too_close == 1.0
+
+
+# --- when nobody can tell ---
+
+
+def test_without_a_link_nothing_is_an_alarm_and_the_panel_says_so(at_alarms, gateway, wait):
+    gateway.stop()
+    note = at_alarms.dock.findChild(QLabel, "fleet_alarm_note")
+    wait(lambda: note.text() == "Nothing is watched: the desk is not connected.")
+    wait(lambda: at_alarms.desk.picture.view("r1", at_alarms.desk.clock()).age > 10.5, 15)
+    assert alarms(at_alarms) == []
+
+
+def test_another_site_starts_without_alarms(at_alarms, gateway, site, make_robot, wait):
+    from dataclasses import replace
+
+    gateway.show(make_robot("r1", 50, 40, battery=0.1))
+    wait(lambda: alarms(at_alarms))
+    gateway.tell("site", json.loads(json.dumps(replace(site, id="other").__dict__)))
+    wait(lambda: not alarms(at_alarms))
+
+
+def test_of_ten_thousand_robots_the_two_that_are_close_are_found(at_desk, gateway, make_robot, wait):
+    panel = at_desk.dock.findChild(QTableView, "fleet_alarms").parent()
+    crowd = [make_robot(f"n{k}", 0.4 + (k % 100) * 1.9, 0.4 + (k // 100) * 1.5) for k in range(10_000)]
+    near = make_robot("n10000", crowd[7777].x + 0.2, crowd[7777].y)
+    gateway.show(make_robot("r1", None, None), make_robot("r2", None, None))
+    gateway.show(*crowd, near)
+    wait(lambda: len(at_desk.desk.picture) == 10_003, 30)
+    panel._watch.look()
+    assert {(alarm.robot, alarm.other) for alarm in panel._watch.board.alarms()} == {("n7777", "n10000")}
+
+
+def test_unloading_leaves_nothing(plugin, iface):
+    assert plugin.window.dock.findChild(QTableView, "fleet_alarms") is not None
+    tabs = plugin.window.dock.tabs
+    before = tabs.count()
+    part = next(part for part in plugin._parts if type(part).__name__ == "WindowAlarms")
+    plugin._parts.remove(part)
+    part.remove()
+    assert tabs.count() == before - 1
+    assert bar_texts(iface) == []
+    plugin.window.desk.pull()

@@ -1,0 +1,177 @@
+"""What a draft is held against before it is sent, and overriding that."""
+
+from __future__ import annotations
+
+import pytest
+from qgis.PyQt.QtCore import Qt
+from qgis.PyQt.QtTest import QTest
+from qgis.PyQt.QtWidgets import QDialog, QLineEdit, QPushButton
+
+SQUARE = "Polygon ((60 50, 80 50, 80 60, 60 60, 60 50))"
+
+
+@pytest.fixture
+def cone(hand):
+    return hand.take("cone")
+
+
+@pytest.mark.parametrize("role", ["obstacle", "furniture", "stairs"])
+def test_a_target_on_an_obstacle_is_refused_and_the_feature_named(cone, layer_of, role):
+    layer_of("Polygon", SQUARE, role=role, names=["Hall 3"])
+    cone.click((70, 55))
+    assert cone.complained("is on Hall 3. Choose a place or way beside it.")
+    assert "Not to be sent" in cone.told
+    cone.key(Qt.Key.Key_Return)
+    assert cone.nothing_sent()
+    assert cone.points is not None
+    cone.click((70, 70))
+    assert "Not to be sent" not in cone.told
+
+
+def test_a_feature_without_a_name_is_named_by_layer_and_number(cone, layer_of):
+    layer_of("Polygon", SQUARE, role="obstacle", name="buildings")
+    cone.click((70, 55))
+    assert cone.complained("is on buildings (feature 1)")
+
+
+def test_a_target_beside_a_wall_is_too_near_by_metres_whatever_the_layers_crs(cone, layer_of):
+    from pyproj import Transformer
+
+    earth = Transformer.from_crs("EPSG:32633", "EPSG:4326", always_xy=True).transform
+    ends = ", ".join("{} {}".format(*earth(488000 + x, 5190000 + y)) for x, y in ((70, 40), (70, 70)))
+    layer_of("LineString", f"LineString ({ends})", crs="EPSG:4326", role="obstacle", names=["Fence"])
+    cone.click((70, 55))
+    assert cone.complained("from Fence") or cone.complained("is on Fence")
+    cone.click((71, 55))
+    assert "Not to be sent" not in cone.told
+
+
+@pytest.mark.parametrize(("x", "is_free"), [(69.8, False), (70.2, False), (70.3, True)])
+def test_half_a_robot_has_to_fit_beside_a_wall(cone, layer_of, x, is_free):
+    layer_of("LineString", "LineString (70 40, 70 70)", role="obstacle", names=["Wall"])
+    cone.iface.canvas.mapTool().take((x, 55.0))
+    assert ("Not to be sent" not in cone.told) is is_free
+    assert is_free or cone.complained("is 0.20 m from Wall")
+
+
+def test_a_ramp_can_be_driven_to(cone, layer_of):
+    layer_of("Polygon", SQUARE, role="ramp", names=["Ramp"])
+    cone.click((70, 55))
+    assert "Not to be sent" not in cone.told
+
+
+def test_a_drawn_route_through_an_obstacle_is_refused_though_its_points_are_beside(hand, layer_of):
+    layer_of("Polygon", SQUARE, role="obstacle", names=["Hall 3"])
+    hand.take("route").click((50, 55), (90, 55))
+    assert hand.complained("The way to")
+    assert "is on Hall 3" in hand.told
+
+
+def test_only_what_the_filter_of_a_layer_keeps_is_an_obstacle(cone, layer_of):
+    layer = layer_of("Polygon", SQUARE, role="obstacle", names=["Hall 3"])
+    layer.setCustomProperty("fleet/filter", "\"name\" <> 'Hall 3'")
+    cone.click((70, 55))
+    assert "Not to be sent" not in cone.told
+
+
+def test_a_target_too_near_to_that_of_another_robot_is_refused_and_that_one_named(cone, hand):
+    cone.click((70, 55))
+    cone.key(Qt.Key.Key_Return)
+    cone.sent()
+    cone.wait(lambda: len(cone.window.desk.book) == 1)
+    cone.window.desk.select("r2")
+    cone.click((70, 55.5))
+    assert cone.complained("m from the target of r1 at 70.")
+    assert "Not to be sent" in cone.told
+    cone.window.desk.select("r1")
+    cone.click((70, 55.5))
+    assert "Not to be sent" not in cone.told
+
+
+def test_a_draft_is_looked_at_once_more_when_it_is_sent(cone, gateway):
+    from fleet_supervisor.robot_bridge.messages import CommandState
+
+    cone.click((70, 55))
+    assert "Not to be sent" not in cone.told
+    # Meanwhile somebody else has sent the other robot there.
+    gateway._queue("elsewhere", "r2", "SetPosEnd", {"x": 70.0, "y": 55.0})
+    gateway.step("elsewhere", CommandState.DELIVERED, "r2")
+    cone.wait(lambda: len(cone.window.desk.book) == 1)
+    cone.key(Qt.Key.Key_Return)
+    assert cone.nothing_sent()
+    assert "from the target of r2" in cone.told
+
+
+def override(hand, why="the bay is cleared"):
+    hand.push("fleet_override")
+    dialog = hand.iface.findChild(QDialog, "fleet_override")
+    confirm = dialog.findChild(QPushButton, "fleet_override_confirm")
+    assert not confirm.isEnabled()
+    QTest.keyClicks(dialog.findChild(QLineEdit, "fleet_override_why"), why)
+    return confirm
+
+
+def test_what_can_be_overridden_is_sent_with_what_was_found_and_why(cone, layer_of):
+    layer_of("Polygon", SQUARE, role="keepout", names=["Loading bay"])
+    cone.click((70, 55))
+    QTest.mouseClick(override(cone), Qt.MouseButton.LeftButton)
+    assert cone.nothing_sent()
+    assert "OVERRIDDEN" in cone.told
+    cone.key(Qt.Key.Key_Return)
+    text = cone.sent()["override"]
+    assert "enters the keepout Loading bay" in text
+    assert text.endswith("because: the bay is cleared")
+
+
+def test_an_ordinary_command_carries_no_override(cone):
+    cone.click((70, 55))
+    cone.key(Qt.Key.Key_Return)
+    assert "override" not in cone.sent()
+
+
+def test_an_override_is_gone_when_the_draft_is_moved(cone, layer_of):
+    layer_of("Polygon", SQUARE, role="keepout", names=["Loading bay"])
+    cone.click((70, 55))
+    QTest.mouseClick(override(cone), Qt.MouseButton.LeftButton)
+    cone.click((72, 55))
+    assert "Not to be sent" in cone.told
+    cone.key(Qt.Key.Key_Return)
+    assert cone.nothing_sent()
+
+
+def test_an_override_is_gone_when_something_else_is_in_the_way(cone, layer_of):
+    layer_of("Polygon", SQUARE, role="keepout", names=["Loading bay"])
+    cone.click((70, 55))
+    QTest.mouseClick(override(cone), Qt.MouseButton.LeftButton)
+    layer_of("Polygon", SQUARE, role="obstacle", names=["New fence"])
+    cone.key(Qt.Key.Key_Return)
+    assert cone.nothing_sent()
+    assert "New fence" in cone.told
+    assert "OVERRIDDEN" not in cone.told
+
+
+def test_an_override_of_a_draft_that_changed_behind_the_dialog_is_none(cone, layer_of):
+    layer_of("Polygon", SQUARE, role="keepout", names=["Loading bay"])
+    cone.click((70, 55))
+    confirm = override(cone)
+    cone.click((74, 55))
+    QTest.mouseClick(confirm, Qt.MouseButton.LeftButton)
+    assert cone.complained("The draft has changed since it was looked at")
+    assert cone.drafts.draft.override is None
+
+
+def test_what_lies_outside_the_site_cannot_be_overridden(cone, iface):
+    iface.look_at(-60, -60, 260, 200)
+    cone.click((-20, 30))
+    assert not cone.window.actions.override.isEnabled()
+    assert "Override" not in cone.told
+
+
+def test_a_refused_override_comes_back_as_a_draft(cone, layer_of, gateway):
+    gateway.refuse["send"] = "send: anna is operator, and an override takes supervisor"
+    layer_of("Polygon", SQUARE, role="keepout", names=["Loading bay"])
+    cone.click((70, 55))
+    QTest.mouseClick(override(cone), Qt.MouseButton.LeftButton)
+    cone.key(Qt.Key.Key_Return)
+    cone.wait(lambda: cone.complained("an override takes supervisor"))
+    assert cone.points[0] == pytest.approx((70, 55), abs=0.3)

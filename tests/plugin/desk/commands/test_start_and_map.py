@@ -1,0 +1,72 @@
+"""The start position by mouse and keys, and the map on request."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from qgis.PyQt.QtCore import Qt
+
+CTRL = Qt.KeyboardModifier.ControlModifier
+
+
+@pytest.fixture
+def start(hand):
+    return hand.take("start")
+
+
+def test_a_click_and_enter_tell_the_robot_where_it_stands(start):
+    start.click((70, 55))
+    assert start.nothing_sent()
+    assert start.told.startswith("Start position of r1 at ")
+    start.key(Qt.Key.Key_Return)
+    sent = start.sent()
+    assert (sent["robot"], sent["op"]) == ("r1", "SetPosIni")
+    assert (sent["params"]["x"], sent["params"]["y"]) == pytest.approx((70, 55), abs=0.3)
+    assert "theta" not in sent["params"]
+
+
+def test_a_drag_gives_the_heading_and_sends_nothing(start):
+    start.drag((70, 55), (60, 65))
+    assert start.nothing_sent()
+    assert start.drafts.draft.theta == pytest.approx(3 * math.pi / 4, abs=0.05)
+    assert start.points == (pytest.approx((70, 55), abs=0.3),)
+    start.key(Qt.Key.Key_Left, CTRL)
+    start.key(Qt.Key.Key_Return)
+    assert start.sent()["params"]["theta"] == pytest.approx(3 * math.pi / 4, abs=0.05)
+
+
+def test_a_start_position_may_be_where_a_robot_may_not_go_but_not_outside_the_site(start, layer_of, iface):
+    layer_of("Polygon", "Polygon ((60 50, 80 50, 80 60, 60 60, 60 50))", role="keepout", names=["Bay"])
+    start.click((70, 55))
+    assert "Not to be sent" not in start.told
+    iface.look_at(-60, -60, 260, 200)
+    start.click((-20, 30))
+    assert "Not to be sent" in start.told
+
+
+def test_escape_and_leaving_the_tool_send_nothing(start):
+    start.click((70, 55))
+    start.iface.actionPan().trigger()
+    assert start.points is not None
+    start.take("start").key(Qt.Key.Key_Escape)
+    assert start.points is None
+    assert start.nothing_sent()
+
+
+def test_a_start_position_does_not_wipe_out_a_route(hand):
+    hand.take("route").click((40, 30), (60, 30))
+    before = hand.drafts.draft
+    hand.take("start").click((70, 55))
+    hand.drag((70, 55), (80, 55))
+    assert hand.drafts.draft == before
+    assert hand.complained("is still on the map")
+
+
+def test_the_map_is_sent_to_every_selected_robot(hand, gateway, wait):
+    hand.window.desk.select_all(["r1", "r2"])
+    hand.window.actions.send_map.trigger()
+    wait(lambda: gateway.asked("send_map") == [{"robot": "r1"}, {"robot": "r2"}])
+    hand.window.desk.select(None)
+    hand.window.actions.send_map.trigger()
+    assert hand.complained("No robot is selected, so none was sent the map")

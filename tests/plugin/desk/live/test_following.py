@@ -1,0 +1,52 @@
+"""The view goes after the robots that are followed."""
+
+from __future__ import annotations
+
+import pytest
+from qgis.PyQt.QtTest import QTest
+
+
+def is_shown(iface, x, y):
+    at = iface.pixel(x, y)
+    return iface.canvas.rect().contains(at)
+
+
+def test_all_robots_are_kept_in_view(at_desk, gateway, iface, make_robot, wait):
+    at_desk.actions.follow_all.trigger()
+    gateway.show(make_robot("r1", 300, 20), make_robot("r2", -90, 60))
+    wait(lambda: is_shown(iface, 300, 20) and is_shown(iface, -90, 60), 4, "both robots")
+    assert is_shown(iface, 100, 40)
+
+
+def test_several_selected_robots_are_kept_in_view_and_others_may_go(
+    at_desk, gateway, iface, make_robot, wait
+):
+    gateway.show(make_robot("r3", 20, 20))
+    wait(lambda: len(at_desk.desk.picture) == 3)
+    at_desk.desk.select_all(["r1", "r2"])
+    at_desk.actions.follow.trigger()
+    gateway.show(make_robot("r1", 260, 20), make_robot("r2", 330, 60))
+    wait(lambda: is_shown(iface, 260, 20) and is_shown(iface, 330, 60), 4, "both robots")
+    assert not is_shown(iface, 20, 20)
+
+
+def test_only_one_of_both_ways_to_follow_is_on(at_desk, gateway, iface, make_robot):
+    at_desk.desk.select("r1")
+    at_desk.actions.follow.trigger()
+    at_desk.actions.follow_all.trigger()
+    assert not at_desk.actions.follow.isChecked() and at_desk.actions.follow_all.isChecked()
+    at_desk.actions.follow_all.trigger()
+    centre = iface.canvas.center().x()
+    gateway.show(make_robot("r1", 900, 900))
+    QTest.qWait(1300)
+    assert iface.canvas.center().x() == centre
+
+
+@pytest.mark.parametrize("rotation", [0, 50])
+def test_a_view_that_has_all_of_them_stays(at_desk, iface, rotation):
+    iface.canvas.setRotation(rotation)
+    iface.look_at(-100, -100, 300, 300)
+    at_desk.actions.follow_all.trigger()
+    before = iface.canvas.extent()
+    QTest.qWait(1300)
+    assert iface.canvas.extent() == before

@@ -1,0 +1,90 @@
+"""The whole way from what the gateway tells to what is on the canvas."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from fleet_supervisor.plugin.desk.colours import TRAIL
+from qgis.PyQt.QtGui import QColor
+from qgis.PyQt.QtTest import QTest
+
+
+def is_blue(iface, x, y):
+    """Tell whether the trail's colour is at a place of the site."""
+    image = iface.canvas.grab().toImage()
+    at = iface.pixel(x, y)
+    around = [(at.x() + dx, at.y() + dy) for dx in (-2, 0, 2) for dy in (-2, 0, 2)]
+    colours = [QColor(image.pixel(*spot)) for spot in around if image.rect().contains(*spot)]
+    return any(abs(colour.red() - TRAIL.red()) < 40 and colour.blue() > 230 for colour in colours)
+
+
+@pytest.fixture
+def driven(at_desk, gateway, make_robot, iface, wait):
+    """r1 has driven 20 m to the east, half a metre a message."""
+    desk = at_desk.desk
+    began = desk.clock()
+    ahead = [0.0]
+    desk.clock = lambda: began + ahead[0]
+    for step in range(41):
+        ahead[0] += 0.5
+        gateway.show(make_robot("r1", 50 + step / 2, 40, v=1.0))
+        x = 50 + step / 2
+        wait(lambda x=x: desk.picture.view("r1", desk.clock()).report.x == x)
+        at_desk.view.show_now()
+    return at_desk
+
+
+def test_a_trail_is_painted_and_is_there_again_after_the_view_has_moved(driven, iface, wait):
+    assert is_blue(iface, 62, 40)
+    iface.look_at(40, 20, 80, 55)
+    wait(lambda: is_blue(iface, 62, 40) and is_blue(iface, 56, 40), what="the trail")
+    iface.canvas.setRotation(70)
+    wait(lambda: is_blue(iface, 62, 40) and is_blue(iface, 56, 40), what="the trail")
+
+
+def test_a_new_position_is_painted_without_anything_else_happening(at_desk, gateway, iface, make_robot, wait):
+    for x in (30, 70, 100):
+        gateway.show(make_robot("r1", x, 20))
+        at = iface.pixel(x, 20)
+        wait(lambda at=at: at_desk.view.overlay.robot_at(at.x(), at.y()) == "r1")
+        frames = at_desk.view.overlay.frames
+        wait(lambda frames=frames: at_desk.view.overlay.frames > frames, 2)
+
+
+def test_nothing_is_painted_in_vain(at_desk, iface):
+    QTest.qWait(300)
+    before = at_desk.view.overlay.frames
+    QTest.qWait(2000)
+    # Ages go on twice a second; nothing else does.
+    assert 2 <= at_desk.view.overlay.frames - before <= 8
+
+
+def test_robots_of_another_site_leave_nothing_behind(driven, gateway, site, iface, make_robot, wait):
+    from dataclasses import replace
+
+    gateway.stop()
+    gateway.robots.clear()
+    gateway.site = replace(site, id="other", name="Other")
+    gateway.show(make_robot("z9", 20, 20))
+    wait(lambda: driven.desk.link.phase.value == "retrying")
+    gateway.start()
+    wait(lambda: len(driven.desk.picture) == 1 and driven.desk.picture.row("z9") == 0, 15)
+    wait(lambda: driven.view.layer.layer.featureCount() == 1)
+    assert [feature["robot"] for feature in driven.view.layer.layer.getFeatures()] == ["z9"]
+    assert not is_blue(iface, 62, 40)
+    at = iface.pixel(20, 20)
+    wait(lambda: driven.view.overlay.robot_at(at.x(), at.y()) == "z9")
+
+
+def test_a_thousand_newcomers_are_in_table_and_layer_without_the_window_waiting(
+    at_desk, gateway, iface, make_robot, wait
+):
+    rng = np.random.default_rng(2)
+    crowd = [make_robot(f"n{k}", *rng.uniform(0, 100, 2).tolist()) for k in range(1000)]
+    gateway.show(*crowd)
+    wait(lambda: len(at_desk.desk.picture) == 1002, 20)
+    wait(lambda: at_desk.view.layer.layer.featureCount() == 1002, 20)
+    model = at_desk.dock.table.model()
+    wait(lambda: model.rowCount() == 1002, 20)
+    names = [model.index(row, 0).data() for row in range(3)]
+    assert names == sorted(names)

@@ -1,0 +1,123 @@
+"""What the gateway tells of robots, taken apart into columns, and how far it can be trusted."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from fleet_supervisor.plugin.desk.picture import STATES, RobotPicture
+from fleet_supervisor.plugin.wire.mailbox import Mailbox
+from fleet_supervisor.plugin.wire.position_rows import sightings
+from fleet_supervisor.plugin.wire.sightings import Sightings
+from fleet_supervisor.robot_bridge.liveness import liveness
+from fleet_supervisor.robot_bridge.messages import RobotState
+from hypothesis import given
+from hypothesis import strategies as st
+
+
+def told(robot="r1", **more):
+    return {"robot": robot, "state": "fresh", "age": 0.5, "link": "sql", "x": 1.0, "y": 2.0, **more}
+
+
+def test_a_message_becomes_columns_and_what_was_not_said_is_nan():
+    made = sightings([told(v=1.5), told("r2", x=None, y=None, accuracy=0.3)], 7.0)
+    assert made.names == ["r1", "r2"]
+    np.testing.assert_array_equal(made.column("x"), [1.0, np.nan])
+    np.testing.assert_array_equal(made.column("v"), [1.5, np.nan])
+    np.testing.assert_array_equal(made.column("accuracy"), [np.nan, 0.3])
+    assert made.column("received").tolist() == [7.0, 7.0]
+    assert made.report(0).v == 1.5
+    assert made.report(1).x is None
+
+
+@pytest.mark.parametrize("bad", [float("nan"), float("inf"), "3", True, [1], 10**400])
+def test_a_number_that_is_none_is_named_with_its_robot(bad):
+    with pytest.raises(ValueError, match="theta of robot r2 is"):
+        sightings([told(), told("r2", theta=bad)], 0.0)
+
+
+@pytest.mark.parametrize("missing", ["robot", "state", "age", "link"])
+def test_what_every_report_has_may_not_be_missing(missing):
+    values = told()
+    del values[missing]
+    with pytest.raises((KeyError, ValueError)):
+        sightings([values], 0.0)
+
+
+def test_a_robot_that_is_told_twice_counts_as_told_last():
+    made = sightings([told(x=1.0), told("r2"), told(x=9.0)], 0.0)
+    assert made.names == ["r1", "r2"]
+    assert made.column("x")[0] == 9.0
+    assert made.report(0).x == 9.0
+
+
+reports = st.lists(
+    st.tuples(st.sampled_from(["a", "b", "c", "d"]), st.floats(-9, 9), st.integers(0, 5)), max_size=30
+)
+
+
+@given(st.lists(reports, max_size=6))
+def test_merging_messages_keeps_of_each_robot_what_arrived_last(messages):
+    known: dict[str, tuple[int, float]] = {}
+    table = Sightings()
+    for message in messages:
+        arrived = message[0][2] if message else 0
+        table.merge(sightings([told(name, x=x) for name, x, _ in message], float(arrived)))
+        for name, x in {name: x for name, x, _ in message}.items():
+            if name not in known or arrived >= known[name][0]:
+                known[name] = (arrived, x)
+    found = {name: table.column("x")[row] for row, name in enumerate(table.names)}
+    assert found == {name: x for name, (_, x) in known.items()}
+    assert {name: table.report(table.row(name)).x for name in known} == found
+
+
+def test_a_robot_keeps_its_row():
+    picture = RobotPicture()
+    picture.merge(sightings([told("b"), told("a")], 0.0))
+    picture.merge(sightings([told("a", x=5.0)], 1.0))
+    picture.merge(sightings([told("c"), told("b", x=7.0)], 2.0))
+    arrays = picture.arrays(2.0)
+    assert arrays.names == ["b", "a", "c"]
+    assert arrays.xy[:, 0].tolist() == [7.0, 5.0, 1.0]
+    assert [picture.row(name) for name in "bac"] == [0, 1, 2]
+
+
+def test_after_another_site_nothing_is_known_of_robots_before():
+    picture = RobotPicture()
+    picture.merge(sightings([told("a")], 0.0))
+    picture.clear()
+    assert len(picture) == 0
+    picture.merge(sightings([told("b")], 0.0))
+    assert [view.name for view in picture.views(0.0)] == ["b"]
+
+
+def eighths(least, most):
+    """Seconds whose sums are exact."""
+    return st.integers(8 * least, 8 * most).map(lambda number: number / 8)
+
+
+@given(
+    eighths(0, 30),
+    st.booleans(),
+    st.sampled_from(list(RobotState)),
+    eighths(1, 5),
+    eighths(1, 10),
+    eighths(0, 20),
+)
+def test_columns_age_as_liveness_says_for_one_robot(age, stopped, state, stale_after, more, later):
+    lost_after = stale_after + more
+    picture = RobotPicture(stale_after, lost_after)
+    picture.merge(sightings([told(age=age, stopped=stopped, state=state.value)], 100.0))
+    here = liveness(age + later, ended_in_order=stopped, stale_after=stale_after, lost_after=lost_after)
+    expected = state if here is RobotState.FRESH or state in (RobotState.LOST, RobotState.OFFLINE) else here
+    view = picture.view("r1", 100.0 + later)
+    assert view.state is expected
+    assert STATES[picture.arrays(100.0 + later).state[0]] is expected
+
+
+def test_a_window_that_looks_seldom_finds_the_newest_of_every_robot():
+    mailbox = Mailbox()
+    for second in range(5):
+        mailbox.put_robots(sightings([told(f"r{second % 2}", x=float(second))], float(second)))
+    taken = mailbox.take().robots
+    assert {name: taken.report(row).x for row, name in enumerate(taken.names)} == {"r0": 4.0, "r1": 3.0}
+    assert len(mailbox.take().robots) == 0

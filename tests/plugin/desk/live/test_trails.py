@@ -1,0 +1,154 @@
+"""Where robots came from: samples, and the image of them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from fleet_supervisor.plugin.desk.live.screen import Screen
+from fleet_supervisor.plugin.desk.live.trail_image import TrailImage
+from fleet_supervisor.plugin.desk.live.trails import LENGTHS, Trails
+from qgis.PyQt.QtGui import QImage, QPainter
+
+SCREEN = Screen((0.0, 0.0), (0.0, 0.0), (1.0, 0.0), (0.0, 1.0), 200, 100)
+
+
+def same(xy):
+    return xy
+
+
+def drive(trails, seconds, robots=1, step=1.0, image=None, screen=SCREEN, speed=1.0):
+    """Drive along y = 50 from x = 10."""
+    for number in range(int(seconds / step) + 1):
+        at = np.column_stack([np.full(robots, 10.0 + speed * number * step), 50.0 + 3.0 * np.arange(robots)])
+        trails.extend(at, number * step)
+        if image is not None:
+            image.extend(at, screen, same, number * step)
+    return at
+
+
+def painted(image, screen=SCREEN):
+    """Return the alpha of what is painted, (height, width) device pixels."""
+    shape = QImage(
+        round(screen.width * screen.ratio),
+        round(screen.height * screen.ratio),
+        QImage.Format.Format_ARGB32_Premultiplied,
+    )
+    shape.setDevicePixelRatio(screen.ratio)
+    shape.fill(0)
+    painter = QPainter(shape)
+    image.paint(painter, screen)
+    painter.end()
+    bits = shape.bits()
+    bits.setsize(shape.sizeInBytes())
+    return np.frombuffer(bits, np.uint8).reshape(shape.height(), shape.width(), 4)[:, :, 3].copy()
+
+
+def test_a_trail_grows_with_the_way_and_is_cut_by_time(qgis_app):
+    trails = Trails()
+    drive(trails, 120)
+    trail = trails.of(0, now=120.0)
+    assert trail[-1].tolist() == [130.0, 50.0, 0.0]
+    assert trail[0].tolist() == [40.0, 50.0, 90.0]
+    assert len(trail) == 91
+    assert len(trails.of(0, now=400.0)) == 0
+
+
+def test_a_robot_that_stands_adds_nothing_and_one_without_a_place_has_none():
+    trails = Trails()
+    for second in range(50):
+        trails.extend(np.array([[1.0, 2.0], [np.nan, np.nan]]), float(second))
+    assert trails.taken.tolist() == [1, 0]
+
+
+def test_robots_that_come_later_get_rows_and_many_get_shorter_trails():
+    trails = Trails()
+    drive(trails, 20)
+    before = trails.generation
+    many = 400
+    for second in range(21, 60):
+        at = np.column_stack([np.full(many, 10.0 + second), np.arange(many)])
+        trails.extend(at, float(second))
+    assert trails.length == LENGTHS[-1]
+    assert trails.generation > before
+    trail = trails.of(0, now=59.0)
+    assert trail[-1, :2].tolist() == [69.0, 0.0]
+    assert trail[0, 2] == pytest.approx(15.0)
+
+
+def test_memory_is_bounded_however_long_it_lasts():
+    trails = Trails()
+    drive(trails, 90)
+    size = trails._ring.nbytes
+    drive(trails, 2000, step=0.5)
+    assert trails._ring.nbytes == size
+
+
+def test_a_trail_is_painted_where_the_robot_was_and_nowhere_else(qgis_app):
+    trails = Trails()
+    image = TrailImage(trails)
+    drive(trails, 60, image=image)
+    alpha = painted(image)
+    assert (alpha[50, 12:70] > 0).all()
+    assert alpha[50, 72:].max() == 0
+    assert alpha[:45].max() == alpha[56:].max() == 0
+
+
+def test_it_fades_and_is_gone_when_it_is_old(qgis_app):
+    trails = Trails()
+    image = TrailImage(trails)
+    at = drive(trails, 60, image=image)
+    for _ in range(20):
+        image.extend(at, SCREEN, same, 60.0)
+    now = painted(image)[50]
+    assert now[65] > now[40] > now[15] > 0
+    for frame in range(40):
+        image.extend(at, SCREEN, same, 151.0 + frame * 0.05)
+    assert painted(image).max() == 0
+
+
+@pytest.mark.parametrize("ratio", [1.0, 1.5, 2.0])
+def test_after_the_view_has_moved_the_whole_trail_is_there_again(qgis_app, ratio):
+    trails = Trails()
+    image = TrailImage(trails)
+    at = drive(trails, 60, image=image)
+    moved = Screen((0.0, 0.0), (-20.0, -60.0), (2.0, 0.0), (0.0, 2.0), 200, 100, ratio)
+    image.extend(at, moved, same, 60.0)
+    # While the view still moves the old image goes along.
+    assert painted(image, moved)[round(40 * ratio), round(60 * ratio)] > 0
+    for _ in range(30):
+        image.extend(at, moved, same, 60.0)
+    alpha = painted(image, moved)
+    assert (alpha[round(40 * ratio), round(4 * ratio) : round(118 * ratio)] > 0).all()
+    assert alpha[: round(34 * ratio)].max() == 0
+
+
+def test_robots_of_another_site_leave_no_trail_of_those_before(qgis_app):
+    trails = Trails()
+    image = TrailImage(trails)
+    drive(trails, 60, image=image)
+    trails.clear()
+    at = np.array([[150.0, 20.0]])
+    trails.extend(at, 61.0)
+    image.extend(at, SCREEN, same, 61.0)
+    assert painted(image)[40:60].max() == 0
+
+
+def test_a_robot_that_is_put_elsewhere_far_off_draws_no_line_there(qgis_app):
+    trails = Trails()
+    image = TrailImage(trails)
+    for second, x in enumerate((10.0, 11.0, 90_000.0, 90_001.0)):
+        at = np.array([[x, 50.0]])
+        trails.extend(at, float(second))
+        image.extend(at, SCREEN, same, float(second))
+    assert painted(image)[50, 20:].max() == 0
+
+
+@pytest.mark.parametrize("step", [0.05, 0.3])
+def test_a_robot_that_takes_many_frames_for_a_pixel_leaves_a_trail_without_gaps(qgis_app, step):
+    trails = Trails()
+    image = TrailImage(trails)
+    drive(trails, 20.0, step=step, image=image, speed=1.0)
+    row = painted(image)[49:52].max(axis=0)
+    assert (row[12:29] > 0).all()
+    assert not row[:9].any()
+    assert not row[33:].any()

@@ -1,0 +1,234 @@
+"""From cones to robots: a double lane change, planned, sent, and placed by three robots of which one dies."""
+
+from __future__ import annotations
+
+import math
+import signal
+import sqlite3
+from itertools import combinations
+
+import numpy as np
+import pytest
+from fleet_supervisor.plugin.desk.cone_store import MARK
+from fleet_supervisor.robot_bridge.layouts.catalogue import LAYOUTS
+from qgis.core import QgsFeature, QgsGeometry, QgsPointXY, QgsProject, QgsVectorLayer
+from qgis.PyQt.QtCore import Qt
+from qgis.PyQt.QtTest import QTest
+from qgis.PyQt.QtWidgets import QAction, QApplication, QDockWidget, QMessageBox, QPushButton
+
+TOLERANCE = 0.20
+ROBOT_WIDTH = 0.5
+"""Metres; how wide the reference robot is taken to be (site.toml, [routes] robot_width_m)."""
+CONE_BASE = 0.285
+AWAY_AFTER = 3.0
+"""Seconds after which a robot has left the cone that it put down."""
+STARTS = {"r1": (24.0, 2.0, 0.0), "r2": (62.0, 2.0, 0.0), "r3": (104.0, 2.0, math.pi)}
+
+
+class Planner:
+    """The operator at the panel of cone plans."""
+
+    def __init__(self, operator, plugin, iface):
+        self.operator, self.plugin, self.iface = operator, plugin, iface
+        iface.findChild(QAction, "fleet_plan_panel").trigger()
+        self.dock = iface.findChild(QDockWidget, "fleet_plan_dock")
+
+    def place_layout(self, name, dimensions, x, y):
+        tool = next(part for part in self.plugin._parts if type(part).__name__ == "LayoutAction")
+        tool.take(LAYOUTS[name].of(dimensions))
+        self.operator.click_site(x, y)
+        layers = QgsProject.instance().mapLayers().values()
+        return next(layer for layer in layers if layer.customProperty(MARK))
+
+    def set_robots(self, carries, aboard, speed, count=3):
+        form = self.dock.robots
+        self.operator.wait("robots in the form", lambda: form.rowCount() == count, 10)
+        for row in range(form.rowCount()):
+            for column, value in enumerate((carries, aboard, speed), 1):
+                form.item(row, column).setText(str(value))
+
+    def press(self, name):
+        button = self.dock.findChild(QPushButton, name)
+        self.operator.wait(f"{name} being usable", lambda: button.isEnabled() and button.isVisible(), 20)
+        QTest.mouseClick(button, Qt.MouseButton.LeftButton)
+
+    def add_store(self, x, y):
+        """Add a layer with a store at a place of the site."""
+        e, n = self.operator.desk.site.origin
+        layer = QgsVectorLayer("Point?crs=EPSG:32633&field=id:string", "Stores", "memory")
+        feature = QgsFeature(layer.fields())
+        feature.setAttribute("id", "depot")
+        feature.setGeometry(QgsGeometry.fromPointXY(QgsPointXY(e + x, n + y)))
+        layer.dataProvider().addFeatures([feature])
+        QgsProject.instance().addMapLayer(layer)
+        stores = self.dock.form.stores
+        stores.setCurrentIndex(stores.findData(layer.id()))
+
+    def solve(self, seconds):
+        self.dock.form.seconds.setValue(seconds)
+        self.press("fleet_plan_solve")
+        self.operator.wait("the plan", lambda: not self.dock.drafts.busy, seconds + 20)
+        assert self.dock.drafts.draft is not None
+        return self.dock.drafts.draft.plan
+
+    def send(self):
+        self.press("fleet_plan_send")
+        self.answer("fleet_plan_question_send")
+
+    def answer(self, button):
+        box = self.dock.findChild(QMessageBox, "fleet_plan_question")
+        QTest.mouseClick(box.findChild(QPushButton, button), Qt.MouseButton.LeftButton)
+        QApplication.processEvents()
+
+    def choose_placed(self, text):
+        which = self.dock.placed.which
+        self.operator.wait(text, lambda: which.findText(text) >= 0, 10)
+        which.setCurrentIndex(which.findText(text))
+
+    def tasks_of(self, robot):
+        queue = self.operator.desk.queues.get(robot)
+        return [] if queue is None else queue.tasks
+
+    @property
+    def done(self):
+        return self.dock.driven.progress.done
+
+
+@pytest.fixture
+def planner(operator, plugin, iface):
+    return Planner(operator, plugin, iface)
+
+
+def tracks(database):
+    """Return each robot's recorded positions, (n, 3): seconds, x, y."""
+    with sqlite3.connect(database) as connection:
+        rows = connection.execute(
+            "select robot, received_at, x, y from trajectories order by received_at"
+        ).fetchall()
+    return {
+        robot: np.array([row[1:] for row in rows if row[0] == robot]) for robot in {row[0] for row in rows}
+    }
+
+
+def stored_tracks(database, operator):
+    """Return the tracks once nothing new is stored of robots that stand."""
+    seen = [-1]
+
+    def settled():
+        now = sum(len(track) for track in tracks(database).values())
+        before, seen[0] = seen[0], now
+        QTest.qWait(1200)
+        return now == before
+
+    operator.wait("the last positions being stored", settled, 20)
+    return tracks(database)
+
+
+def least_distance_to(track, x, y):
+    """Return how near the track, joined by straight lines, comes to a place."""
+    start, step = track[:-1, 1:], np.diff(track[:, 1:], axis=0)
+    length = np.maximum((step**2).sum(axis=1), 1e-12)
+    part = np.clip(((np.array([x, y]) - start) * step).sum(axis=1) / length, 0.0, 1.0)
+    return float(np.hypot(*(start + part[:, None] * step - (x, y)).T).min())
+
+
+def least_distance(a, b):
+    """Return how near two robots came to one another at the same time; who is silent stands where it was."""
+    times = np.arange(max(a[0, 0], b[0, 0]), max(a[-1, 0], b[-1, 0]), 0.05)
+    here, there = (
+        np.column_stack([np.interp(times, one[:, 0], one[:, axis]) for axis in (1, 2)]) for one in (a, b)
+    )
+    return float(np.hypot(*(here - there).T).min())
+
+
+def test_three_robots_place_a_lane_change_and_two_go_on_when_one_is_killed(
+    impatient_loop, operator, planner, tmp_path
+):
+    loop = impatient_loop
+    robots = {name: loop.start_robot(name, pose, speed=4.0) for name, pose in STARTS.items()}
+    operator.connect_to(loop, list(STARTS))
+    layer = planner.place_layout("iso3888_1", {"vehicle_width": 1.7, "exit_length": 15}, 12.0, 6.2)
+    cones = {str(feature["id"]) for feature in layer.getFeatures()}
+    assert len(cones) == 18
+    planner.set_robots(carries=12, aboard=12, speed=2.5)
+    plan = planner.solve(2.0)
+    assert {stop.id for _, stop in plan.all_stops()} == cones
+    assert not planner.dock.drafts.draft.meetings, planner.dock.bar.trouble.text()
+    assert not len(operator.desk.queues), "nothing is sent before the operator says so"
+    planner.send()
+    operator.wait("cones being placed", lambda: len(planner.done) >= 4, 60)
+    of_r1 = {stop.id for stop in plan.robot("r1").stops}
+    operator.wait("two cones of r1", lambda: len(planner.done & of_r1) >= 2, 60)
+    robots["r1"].send_signal(signal.SIGKILL)
+    operator.wait("r1 being missed", lambda: "r1" in planner.dock.driven.trouble.away, 20)
+    left = of_r1 - planner.done
+    assert left
+    planner.press("fleet_plan_rest")
+    operator.wait("a new plan", lambda: planner.dock.driven.offer is not None, 20)
+    offer = planner.dock.driven.offer
+    taken = {stop.id for _, stop in offer.plan.all_stops()}
+    assert left <= taken and offer.plan.robot("r1").lost
+    assert not offer.meetings, planner.dock.bar.trouble.text()
+    assert operator.desk.queues.get("r1").tasks, "nothing is taken over before the operator confirms"
+    planner.press("fleet_plan_confirm")
+    operator.wait("every cone being placed", lambda: planner.done == cones, 90)
+    operator.wait("quiet", lambda: not planner.dock.driven.busy, 10)
+
+    planner.dock.tabs.setCurrentWidget(planner.dock.placed)
+    report = planner.dock.placed.placements
+    assert sorted(one.cone for one in report) == sorted(cones)
+    assert max(one.deviation for one in report) < TOLERANCE
+    assert {one.robot for one in report if one.cone in left} <= {"r2", "r3"}
+    planner.dock.placed.save(str(tmp_path / "report.csv"))
+    assert len((tmp_path / "report.csv").read_text().splitlines()) == 1 + len(cones)
+
+    found = stored_tracks(tmp_path / "fleet.db", operator)
+    for a, b in combinations(sorted(found), 2):
+        assert least_distance(found[a], found[b]) > ROBOT_WIDTH, (a, b)
+    last_of = {one.robot: one.cone for one in report}
+    for one in report:
+        for robot, track in found.items():
+            after = track[track[:, 0] > one.placed_at + AWAY_AFTER]
+            if len(after) > 1 and last_of[robot] != one.cone:
+                assert least_distance_to(after, one.x, one.y) > (ROBOT_WIDTH + CONE_BASE) / 2, (
+                    robot,
+                    one.cone,
+                )
+
+
+def test_a_lost_robots_cones_are_taken_over_without_a_question_when_that_is_switched_on_and_collected_again(
+    impatient_loop, operator, planner, iface
+):
+    loop = impatient_loop
+    starts = {"r1": (24.0, 2.0, 0.0), "r2": (40.0, 2.0, 0.0)}
+    robots = {name: loop.start_robot(name, pose, speed=4.0) for name, pose in starts.items()}
+    operator.connect_to(loop, list(starts))
+    lane = {"speed": 5, "approach": 10, "width": 4, "spacing": 12}
+    layer = planner.place_layout("braking_lane", lane, 18.0, 8.0)
+    cones = {str(feature["id"]) for feature in layer.getFeatures()}
+    planner.set_robots(carries=9, aboard=9, speed=3.0, count=2)
+    planner.solve(1.0)
+    assert not planner.dock.bar.by_itself.isChecked()
+    planner.dock.bar.by_itself.click()
+    planner.send()
+    operator.wait("r1 being under way", lambda: planner.tasks_of("r1"), 20)
+    robots["r1"].send_signal(signal.SIGKILL)
+    operator.wait("every cone being placed", lambda: planner.done == cones, 90)
+    operator.wait("quiet", lambda: not planner.dock.driven.busy, 10)
+    assert planner.dock.driven.driven.plan.robot("r1").lost
+    assert {one.robot for one in operator.desk.placements} <= {"r1", "r2"}
+
+    planner.press("fleet_plan_clear")
+    planner.dock.tabs.setCurrentWidget(planner.dock.placed)
+    planner.choose_placed("layout braking_lane")
+    planner.press("fleet_placed_collect")
+    operator.wait("the want of a store", lambda: any("no store" in text for text in iface.texts()), 20)
+    planner.add_store(50.0, 14.0)
+    planner.press("fleet_placed_collect")
+    operator.wait("a plan", lambda: planner.dock.drafts.draft and not planner.dock.drafts.busy, 20)
+    planner.dock.tabs.setCurrentIndex(0)
+    stops = [stop for _, stop in planner.dock.drafts.draft.plan.all_stops() if stop.is_target]
+    assert {stop.kind for stop in stops} == {"collect"} and len(stops) == len(cones)
+    planner.send()
+    operator.wait("all of it being collected", lambda: len(planner.done) == len(cones), 90)
+    assert all(one.collected_at is not None for one in operator.desk.placements)

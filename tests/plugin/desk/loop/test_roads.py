@@ -1,0 +1,130 @@
+"""Routes along the roads, closed roads and conflicts: a real gateway, real robots, real clicks."""
+
+from __future__ import annotations
+
+import pytest
+from fleet_supervisor.robot_bridge.messages import CommandState
+from qgis.core import QgsPointXY, QgsProject
+from qgis.PyQt.QtCore import Qt
+from qgis.PyQt.QtTest import QTest
+from qgis.PyQt.QtWidgets import QAction, QComboBox, QLabel, QLineEdit, QPushButton, QToolButton
+
+CRS = "EPSG:32633"
+SOUTH = (60.0, 8.0)
+"""On the road from (16, 8) to (120, 8)."""
+
+
+@pytest.fixture
+def at_roads(loop, operator):
+    """One robot at the beginning of the southern road, selected, and the tool for routes in hand."""
+    loop.start_robot("r1", (10, 8, 0), speed=5)
+    operator.connect_to(loop, ["r1"])
+    operator.show_site()
+    operator.select("r1")
+    operator.choose("fleet_road_route")
+    return operator
+
+
+def move_to(operator, x, y):
+    e, n = operator.desk.site.origin
+    QTest.mouseMove(operator.canvas.viewport(), operator._on_canvas(QgsPointXY(e + x, n + y), CRS))
+
+
+def preview(operator):
+    """The line that follows the mouse, in the site frame; empty while there is none."""
+    route = operator.desk.preview.route
+    return [] if route is None else route.points
+
+
+def layer(name):
+    found = QgsProject.instance().mapLayersByName(name)
+    return found[0] if found else None
+
+
+def part(operator, kind, name):
+    return operator._window.findChild(kind, name)
+
+
+def close_road(operator, x, y, reason):
+    part(operator, QAction, "fleet_close_road").trigger()
+    operator.click_site(x, y)
+    operator.wait("the dialog", lambda: part(operator, QLineEdit, "fleet_closure_reason"), 5)
+    part(operator, QLineEdit, "fleet_closure_reason").setText(reason)
+    part(operator, QComboBox, "fleet_closure_time").setCurrentIndex(2)
+    QTest.mouseClick(part(operator, QPushButton, "fleet_closure_confirm"), Qt.MouseButton.LeftButton)
+    operator.wait("the road closed", lambda: operator.desk.roads.closures, 10)
+
+
+def test_the_way_along_the_roads_follows_the_mouse_and_a_click_takes_it(at_roads):
+    operator = at_roads
+    move_to(operator, 126.0, 8.0)
+    operator.wait("the way to the mouse", lambda: len(preview(operator)) > 50, 10)
+    tool = operator.canvas.mapTool()
+    assert len(tool._way.line) == len(preview(operator))
+    move_to(operator, 138.0, 70.0)
+    operator.wait("the other way", lambda: preview(operator) and preview(operator)[-1][1] > 60, 10)
+    assert operator.sent_to("r1") == []
+    operator.click_site(100.0, 8.0)
+    operator.wait("the route", lambda: operator.desk.drafts.draft, 10)
+    operator.click_site(126.0, 8.0)
+    operator.wait("the second leg", lambda: len(operator.desk.drafts.draft.legs) == 2, 10)
+    text = part(operator, QLabel, "fleet_draft_text").text()
+    assert "along the roads" in text
+    assert "asphalt" in text
+    QTest.keyClick(operator.canvas, Qt.Key.Key_Backspace)
+    assert len(operator.desk.drafts.draft.legs) == 1
+    operator.press("fleet_send")
+    command = operator.wait_for_state("r1", "SetPath", CommandState.REACHED)
+    assert max(abs(y - 8.0) for _, y in command.params["points"]) < 0.6
+    assert command.params["points"][-1] == pytest.approx([100.0, 8.0], abs=0.5)
+
+
+def test_a_road_is_closed_by_a_click_the_robot_on_it_sent_round_and_opened_again(loop, operator):
+    loop.start_robot("r1", (10, 8, 0), speed=0.4)
+    operator.connect_to(loop, ["r1"])
+    operator.select("r1")
+    operator.choose("fleet_road_route")
+    operator.click_site(126.0, 8.0)
+    operator.wait("the route", lambda: operator.desk.drafts.draft, 10)
+    operator.press("fleet_send")
+    first = operator.wait_for_state("r1", "SetPath", CommandState.ACKNOWLEDGED)
+    close_road(operator, *SOUTH, "tree on the road")
+    operator.wait("another way", lambda: len(operator.sent_to("r1")) == 2, 10)
+    (row,) = layer("Closed roads").getFeatures()
+    assert (row["reason"], row["closed_by"], row["edges"]) == ("tree on the road", "anna", 1)
+    assert row["until"] != ""
+    newest = operator.desk.book.get(operator.sent_to("r1")[-1].command)
+    assert newest.command != first.command
+    box_before = operator.desk.roads.closures
+    operator.click_site(*SOUTH)
+    operator.wait("the question", lambda: part(operator, QPushButton, "fleet_open_road_confirm"), 5)
+    assert operator.desk.roads.closures == box_before
+    QTest.mouseClick(part(operator, QPushButton, "fleet_open_road_confirm"), Qt.MouseButton.LeftButton)
+    operator.wait("the road open", lambda: operator.desk.roads.closures == (), 10)
+    assert layer("Closed roads").featureCount() == 0
+
+
+def test_a_conflict_is_shown_with_place_and_time_and_one_gives_way(loop, operator):
+    loop.start_robot("r1", (10, 8, 0), speed=1)
+    loop.start_robot("r2", (119, 8, 3.14), speed=1)
+    operator.connect_to(loop, ["r1", "r2"])
+    operator.show_site()
+    operator.choose("fleet_road_route")
+    for robot, goal in (("r1", (126.0, 8.0)), ("r2", (20.0, 8.0))):
+        operator.select(robot)
+        operator.click_site(*goal)
+        operator.wait("the route", lambda: operator.desk.drafts.draft, 10)
+        operator.press("fleet_send")
+        operator.wait_for_state(robot, "SetPath", CommandState.ACKNOWLEDGED)
+
+    def told():
+        """Return how the robots meet; until the second is under way the first meets it standing."""
+        rows = list(layer("Conflicts").getFeatures()) if layer("Conflicts") else []
+        return [(sorted((row["robot"], row["other"])), row["kind"]) for row in rows]
+
+    operator.wait("the conflict", lambda: told() == [(["r1", "r2"], "head-on")], 15)
+    button = part(operator, QToolButton, "fleet_give_way_r1")
+    QTest.mouseClick(button, Qt.MouseButton.LeftButton)
+    operator.wait("no conflict", lambda: layer("Conflicts").featureCount() == 0, 15)
+    points = operator.sent_to("r1")[-1].params["points"]
+    assert max(y for x, y in points if 20 < x < 110) == pytest.approx(22.0, abs=1.0)

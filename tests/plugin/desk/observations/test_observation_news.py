@@ -1,0 +1,79 @@
+"""What the gateway tells of observations, from the wire to the desk's book; no QGIS canvas."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+from fleet_supervisor.plugin.desk import observation_book
+from fleet_supervisor.plugin.desk.observation_book import ObservationBook
+from fleet_supervisor.plugin.errors import LinkError
+from fleet_supervisor.plugin.wire.mailbox import Mailbox
+from fleet_supervisor.plugin.wire.protocol import DeskProtocol
+from fleet_supervisor.robot_bridge.messages import ObservationState
+
+
+def told(number, state="pending", **more):
+    values = {
+        "observation": number,
+        "robot": "r1",
+        "op": "SetObject",
+        "object": f"bin-{number}",
+        "x": 1.0,
+        "y": 2.0,
+    }
+    return {**values, "received_at": 1_790_000_000.0 + number, "state": state, **more}
+
+
+@pytest.fixture
+def mailbox():
+    return Mailbox()
+
+
+@pytest.fixture
+def protocol(mailbox):
+    return DeskProtocol("anna", 10.0, "ws://here/desk", mailbox, lambda: 0.0)
+
+
+def hear(protocol, params):
+    protocol.receive(json.dumps({"jsonrpc": "2.0", "method": "observation", "params": params}))
+
+
+def test_the_newest_of_each_is_kept_until_the_window_looks(protocol, mailbox):
+    hear(protocol, told(1))
+    hear(protocol, told(2))
+    hear(protocol, told(1, "rejected", reviewed_by="bob"))
+    found = mailbox.take().observations.observations
+    assert {number: one.state.value for number, one in found.items()} == {1: "rejected", 2: "pending"}
+    assert mailbox.take().observations.observations == {}
+
+
+def test_what_is_no_observation_ends_the_link_with_its_text(protocol):
+    with pytest.raises(LinkError, match="observation"):
+        hear(protocol, {"observation": 1, "state": "lovely", "robot": "r1"})
+
+
+def book_of(mailbox, protocol, *all_told):
+    book = ObservationBook()
+    for one in all_told:
+        hear(protocol, one)
+    return book, book.merge(mailbox.take().observations)
+
+
+def test_those_that_wait_come_first_and_the_newest_of_them(mailbox, protocol):
+    reviewed = told(4, "accepted")
+    book, new = book_of(mailbox, protocol, told(1), reviewed, told(3), told(2, "rejected"))
+    assert sorted(new) == [1, 2, 3, 4]
+    assert [one.observation for one in book.ordered()] == [3, 1, 4, 2]
+    assert book.pending == 2
+    hear(protocol, told(3))
+    assert book.merge(mailbox.take().observations) == []
+
+
+def test_of_very_many_reviewed_ones_the_oldest_are_forgotten_and_none_that_waits(
+    mailbox, protocol, monkeypatch
+):
+    monkeypatch.setattr(observation_book, "MOST_REVIEWED", 2)
+    book, _ = book_of(mailbox, protocol, told(1), *(told(n, "accepted") for n in range(2, 7)), told(7))
+    assert sorted(one.observation for one in book) == [1, 5, 6, 7]
+    assert book.get(1).state is ObservationState.PENDING

@@ -1,0 +1,75 @@
+"""Robots that would come too near to one another by a plan."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from fleet_supervisor.plugin.desk.plans.near_meetings import meetings, positions
+from fleet_supervisor.robot_bridge.assignment.job import Robot
+from fleet_supervisor.robot_bridge.assignment.plan import Plan, PlannedTrip, RobotPlan, Stop
+
+
+def driving(name, start, *stops, ready=0.0, wait=0.0):
+    """A robot at 1 m/s along straight lines, that waits at each stop."""
+    made, at, clock = [], np.array(start, dtype=float), ready
+    for number, stop in enumerate(stops):
+        there = np.array(stop, dtype=float)
+        metres = float(np.hypot(*(there - at)))
+        arrival = clock + metres
+        path = (tuple(at.tolist()), tuple(there.tolist()))
+        made.append(
+            Stop(
+                "place",
+                f"{name}{number}",
+                *stop,
+                0.0,
+                metres,
+                arrival,
+                arrival,
+                arrival + wait,
+                0,
+                0,
+                0,
+                0,
+                path,
+            )
+        )
+        at, clock = there, arrival + wait
+    robot = Robot(name, *start, 8, 1.0, aboard=8, ready_s=ready)
+    return RobotPlan(robot, (PlannedTrip(1, tuple(made)),))
+
+
+def plan(*robots):
+    return Plan(robots, (), (), "stay", "balanced", "by hand", "straight lines")
+
+
+def test_two_that_meet_head_on_are_named_with_the_time_and_place():
+    (found,) = meetings(plan(driving("a", (0, 0), (20, 0)), driving("b", (20, 0), (0, 0))), 2.0)
+    assert (found.robot, found.other) == ("a", "b")
+    assert found.at_s == pytest.approx(10, abs=0.6) and (found.x, found.y) == pytest.approx((10, 0), abs=0.6)
+    assert (
+        found.metres < 0.6 and "a and b come within" in found.in_words() and "after 0:10" in found.in_words()
+    )
+
+
+def test_the_same_ways_at_other_times_are_no_meeting():
+    first = driving("a", (0, 0), (20, 0))
+    assert meetings(plan(first, driving("b", (10, -30), (10, 30), ready=30.0)), 2.0) == []
+
+
+def test_a_robot_that_stands_after_its_last_stop_is_met_there():
+    (found,) = meetings(plan(driving("a", (0, 0), (5, 0)), driving("b", (30, 0), (5.5, 0))), 2.0)
+    assert found.at_s > 20 and found.metres < 1.0
+
+
+def test_a_lost_robot_meets_nobody_and_one_alone_neither():
+    lost = driving("b", (0, 0), (5, 0))
+    lost = RobotPlan(lost.robot, (), lost=True)
+    assert meetings(plan(driving("a", (0, 0), (5, 0)), lost), 2.0) == []
+
+
+def test_positions_follow_the_stops_and_what_is_done_there():
+    one = driving("a", (0, 0), (10, 0), (10, 10), wait=5.0)
+    times = np.array([0.0, 5.0, 10.0, 14.0, 20.0, 25.0, 99.0])
+    expected = [(0, 0), (5, 0), (10, 0), (10, 0), (10, 5), (10, 10), (10, 10)]
+    assert positions(one, times) == pytest.approx(np.array(expected, dtype=float))

@@ -1,0 +1,165 @@
+"""How far a plan is, from what the gateway tells: done, failed, lost, and what is left then."""
+
+from __future__ import annotations
+
+import itertools
+
+import pytest
+from fleet_supervisor.plugin.desk.plans.cone_source import ConeFacts
+from fleet_supervisor.plugin.desk.plans.progress import Progress, Trouble, situation_of, trouble_of
+from fleet_supervisor.plugin.desk.plans.task_rows import sent_stops, tasks_of
+from fleet_supervisor.robot_bridge.assignment.editing import replanned_by_hand
+from fleet_supervisor.robot_bridge.assignment.job import Job, Robot, Store, Target
+from fleet_supervisor.robot_bridge.assignment.replanning import replan
+from fleet_supervisor.robot_bridge.assignment.solving import Wanted, assign
+from fleet_supervisor.robot_bridge.assignment.travel import StraightTravel
+from fleet_supervisor.robot_bridge.messages import (
+    PlacementReport,
+    QueueReport,
+    QueueState,
+    RobotState,
+    TaskKind,
+    TaskReport,
+    TaskState,
+)
+
+BEGAN = 1_700_000_000.0
+
+
+class Driven:
+    """Two robots with three cones each, sent; the test says what becomes of their tasks."""
+
+    def __init__(self, stores=(), aboard=4):
+        cones = [Target(f"c{n}", 10.0 * n, 0.0, service_s=2.0) for n in range(1, 4)]
+        cones += [Target(f"d{n}", 100.0 + 10.0 * n, 50.0, service_s=2.0) for n in range(1, 4)]
+        robots = (Robot("r1", 0, 0, 4, aboard=aboard), Robot("r2", 100, 50, 4, aboard=aboard))
+        job = Job(tuple(cones), robots, stores, "stay")
+        first = assign(job, StraightTravel(job), Wanted("distance", "preview"))
+        names = [["c1", "c2", "c3"], ["d1", "d2", "d3"]]
+        trips = [[row] if aboard else [[], row] for row in names]
+        self.plan = replanned_by_hand(first, StraightTravel, trips)
+        self.facts = {cone.id: ConeFacts(cone.id, "row") for cone in cones}
+        numbers = itertools.count(1)
+        self.tasks = tasks_of(self.plan, "plan-1", self.facts, lambda: f"task-{next(numbers):04d}")
+        self.progress = Progress("plan-1", self.facts, BEGAN)
+        for one in self.plan.robots:
+            self.progress.sent(sent_stops(one, self.tasks[one.robot.id]))
+
+    def task(self, robot, number, state, **more):
+        one = self.tasks[robot][number]
+        known = {"cone": one.cone, "plan": one.plan, "label": one.label, **more}
+        return TaskReport(one.task, robot, one.kind, state, one.x, one.y, "anna", BEGAN, **known)
+
+    def tell(self, robot, states, robot_state=RobotState.FRESH, ended_known=10):
+        """Tell of a queue whose first tasks are in ``states``, the others waiting."""
+        states = [*states, *[TaskState.WAITING] * (len(self.tasks[robot]) - len(states))]
+        all_of_them = [self.task(robot, number, state) for number, state in enumerate(states)]
+        open_ones = [
+            t for t in all_of_them if t.state in (TaskState.WAITING, TaskState.CURRENT, TaskState.FAILED)
+        ]
+        ended = [t for t in reversed(all_of_them) if t not in open_ones][:ended_known]
+        report = QueueReport(robot, 1, QueueState.RUNNING, robot_state, open_ones, ended)
+        self.progress.take_queue(report)
+        return report
+
+    def placed(self, robot, number, cone):
+        report = PlacementReport(
+            number, "t", robot, 1.0, 0.0, 1.1, 0.0, 0.0, 0.1, BEGAN + number, "c", cone=cone, plan="plan-1"
+        )
+        self.progress.take_placement(report)
+
+
+@pytest.fixture
+def driven():
+    return Driven()
+
+
+DONE, CURRENT, WAITING, FAILED = TaskState.DONE, TaskState.CURRENT, TaskState.WAITING, TaskState.FAILED
+
+
+def test_tasks_hold_paths_kinds_and_names_in_the_order_of_the_plan(driven):
+    tasks = driven.tasks["r1"]
+    assert [task.cone for task in tasks] == ["c1", "c2", "c3"]
+    assert all(task.kind is TaskKind.PLACE and task.plan == "plan-1" for task in tasks)
+    assert all(task.layout == "row" and task.path[-1] == (task.x, task.y) for task in tasks)
+    assert tasks[1].path[0] == pytest.approx((10, 0)) and tasks[1].x == 20
+
+
+def test_a_visit_to_a_store_is_a_task_that_only_drives():
+    driven = Driven((Store("depot", 0.0, 5.0),), aboard=0)
+    first = driven.tasks["r1"][0]
+    assert first.kind is TaskKind.DRIVE and first.label == "store depot" and first.cone is None
+
+
+def test_what_ended_and_what_was_placed_is_done_also_when_nobody_listened(driven):
+    driven.tell("r1", [DONE, CURRENT])
+    assert driven.progress.done == {"c1"} and driven.progress.state_of("c2") is CURRENT
+    driven.placed("r1", 2, "c2")
+    driven.placed("r1", 3, "c3")
+    assert driven.progress.done == {"c1", "c2", "c3"} and driven.progress.placed["c3"].deviation == 0.1
+    assert not driven.progress.is_finished(driven.plan)
+    driven.tell("r2", [DONE, DONE, DONE])
+    assert driven.progress.is_finished(driven.plan)
+
+
+def test_a_cone_of_another_plan_is_none_of_this_one(driven):
+    report = PlacementReport(9, "t", "r1", 1, 0, 1, 0, 0.0, 0.0, BEGAN, "c", cone="c1", plan="another")
+    driven.progress.take_placement(report)
+    assert driven.progress.done == set()
+
+
+def test_what_is_collected_is_done_when_it_was_collected_not_when_it_was_placed():
+    facts = {"c1 #5": ConeFacts("c1", "row", placement=5)}
+    progress = Progress("plan-2", facts, BEGAN)
+    values = (5, "t", "r1", 1.0, 0.0, 1.0, 0.0, 0.0, 0.0, BEGAN, "c")
+    progress.take_placement(PlacementReport(*values, cone="c1", plan="plan-1"))
+    assert progress.done == set()
+    progress.take_placement(PlacementReport(*values, cone="c1", plan="plan-1", collected_at=BEGAN + 9))
+    assert progress.done == {"c1 #5"}
+
+
+def test_a_lost_robot_with_cones_to_come_is_trouble_and_one_that_has_finished_is_not(driven):
+    queues = {
+        "r1": driven.tell("r1", [DONE, CURRENT], RobotState.LOST),
+        "r2": driven.tell("r2", [DONE, DONE, DONE], RobotState.OFFLINE),
+    }
+    trouble = trouble_of(driven.plan, driven.progress, queues)
+    assert trouble == Trouble(("r1",)) and "r1 is lost" in trouble.in_words()
+
+
+def test_what_a_lost_robot_was_doing_and_what_waited_is_shared_out_and_the_rest_stays(driven):
+    driven.tell("r1", [DONE, CURRENT], RobotState.LOST)
+    driven.tell("r2", [DONE, CURRENT])
+    places = {"r1": (15.0, 0.0), "r2": (115.0, 50.0)}
+    now = situation_of(driven.plan, driven.progress, places, Trouble(("r1",)), BEGAN + 30, try_again=False)
+    assert now.done == {"c1", "d1", "d2"} and now.lost == {"r1"}
+    r2 = now.robots["r2"]
+    # It finishes the cone that it is on: it is there then, with one of its four cones less for each.
+    assert (r2.x, r2.y, r2.aboard) == (120.0, 50.0, 2) and r2.ready_s >= 30
+    with_store = Driven((Store("depot", 100.0, 60.0),))
+    with_store.tell("r1", [DONE, CURRENT], RobotState.LOST)
+    with_store.tell("r2", [DONE, CURRENT])
+    now = situation_of(
+        with_store.plan, with_store.progress, places, Trouble(("r1",)), BEGAN + 30, try_again=False
+    )
+    new = replan(with_store.plan, StraightTravel, now, Wanted("distance", "preview"))
+    cones = {one.robot.id: [s.id for s in one.stops if s.is_target] for one in new.robots}
+    assert cones["r1"] == [] and sorted(cones["r2"]) == ["c2", "c3", "d3"] and new.robot("r1").lost
+
+
+def test_a_failed_cone_is_given_up_or_tried_again_as_the_operator_wants(driven):
+    queues = {"r1": driven.tell("r1", [DONE]), "r2": driven.tell("r2", [])}
+    task = driven.task("r1", 1, FAILED, reason="a wall")
+    queues["r1"] = QueueReport("r1", 2, QueueState.PAUSED, RobotState.FRESH, [task])
+    driven.progress.take_queue(queues["r1"])
+    trouble = trouble_of(driven.plan, driven.progress, queues)
+    assert trouble.failed == (("c2", "a wall"),)
+    for again, expected in ((False, {"c2": "a wall"}), (True, {})):
+        now = situation_of(driven.plan, driven.progress, {}, trouble, BEGAN + 9, try_again=again)
+        assert now.failed == expected and "c2" not in now.done
+
+
+def test_a_task_that_ended_while_the_desk_was_away_is_not_open_any_more(driven):
+    driven.tell("r1", [CURRENT])
+    driven.tell("r1", [DONE, DONE, CURRENT], ended_known=0)
+    assert driven.progress.state_of("c1") is DONE and driven.progress.state_of("c3") is CURRENT

@@ -1,0 +1,109 @@
+"""Where robots were at a moment, and what they were doing then; no QGIS canvas."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from fleet_supervisor.plugin.desk.picture import STATES
+from fleet_supervisor.plugin.desk.replay.history import SILENT_AFTER, History
+from fleet_supervisor.plugin.desk.replay.past_commands import marks, under_way_at
+from fleet_supervisor.plugin.desk.replay.replay_layer import PIECE, pieces
+from fleet_supervisor.robot_bridge.messages import CommandReport, CommandState, CommandStep, RobotState
+
+T0 = 1_790_000_000.0
+FRESH, LOST = STATES.index(RobotState.FRESH), STATES.index(RobotState.LOST)
+
+
+def place(robot, t, x, y=0.0, theta=0.0, v=1.0):
+    return [robot, T0 + t, x, y, theta, v, None, None]
+
+
+@pytest.fixture
+def history():
+    """r1 drives 10 m in 10 s and is silent for a minute; r2 begins later and turns across south."""
+    made = History()
+    made.add([place("r1", 0, 0.0), place("r2", 5, 50.0, theta=3.0), place("r1", 10, 10.0)])
+    made.add([place("r2", 9, 50.0, theta=-3.0), place("r1", 70, 10.0, 5.0)])
+    return made
+
+
+def test_between_positions_robots_are_on_the_line(history):
+    then = history.at(T0 + 4)
+    assert then.names == ["r1", "r2"]
+    assert then.xy[0].tolist() == [4.0, 0.0]
+    assert then.state[0] == FRESH
+    # r2 had not been heard of.
+    assert np.isnan(then.xy[1]).all()
+
+
+def test_a_heading_turns_the_short_way(history):
+    theta = history.at(T0 + 7).theta[1]
+    assert math.cos(theta) == pytest.approx(-1.0)
+
+
+def test_after_a_silence_a_robot_is_lost_where_it_was_and_does_not_slide_on(history):
+    soon = history.at(T0 + 12)
+    assert (soon.xy[0].tolist(), soon.state[0]) == ([10.0, 0.0], FRESH)
+    later = history.at(T0 + 10 + SILENT_AFTER + 1)
+    assert (later.xy[0].tolist(), later.state[0], later.v[0]) == ([10.0, 0.0], LOST, 0.0)
+    assert later.age[0] == SILENT_AFTER + 1
+    assert history.at(T0 + 70).xy[0].tolist() == [10.0, 5.0]
+
+
+def test_pages_in_any_number_give_the_same(history):
+    whole, by_one = History(), History()
+    rows = [place(f"r{k % 7}", k * 0.7, float(k), theta=k) for k in range(500)]
+    whole.add(rows)
+    for row in rows:
+        by_one.add([row])
+    for moment in (T0 - 1, T0, T0 + 33.3, T0 + 349.3, T0 + 400):
+        assert np.array_equal(whole.at(moment).xy, by_one.at(moment).xy, equal_nan=True)
+
+
+def test_nothing_is_nowhere():
+    assert History().at(T0).names == []
+
+
+@pytest.mark.parametrize("row", [["r1", T0], ["r1", None, 0, 0, 0, 0], ["r1", T0, math.nan, 0, 0, 0]])
+def test_what_is_no_position_is_refused(row):
+    with pytest.raises(ValueError, match="stored position"):
+        History().add([row])
+
+
+def command(name, robot, *steps, op="SetPosEnd"):
+    states = [CommandStep(CommandState(state), T0 + at, "anna") for state, at in steps]
+    return CommandReport(name, robot, op, {"x": 1.0, "y": 2.0}, "anna", states[-1].state, states)
+
+
+def test_commands_are_under_way_from_sending_to_their_end():
+    one = command("a", "r1", ("queued", 0), ("delivered", 1), ("acknowledged", 2), ("reached", 10))
+    newer = command("b", "r1", ("queued", 5), ("delivered", 6), ("aborted", 20))
+    other = command("c", "r2", ("queued", 8))
+    abort = command("d", "r1", ("queued", 15), op="Abort")
+    told = [newer, other, abort, one]
+
+    def at(seconds):
+        return {report.command for report in under_way_at(told, T0 + seconds)}
+
+    assert (at(-1), at(3), at(6), at(12), at(30)) == (set(), {"a"}, {"b"}, {"b", "c"}, {"c"})
+
+
+def test_marks_are_what_was_sent_and_how_it_ended():
+    one = command("a", "r1", ("queued", 0), ("delivered", 1), ("acknowledged", 2), ("reached", 10))
+    two = command("b", "r2", ("queued", 4), ("failed", 5))
+    found = marks([two, one], T0, T0 + 6)
+    told = [(mark.at - T0, mark.state.value) for mark in found]
+    assert told == [(0, "queued"), (4, "queued"), (5, "failed")]
+    assert found[0].text == "r1: target at 1.00, 2.00 · queued by anna"
+    assert [mark.at - T0 for mark in marks([two, one], T0, T0 + 60, ["r1"])] == [0, 10]
+
+
+def test_lines_are_short_and_joined_and_end_at_silences():
+    times = np.array([*np.arange(0, 20, 1.0), 100.0, 101.0, 0.0, 3.0])
+    robots = np.array([0] * 22 + [1] * 2)
+    found = pieces(robots, times, PIECE)
+    spans = [(times[piece[0]], times[piece[-1]]) for piece in found]
+    assert spans == [(0, 5), (5, 10), (10, 15), (15, 19), (100, 101), (0, 3)]
+    assert max(end - begin for begin, end in spans) <= PIECE

@@ -1,0 +1,270 @@
+"""The table sorts, filters and searches on real widgets, and keeps the selection while it does."""
+
+import numpy as np
+import pytest
+from fleet_supervisor.plugin.desk.robots.columns import COLUMNS, TITLES
+from fleet_supervisor.plugin.desk.robots.deviations import beside
+from fleet_supervisor.plugin.desk.robots.fleet_rows import Which
+from fleet_supervisor.plugin.desk.robots.robot_panel import WHICH
+from fleet_supervisor.robot_bridge.messages import CommandState, RobotState
+from qgis.core import (
+    QgsCoordinateReferenceSystem,
+    QgsCoordinateTransform,
+    QgsPointXY,
+    QgsProject,
+    QgsSettings,
+)
+from qgis.PyQt.QtCore import QPoint, Qt
+from qgis.PyQt.QtTest import QTest
+from qgis.PyQt.QtWidgets import QComboBox, QLabel, QLineEdit, QToolButton
+
+LEFT = Qt.MouseButton.LeftButton
+
+
+@pytest.fixture(autouse=True)
+def settings():
+    QgsSettings().remove("fleet_supervisor")
+    yield
+    QgsSettings().remove("fleet_supervisor")
+
+
+@pytest.fixture
+def table(at_desk, gateway, make_robot, wait):
+    gateway.show(
+        make_robot("r1", 50, 40, v=0.5, battery=0.8, latency=0.030),
+        make_robot("r2", 80, 60, v=1.5, battery=None, latency=0.002),
+        make_robot("r3", None, None, v=None, battery=0.25, link="sql", status="charging"),
+        make_robot("a9", 10, 10, v=0.0, battery=0.5, age=20.0, state=RobotState.LOST),
+    )
+    wait(lambda: len(at_desk.desk.picture) == 4)
+    at_desk.dock.table.refresh()
+    return at_desk.dock.table
+
+
+def column(table, title):
+    model = table.model()
+    return [model.index(row, TITLES.index(title)).data() for row in range(model.rowCount())]
+
+
+def click_head(table, title):
+    head = table.horizontalHeader()
+    section = TITLES.index(title)
+    x = head.sectionViewportPosition(section) + head.sectionSize(section) // 2
+    QTest.mouseClick(head.viewport(), LEFT, pos=QPoint(x, head.height() // 2))
+
+
+def type_search(window, text):
+    field = window.dock.findChild(QLineEdit, "fleet_robot_search")
+    field.clear()
+    QTest.keyClicks(field, text)
+
+
+# --- what stands in it ---
+
+
+def test_every_column_of_a_robot(table, at_desk):
+    row = column(table, "Robot").index("r1")
+    told = {title: column(table, title)[row] for title in TITLES}
+    age = told.pop("Age")
+    assert age.endswith(" s")
+    assert told == {
+        "Robot": "r1",
+        "State": "fresh",
+        "Task": "",
+        "Speed": "0.5 m/s",
+        "Batt.": "80%",
+        "Ping": "30 ms",
+        "Off": "",
+        "Link": "ws",
+        "Position": "50.00, 40.00",
+    }
+    third = column(table, "Robot").index("r3")
+    assert [column(table, title)[third] for title in ("Task", "Speed", "Link", "Position")] == [
+        "charging",
+        "",
+        "sql",
+        "",
+    ]
+
+
+def test_how_far_a_robot_is_off_its_path_then_off_its_target(table, at_desk, gateway, make_robot, wait):
+    path = {"points": [[40.0, 42.0], [60.0, 42.0]]}
+    gateway._queue("command-1", "r1", "SetPath", path)
+    gateway.step("command-1", CommandState.ACKNOWLEDGED, "r1")
+    wait(lambda: column(table, "Off")[1] == "2.00 m")
+    assert column(table, "Task")[1] == "on its route"
+    gateway.step("command-1", CommandState.REACHED, "r1", deviation=0.07)
+    wait(lambda: column(table, "Off")[1] == "0.07 m")
+
+
+def test_how_far_beside_a_line():
+    line = np.array([(0.0, 0.0), (10.0, 0.0), (10.0, 10.0)])
+    assert beside(line, np.array((5.0, 3.0))) == pytest.approx(3.0)
+    assert beside(line, np.array((12.0, 5.0))) == pytest.approx(2.0)
+    assert beside(line, np.array((-3.0, 4.0))) == pytest.approx(5.0)
+    assert beside(line[:1], np.array((3.0, 4.0))) == pytest.approx(5.0)
+    assert beside(np.empty((0, 2)), np.array((3.0, 4.0))) is None
+
+
+@pytest.mark.parametrize(
+    ("crs", "text"),
+    [
+        ("EPSG:32633", "488050.00, 5190040.00"),
+        ("EPSG:4326", ""),
+        ("", "50.00, 40.00"),
+    ],
+)
+def test_positions_are_shown_in_the_crs_of_choice_and_that_is_kept(table, at_desk, crs, text):
+    table.positions.choose(QgsCoordinateReferenceSystem(crs))
+    shown = column(table, "Position")[1]
+    if crs == "EPSG:4326":
+        site = QgsCoordinateReferenceSystem("EPSG:32633")
+        way = QgsCoordinateTransform(site, QgsCoordinateReferenceSystem(crs), QgsProject.instance())
+        point = way.transform(QgsPointXY(488050, 5190040))
+        text = f"{point.y():.7f}, {point.x():.7f}"
+    assert shown == text
+    assert QgsSettings().value("fleet_supervisor/position_crs") == crs
+
+
+# --- in which order ---
+
+
+@pytest.mark.parametrize(
+    ("title", "up"),
+    [
+        ("Speed", ["a9", "r1", "r2", "r3"]),
+        ("Batt.", ["r3", "a9", "r1", "r2"]),
+        ("Ping", ["r2", "r1", "a9", "r3"]),
+        ("State", ["r1", "r2", "r3", "a9"]),
+        ("Link", ["r3", "a9", "r1", "r2"]),
+        ("Task", ["r3", "a9", "r1", "r2"]),
+        ("Position", ["a9", "r1", "r2", "r3"]),
+    ],
+)
+def test_a_click_on_a_head_sorts_and_unknown_comes_last_both_ways(table, title, up):
+    table.setColumnHidden(TITLES.index(title), False)
+    table.resize(900, 300)
+    QTest.qWait(20)
+    known = [name for name in up if name not in unknown(title)]
+    click_head(table, title)
+    assert column(table, "Robot") == up
+    click_head(table, title)
+    found = column(table, "Robot")
+    assert found[len(known) :] == up[len(known) :]
+    if title not in ("State", "Link"):
+        assert found[: len(known)] == known[::-1]
+
+
+def unknown(title):
+    return {
+        "Speed": {"r3"},
+        "Batt.": {"r2"},
+        "Ping": {"a9", "r3"},
+        "Task": {"a9", "r1", "r2"},
+        "Position": {"r3"},
+    }.get(title, set())
+
+
+def test_what_changes_is_put_in_order_again_and_stays_selected(table, at_desk, gateway, make_robot, wait):
+    table.sortByColumn(TITLES.index("Speed"), Qt.SortOrder.DescendingOrder)
+    assert column(table, "Robot") == ["r2", "r1", "a9", "r3"]
+    view_row = column(table, "Robot").index("r1")
+    QTest.mouseClick(table.viewport(), LEFT, pos=table.visualRect(table.model().index(view_row, 0)).center())
+    assert at_desk.desk.selection == ("r1",)
+    gateway.show(make_robot("r1", 50, 40, v=2.5))
+    wait(lambda: column(table, "Robot") == ["r1", "r2", "a9", "r3"])
+    assert [index.row() for index in table.selectionModel().selectedRows()] == [0]
+    assert table.currentIndex().row() == 0
+    assert at_desk.desk.selection == ("r1",)
+
+
+# --- which ---
+
+
+def test_what_is_typed_narrows_the_list_at_once(table, at_desk):
+    for text, names in (
+        ("r", ["r1", "r2", "r3"]),
+        ("R2", ["r2"]),
+        ("lost", ["a9"]),
+        ("sql", ["r3"]),
+        ("charg r3", ["r3"]),
+        ("charg r1", []),
+    ):
+        type_search(at_desk, text)
+        assert (text, column(table, "Robot")) == (text, names)
+    assert at_desk.dock.findChild(QLabel, "fleet_robot_count").text() == "0 of 4"
+    type_search(at_desk, "")
+    assert column(table, "Robot") == ["a9", "r1", "r2", "r3"]
+    assert at_desk.dock.findChild(QLabel, "fleet_robot_count").text() == "4"
+
+
+@pytest.mark.parametrize(
+    ("which", "names"),
+    [(Which.TROUBLED, ["a9", "r3"]), (Which.BUSY, ["r1"]), (Which.IDLE, ["a9", "r2", "r3"])],
+)
+def test_only_some_are_listed(table, at_desk, gateway, wait, which, names):
+    gateway._queue("command-1", "r1", "SetPosEnd", {"x": 70.0, "y": 40.0})
+    gateway.step("command-1", CommandState.ACKNOWLEDGED, "r1")
+    wait(lambda: at_desk.desk.book.task_of("r1") is not None)
+    at_desk.dock.robots.mark_troubled({"r3"})
+    box = at_desk.dock.findChild(QComboBox, "fleet_robot_filter")
+    for _ in range(list(Which).index(which)):
+        QTest.keyClick(box, Qt.Key.Key_Down)
+    assert box.currentText() == WHICH[which]
+    assert column(table, "Robot") == names
+
+
+def test_a_selected_robot_that_the_filter_hides_stays_selected(table, at_desk):
+    at_desk.desk.select("r2")
+    type_search(at_desk, "r1")
+    assert at_desk.desk.selection == ("r2",)
+    assert table.selectionModel().selectedRows() == []
+    type_search(at_desk, "")
+    assert [table.model().name_at(i.row()) for i in table.selectionModel().selectedRows()] == ["r2"]
+
+
+def test_keys_move_the_selection(table, at_desk):
+    at_desk.desk.select("r1")
+    QTest.keyClick(table, Qt.Key.Key_Down)
+    assert at_desk.desk.selection == ("r2",)
+    QTest.keyClick(table, Qt.Key.Key_Down, Qt.KeyboardModifier.ShiftModifier)
+    assert set(at_desk.desk.selection) == {"r2", "r3"}
+
+
+# --- columns ---
+
+
+def test_columns_are_chosen_in_the_menu_and_kept(table, at_desk):
+    button = at_desk.dock.findChild(QToolButton, "fleet_robot_columns")
+    menu = button.menu()
+    menu.aboutToShow.emit()
+    ping = next(action for action in menu.actions() if action.text().startswith("Ping"))
+    assert ping.isChecked()
+    ping.trigger()
+    assert table.isColumnHidden(TITLES.index("Ping"))
+    assert "Ping" in QgsSettings().value("fleet_supervisor/robot_table/hidden")
+    place = next(action for action in menu.actions() if action.text().startswith("Latitude"))
+    place.trigger()
+    assert not table.isColumnHidden(TITLES.index("Position"))
+    assert table.positions.name == "EPSG:4326"
+
+
+def test_the_first_columns_fit_into_the_panel(table, at_desk):
+    shown = [c for c in range(len(COLUMNS)) if not table.isColumnHidden(c)]
+    assert sum(table.columnWidth(c) for c in shown) <= table.viewport().width()
+    assert not table.horizontalScrollBar().isVisible()
+
+
+# --- many ---
+
+
+def test_ten_thousand_are_sorted_and_searched(table, at_desk, gateway, make_robot, wait):
+    rng = np.random.default_rng(1)
+    speeds = rng.uniform(0.1, 9.0, 10_000)
+    gateway.show(*[make_robot(f"n{k:05}", k % 100, k // 100, v=float(speeds[k])) for k in range(10_000)])
+    wait(lambda: len(at_desk.desk.picture) == 10_004, 30)
+    table.refresh()
+    table.sortByColumn(TITLES.index("Speed"), Qt.SortOrder.DescendingOrder)
+    assert table.model().name_at(0) == f"n{int(speeds.argmax()):05}"
+    type_search(at_desk, "n0777")
+    assert sorted(column(table, "Robot")) == [f"n0777{k}" for k in range(10)]

@@ -1,0 +1,86 @@
+"""The way to the mouse: one question at a time, the newest next, and no click is passed over."""
+
+from __future__ import annotations
+
+import pytest
+from fleet_supervisor.plugin.desk.route_preview import Question, RoutePreview
+from fleet_supervisor.plugin.wire.outbox import Answer
+
+
+class Gateway:
+    """Answers when the test says so."""
+
+    def __init__(self):
+        self.orders = []
+        self.now = 0.0
+
+    def answer(self, preview, **how):
+        result = {"points": [[0, 0], [1, 1]], "metres": 1.4, "seconds": 1.0}
+        return preview.take(Answer(self.orders[-1], **(how or {"result": result})))
+
+    def goals(self):
+        return [order.params["x"] for order in self.orders]
+
+
+@pytest.fixture
+def gateway():
+    return Gateway()
+
+
+@pytest.fixture
+def preview(qgis_app, gateway):
+    return RoutePreview(gateway.orders.append, lambda: gateway.now)
+
+
+def to(x, **how):
+    return Question("r1", None, (x, 0.0), **how)
+
+
+def test_while_one_is_under_way_only_the_newest_waits(preview, gateway):
+    for x in (1.0, 2.0, 3.0, 4.0):
+        preview.want(to(x))
+    assert gateway.goals() == [1.0]
+    gateway.answer(preview)
+    assert gateway.goals() == [1.0, 4.0]
+    assert preview.route.metres == 1.4
+    gateway.answer(preview)
+    assert gateway.goals() == [1.0, 4.0]
+
+
+def test_a_click_is_answered_though_the_mouse_moves_on(preview, gateway):
+    taken = []
+    preview.answered.connect(lambda question, route: taken.append(question.goal))
+    preview.want(to(1.0))
+    preview.want(to(2.0, taken=True))
+    preview.want(to(3.0))
+    gateway.answer(preview)
+    assert gateway.goals() == [1.0, 2.0]
+    gateway.answer(preview)
+    assert taken == [(2.0, 0.0)]
+
+
+def test_a_lost_question_holds_nothing_up_and_its_late_answer_shows_nothing(preview, gateway):
+    preview.want(to(1.0))
+    lost = gateway.orders[-1]
+    gateway.now = 3.1
+    preview.want(to(2.0))
+    assert gateway.goals() == [1.0, 2.0]
+    assert preview.take(Answer(lost, result={"points": [[9, 9]], "metres": 9, "seconds": 9}))
+    assert preview.route is None
+
+
+def test_why_there_is_no_way_is_said_and_a_click_there_refused(preview, gateway):
+    refused = []
+    preview.refused.connect(refused.append)
+    preview.want(to(1.0))
+    gateway.answer(preview, error="the road is closed")
+    assert (preview.route, preview.why_not, refused) == (None, "the road is closed", [])
+    preview.want(to(1.0, taken=True))
+    gateway.answer(preview, error="the road is closed")
+    assert refused == ["the road is closed"]
+
+
+def test_what_is_no_way_is_said_and_other_answers_are_left_alone(preview, gateway):
+    preview.want(to(1.0))
+    gateway.answer(preview, result={})
+    assert "holds no way" in preview.why_not

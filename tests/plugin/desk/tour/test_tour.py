@@ -1,0 +1,204 @@
+"""The tour, with mouse and keys, with a real gateway and real simulated robots."""
+
+from __future__ import annotations
+
+import os
+
+import pytest
+from fleet_supervisor.plugin.desk.tour.practice_fleet import PracticeFleet, find_program
+from fleet_supervisor.plugin.desk.tour.steps import FLEET, PROJECT, STEPS
+from fleet_supervisor.plugin.desk.tour.tour_action import OFFERED, TourAction
+from fleet_supervisor.plugin.desk.window import MENU, DeskWindow
+from fleet_supervisor.plugin.settings.gateway_connection import GatewayConnection
+from fleet_supervisor.plugin.wire.status import Phase
+from qgis.core import QgsSettings
+from qgis.PyQt.QtCore import QEvent, QPoint, QPointF, Qt
+from qgis.PyQt.QtGui import QMouseEvent
+from qgis.PyQt.QtTest import QTest
+from qgis.PyQt.QtWidgets import QApplication, QLabel, QPushButton, QWidget
+
+LEFT = Qt.MouseButton.LeftButton
+
+
+class Tour:
+    """A desk in a window, the tour beside it, and somebody who takes it."""
+
+    def __init__(self, iface, fleet=None):
+        self.iface = iface
+        self.window = DeskWindow(iface)
+        self.action = TourAction(iface, MENU, self.window, fleet)
+
+    @property
+    def desk(self):
+        return self.window.desk
+
+    def click(self, name):
+        QTest.mouseClick(self.iface.findChild(QPushButton, name), LEFT)
+
+    def text(self, name):
+        return self.iface.findChild(QLabel, name).text()
+
+    def go_to(self, at):
+        while self.action.panel.step is not STEPS[at]:
+            self.click("fleet_tour_next")
+
+    def remove(self):
+        self.action.remove()
+        self.window.remove()
+
+
+@pytest.fixture
+def tour(iface):
+    made = Tour(iface)
+    yield made
+    made.remove()
+
+
+def at_of(offer):
+    return next(at for at, step in enumerate(STEPS) if step.offer == offer)
+
+
+def test_it_is_offered_once_and_again_in_the_menu(iface):
+    first = Tour(iface)
+    assert iface.findChild(QPushButton, "fleet_tour_start").isVisible()
+    first.click("fleet_tour_start")
+    assert first.action.panel.isVisible()
+    first.remove()
+    QApplication.sendPostedEvents(None, 52)
+    assert QgsSettings().value(OFFERED, False, type=bool)
+    second = Tour(iface)
+    assert iface.findChild(QPushButton, "fleet_tour_start") is None
+    assert second.action.action in iface.plugins.actions()
+    second.action.action.trigger()
+    assert second.action.panel.isVisible()
+    second.remove()
+    assert second.action.action not in iface.plugins.actions()
+
+
+def test_keys_lead_through_it_and_escape_closes(tour):
+    tour.action.start()
+    focus = QApplication.focusWidget()
+    assert focus is tour.iface.findChild(QPushButton, "fleet_tour_next")
+    for at in range(1, len(STEPS)):
+        QTest.keyClick(focus, Qt.Key.Key_Return)
+        assert STEPS[at].title in tour.text("fleet_tour_title")
+    QTest.keyClick(focus, Qt.Key.Key_Tab, Qt.KeyboardModifier.ShiftModifier)
+    QTest.keyClick(QApplication.focusWidget(), Qt.Key.Key_Return)
+    assert tour.action.panel.step is STEPS[-2]
+    QTest.keyClick(focus, Qt.Key.Key_Escape)
+    assert tour.action.panel is None
+
+
+def test_every_step_points_at_a_widget_that_is_there(tour):
+    tour.action.start()
+    window = tour.iface.mainWindow()
+    pointed = 0
+    for at, step in enumerate(STEPS):
+        tour.go_to(at)
+        spotlight = window.findChild(QWidget, "fleet_tour_spotlight")
+        if step.target:
+            target = window.findChild(QWidget, step.target)
+            middle = target.mapTo(window, QPoint(target.width() // 2, target.height() // 2))
+            assert spotlight.framed.contains(middle), step.target
+            pointed += 1
+    assert pointed >= 6
+
+
+def test_the_panel_lets_the_rest_be_used_and_can_be_dragged(tour):
+    tour.action.start()
+    panel = tour.action.panel
+    assert not panel.isModal() and panel.geometry().bottom() < tour.iface.height()
+    assert tour.iface.rect().contains(panel.geometry())
+    search = tour.iface.findChild(QWidget, "fleet_url")
+    QTest.mouseClick(search, LEFT)
+    QTest.keyClicks(search, "x")
+    assert "x" in search.text()
+    before = panel.pos()
+    for kind, at in (("MouseButtonPress", 3), ("MouseMove", 43), ("MouseButtonRelease", 43)):
+        what = getattr(QEvent.Type, kind)
+        event = QMouseEvent(what, QPointF(at, 3), LEFT, LEFT, Qt.KeyboardModifier.NoModifier)
+        QApplication.sendEvent(panel, event)
+    assert panel.pos().x() == before.x() + 40
+
+
+def test_without_the_bridge_it_says_how_to_get_it(iface):
+    tour = Tour(iface, PracticeFleet(program=""))
+    tour.action.start()
+    tour.go_to(at_of(FLEET))
+    tour.click("fleet_tour_offer")
+    assert "pip install" in tour.text("fleet_tour_said")
+    assert tour.iface.rect().contains(tour.action.panel.geometry())
+    tour.remove()
+
+
+def test_a_program_that_ends_is_told_with_what_it_said(iface, wait, tmp_path):
+    program = tmp_path / "robot-bridge"
+    program.write_text("#!/bin/sh\necho no room on this computer\nexit 3\n")
+    program.chmod(0o755)
+    tour = Tour(iface, PracticeFleet(program=str(program)))
+    tour.action.start()
+    tour.go_to(at_of(FLEET))
+    tour.click("fleet_tour_offer")
+    wait(lambda: "no room on this computer" in tour.text("fleet_tour_said"), 10, "the reason")
+    assert not tour.action.fleet.running
+    assert tour.iface.findChild(QPushButton, "fleet_tour_offer").isEnabled()
+    tour.remove()
+
+
+def test_connected_elsewhere_it_starts_nothing_and_asks_for_no_deeds(tour, gateway, wait):
+    tour.desk.open_link(gateway.url, "anna")
+    wait(lambda: tour.desk.link.phase is Phase.CONNECTED)
+    tour.action.start()
+    tour.go_to(at_of(FLEET))
+    tour.click("fleet_tour_offer")
+    assert "Disconnect first" in tour.text("fleet_tour_said")
+    assert not tour.action.fleet.running
+    for at, step in enumerate(STEPS):
+        if step.practice:
+            tour.action.panel.show_step(at)
+            assert step.practice not in tour.text("fleet_tour_text")
+    tour.action.end()
+    assert tour.desk.link.phase is Phase.CONNECTED
+
+
+def test_the_sample_site_opens(tour):
+    opened = []
+    tour.iface.addProject = lambda path: opened.append(path) or True
+    tour.action.start()
+    tour.go_to(at_of(PROJECT))
+    tour.click("fleet_tour_offer")
+    assert opened[0].endswith("sample_site.qgz") and "is open" in tour.text("fleet_tour_said")
+    tour.iface.addProject = lambda path: False
+    tour.click("fleet_tour_offer")
+    assert "not opened" in tour.text("fleet_tour_said")
+
+
+def test_a_practice_fleet_is_driven_and_ends_with_the_tour(tour, wait):
+    assert find_program(), "robot-bridge is beside this plugin"
+    before = tour.window.dock.connection_panel.url()
+    tour.action.start()
+    tour.go_to(at_of(FLEET))
+    tour.click("fleet_tour_offer")
+    wait(lambda: len(tour.desk.picture.views(tour.desk.clock())) == 3, 60, "three robots")
+    processes = list(tour.action.fleet.findChildren(type(tour.action.fleet._processes[0])))
+    assert len(processes) == 4
+    wait(lambda: "is connected" in tour.text("fleet_tour_said"))
+    sent = next(at for at, step in enumerate(STEPS) if step.target == "fleet_cone_target_button")
+    tour.go_to(sent)
+    assert STEPS[sent].practice in tour.text("fleet_tour_text")
+    pids = [process.processId() for process in processes]
+    tour.click("fleet_tour_close")
+    assert tour.action.panel is None
+    assert tour.window.dock.connection_panel.url() == before
+    assert tour.desk.link.phase is Phase.CLOSED
+    for pid in pids:
+        with pytest.raises(ProcessLookupError):
+            os.kill(pid, 0)
+
+
+def test_its_address_is_not_kept_for_the_next_session(tour):
+    panel = tour.window.dock.connection_panel
+    panel.use(GatewayConnection("", "ws://127.0.0.1:8765/desk"))
+    tour.action._connect("ws://127.0.0.1:9/desk")
+    assert QgsSettings().value("fleet_supervisor/url") is None
+    tour.desk.close_link()

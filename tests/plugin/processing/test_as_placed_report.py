@@ -1,0 +1,225 @@
+"""``fleet:asplacedreport``: a PDF of placed cones, in QGIS and by ``qgis_process``."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from fleet_supervisor.plugin.processing.histogram_svg import bars, histogram
+from fleet_supervisor.plugin.processing.placed_cones import PlacedCone, deviations
+from fleet_supervisor.plugin.processing.report_layers import extent_of, factor_of, map_layers
+from fleet_supervisor.plugin.processing.report_layout import Report, laid_out
+from qgis.core import (
+    QgsCoordinateReferenceSystem,
+    QgsLayoutItemLabel,
+    QgsLayoutItemMap,
+    QgsLayoutItemTextTable,
+    QgsProcessingContext,
+    QgsProcessingException,
+    QgsProject,
+)
+
+from robot_bridge.store import placements
+from robot_bridge.store.address import read_address
+from robot_bridge.store.database import Database
+from robot_bridge.store.placements import NewPlacement
+
+FIELDS = (
+    "&field=planned_easting:double&field=planned_northing:double&field=easting:double&field=northing:double"
+    "&field=cone:string&field=robot:string&field=layout:string&field=placed_at:datetime"
+)
+E, N = 640450.0, 5193500.0
+UTM = "EPSG:32633"
+
+
+def rows(*offs):
+    return [
+        (
+            f"Point({E + 5 * k + east} {N + north})",
+            E + 5 * k,
+            N,
+            E + 5 * k + east,
+            N + north,
+            f"c{k}",
+            "r1",
+            "slalom",
+            None,
+        )
+        for k, (east, north) in enumerate(offs)
+    ]
+
+
+def cones(*offs):
+    return [
+        PlacedCone(f"c{k}", "r1", "slalom", (E + 5 * k, N), (E + 5 * k + east, N + north), None)
+        for k, (east, north) in enumerate(offs)
+    ]
+
+
+@pytest.fixture
+def run(provider, listener, tmp_path):
+    """Run the algorithm into report.pdf and return what it gave."""
+    import processing
+
+    def run(**parameters):
+        context = QgsProcessingContext()
+        context.setProject(QgsProject())
+        everything = {"OUTPUT": str(tmp_path / "report.pdf"), **parameters}
+        return processing.run("fleet:asplacedreport", everything, context=context, feedback=listener)
+
+    return run
+
+
+def test_figures_and_a_pdf(run, make_layer, tmp_path):
+    layer = make_layer("placed", "Point", FIELDS, rows((0.03, 0.04), (0.0, 0.2), (-0.3, 0.0)), crs=UTM)
+    told = run(INPUT=layer)
+    assert (told["CONE_COUNT"], told["WITHIN_COUNT"], told["PAGE_COUNT"]) == (3, 2, 2)
+    assert told["MEAN"] == pytest.approx((0.05 + 0.2 + 0.3) / 3)
+    assert told["RMS"] == pytest.approx(((0.05**2 + 0.2**2 + 0.3**2) / 3) ** 0.5)
+    assert told["MAX"] == pytest.approx(0.3)
+    assert (tmp_path / "report.pdf").read_bytes().startswith(b"%PDF-")
+    assert [file.name for file in tmp_path.iterdir()] == ["report.pdf"]
+
+
+def test_the_layout_says_it_all(qgis_app, tmp_path):
+    project, offs = QgsProject(), [(0.03, 0.04), (0.0, 0.1), (-0.3, 0.0)]
+    project.setCrs(QgsCoordinateReferenceSystem(UTM))
+    given = sorted(cones(*offs), key=lambda cone: -cone.deviation)
+    report = Report("Slalom", given, deviations(given, 0.2), 0.2, project.crs())
+    layout = laid_out(report, project, tmp_path)
+    texts = "\n".join(item.text() for item in layout.items() if isinstance(item, QgsLayoutItemLabel))
+    assert "Slalom" in texts
+    assert "2 of 3 cones (67 %) stand within 20 cm" in texts
+    assert "largest 30.0 cm" in texts
+    (table,) = (frame for frame in layout.multiFrames() if isinstance(frame, QgsLayoutItemTextTable))
+    contents = [
+        [cell.content() if hasattr(cell, "content") else cell for cell in row] for row in table.contents()
+    ]
+    assert contents[0] == ["c2", "slalom", "r1", "", "640460.00", "5193500.00", "-30.0", "+0.0", "30.0", "!"]
+    assert [row[0] for row in contents] == ["c2", "c1", "c0"]
+    (shown,) = (item for item in layout.items() if isinstance(item, QgsLayoutItemMap))
+    assert shown.extent().contains(extent_of(given))
+    assert [layer.name() for layer in shown.layers()] == ["Deviations", "Planned", "Beyond", "Within"]
+    # Nothing of the table beyond the paper's margins.
+    assert table.totalSize().width() <= 180.0
+
+
+def test_the_map_tells_good_from_bad_and_draws_deviations_longer(qgis_app):
+    given = cones((0.03, 0.04), (0.0, 0.2), (-0.3, 0.0))
+    factor = factor_of(given, 40.0)
+    assert factor == 10
+    lines, planned, beyond, within = map_layers(given, QgsCoordinateReferenceSystem(UTM), 0.2, factor)
+    assert [layer.featureCount() for layer in (lines, planned, beyond, within)] == [3, 3, 1, 2]
+    ends = [f.geometry().asPolyline()[-1] for f in lines.getFeatures()]
+    assert [(round(p.x() - E - 5 * k, 6), round(p.y() - N, 6)) for k, p in enumerate(ends)] == [
+        (0.3, 0.4),
+        (0, 2),
+        (-3, 0),
+    ]
+    assert factor_of(cones((0.0, 0.0)), 40.0) == 1
+
+
+def test_bars_end_at_the_tolerance_and_count_every_cone_once():
+    for values in ([0.05, 0.2, 0.2, 0.21], [0.0], [3.0, 0.1], [500.0, 0.1]):
+        counts, edges = bars(np.array(values), 0.2)
+        assert counts.sum() == len(values)
+        assert np.isclose(edges, 0.2).any()
+        within = int(counts[edges[1:] <= 0.2 + 1e-9].sum())
+        assert within == sum(value <= 0.2 for value in values)
+    assert "last bar: up to 500.00 m" in histogram(np.array([500.0, 0.1]), 0.2)
+
+
+def test_many_cones_take_more_pages(run, make_layer):
+    layer = make_layer("placed", "Point", FIELDS, rows(*[(0.01, 0.0)] * 200), crs=UTM)
+    assert run(INPUT=layer)["PAGE_COUNT"] >= 4
+
+
+@pytest.mark.parametrize(
+    ("fields", "features", "more", "text"),
+    [
+        (FIELDS, [], {}, "no placed cones to report on"),
+        ("&field=name:string", [("Point(0 0)", "c")], {}, "no field planned_easting.*placements export"),
+        (FIELDS, rows((0, 0)), {"OUTPUT": "/nowhere/report.pdf"}, "no folder /nowhere"),
+    ],
+    ids=["nothing", "other layer", "no folder"],
+)
+def test_what_cannot_be_reported_is_said(run, make_layer, fields, features, more, text):
+    layer = make_layer("placed", "Point", fields, features, crs=UTM)
+    with pytest.raises(QgsProcessingException, match=text):
+        run(INPUT=layer, **more)
+
+
+def test_features_without_places_are_left_out_and_counted(run, make_layer, listener):
+    odd = (None, None, N, E, N, "c9", "r1", "slalom", None)
+    told = run(INPUT=make_layer("placed", "Point", FIELDS, [*rows((0.1, 0)), odd], crs=UTM))
+    assert (told["CONE_COUNT"], told["WARNING_COUNT"]) == (1, 1)
+    assert "1 features have no planned or no placed position" in listener.warnings[0]
+
+
+@pytest.fixture
+async def exported(root, tmp_path):
+    """Return how a gateway's placed cones, one of them far off, are exported under a name."""
+    database = Database(read_address(f"sqlite:///{tmp_path}/fleet.db"))
+    await database.open()
+    for n, off in enumerate((0.05, 0.1, 0.5)):
+        values = {
+            "planned_x": 40.0 + 4 * n,
+            "planned_y": 8.0,
+            "x": 40.0 + 4 * n,
+            "y": 8.0 + off,
+            "theta": 0.0,
+        }
+        known = {
+            "task": f"task-{n}",
+            "robot": "r1",
+            "command": f"command-{n}",
+            "cone": f"c{n}",
+            "layout": "slalom",
+        }
+        await database.run(
+            placements.add, NewPlacement(**values, **known, deviation=off, placed_at=1_790_000_000.0 + n)
+        )
+    await database.close()
+
+    def export(name):
+        options = ["placements", "export", tmp_path / name, "--site", root / "resources" / "sample_site"]
+        words = [*map(str, options), "--database", f"sqlite:///{tmp_path}/fleet.db"]
+        subprocess.run([sys.executable, "-m", "robot_bridge", *words], check=True, timeout=60)
+        return tmp_path / name
+
+    return export
+
+
+@pytest.mark.parametrize("name", ["cones.gpkg", "cones.csv"])
+async def test_a_gateways_export_becomes_a_report_with_no_display(
+    qgis_process, exported, root, tmp_path, name
+):
+    file, made = exported(name), tmp_path / "made.pdf"
+    given = [f"INPUT={file}|layername=placed"] if name.endswith("gpkg") else [f"INPUT={file}", f"CRS={UTM}"]
+    photo = root / "resources" / "sample_site" / "orthophoto.tif"
+    done = qgis_process(
+        "run", "fleet:asplacedreport", "--", *given, f"BACKGROUND={photo}", f"OUTPUT={made}", packages=False
+    )
+    assert done.status == 0, done.said
+    assert (done.result("CONE_COUNT"), done.result("WITHIN_COUNT")) == (3, 2)
+    assert done.result("MAX") == pytest.approx(0.5)
+    content = made.read_bytes()
+    assert content.startswith(b"%PDF-")
+    assert re.search(rb"/Count 2\b", content)
+    # The photo lies beneath the cones.
+    assert re.search(rb"/Subtype\s*/Image", content)
+
+
+async def test_a_csv_without_a_crs_is_refused_with_what_to_give(qgis_process, exported, tmp_path):
+    done = qgis_process(
+        "run",
+        "fleet:asplacedreport",
+        "--",
+        f"INPUT={exported('cones.csv')}",
+        f"OUTPUT={tmp_path / 'made.pdf'}",
+    )
+    assert done.status != 0
+    assert "give CRS, the site's, such as EPSG:32633" in done.said
