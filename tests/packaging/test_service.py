@@ -61,6 +61,23 @@ def test_systemd_finds_nothing_wrong_with_the_unit(make, tmp_path):
     assert "perhaps" in done.stderr
 
 
+@pytest.mark.skipif(shutil.which("systemd-analyze") is None, reason="systemd is not installed")
+def test_systemd_counts_the_service_among_those_that_are_shut_in(make, tmp_path):
+    make("install-service", PREFIX="/opt/robot-bridge")
+    unit = tmp_path / "etc" / "systemd" / "system" / "robot-bridge.service"
+
+    def judged(text):
+        unit.write_text(text)
+        command = ["systemd-analyze", "security", "--offline=true", "--no-pager", "--threshold=20", unit]
+        done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=60)
+        return done.returncode, done.stdout
+
+    installed = unit.read_text()
+    # Of 100, 0 is shut in whole; a service as most are has 96.
+    assert judged(installed)[0] == 0, judged(installed)[1]
+    assert judged(installed.replace("ProtectSystem=strict", "").replace("CapabilityBoundingSet=", ""))[0] == 1
+
+
 def test_the_unit_starts_what_there_is(root):
     unit = configparser.RawConfigParser(strict=False)
     unit.optionxform = str

@@ -75,7 +75,7 @@ def test_a_process_that_ends_too_early_is_told_with_its_last_words(tmp_path):
             processes.wait_for_line("short", "listening", 10)
         with pytest.raises(StageError, match="short ended with status 1"):
             processes.require_running()
-        processes.require_running(but="short")
+        processes.require_running(but=["short"])
 
 
 def test_waiting_for_a_line_has_an_end(tmp_path):

@@ -21,8 +21,6 @@ REQUIRED_KEYS = (
     "version",
     "author",
     "email",
-    "repository",
-    "tracker",
 )
 BINARIES = (".so", ".pyd", ".dll", ".dylib", ".exe", ".pyc", ".pyo", ".a", ".o", ".whl", ".c")
 
@@ -68,6 +66,36 @@ def test_the_metadata_has_every_required_key(metadata, key):
     assert metadata.get(key, "").strip()
 
 
+LINKS = {
+    "repository": "https://code.fleet-supervisor.invalid/plugin",
+    "tracker": "https://code.fleet-supervisor.invalid/plugin/issues",
+}
+
+
+def test_no_address_in_it_is_made_up(metadata):
+    assert not {"homepage", "repository", "tracker"} & set(metadata)
+    assert "example.org" not in "".join(metadata.values())
+
+
+def test_whoever_publishes_it_says_where_source_and_tracker_are(tmp_path):
+    parser = ConfigParser(interpolation=None)
+    with zipfile.ZipFile(build(tmp_path, LINKS)) as archive:
+        parser.read_string(archive.read("fleet_supervisor/metadata.txt").decode("utf-8"))
+    assert {key: parser["general"][key] for key in LINKS} == LINKS
+    assert parser["general"]["name"] == "Fleet Supervisor"
+
+
+@pytest.mark.parametrize("url", ["", "code", "ftp://a.b/c", "https://localhost/x", "https:///x"])
+def test_what_is_no_address_is_refused(tmp_path, url):
+    with pytest.raises(PackageError, match="no address of a web page"):
+        build(tmp_path, {"tracker": url})
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_guides_come_along_for_the_help(names):
+    assert "fleet_supervisor/docs/operator.md" in names
+
+
 def test_the_metadata_agrees_with_the_rest(metadata, root, names):
     project = (root / "pyproject.toml").read_text(encoding="utf-8")
     assert f'\nversion = "{metadata["version"]}"\n' in project
@@ -83,6 +111,7 @@ def test_the_sample_site_comes_along(names):
 
 def test_everything_of_the_repository_that_belongs_to_the_plugin_is_in_it(root, names):
     parts = ["__init__.py", "metadata.txt", "LICENSE", "plugin", "robot_bridge", "resources"]
+    parts.append("docs/*.md")
     listed = subprocess.run(
         ["git", "ls-files", *parts], cwd=root, stdout=subprocess.PIPE, text=True, check=False
     )
@@ -92,7 +121,9 @@ def test_everything_of_the_repository_that_belongs_to_the_plugin_is_in_it(root, 
     makers = {name for name in kept if name.startswith("resources/") and name.endswith(".py")}
     # The gateway's service is installed from the repository, by make install-service.
     service = {name for name in kept if name.startswith("resources/service/")}
-    assert {f"fleet_supervisor/{name}" for name in kept - makers - service} <= set(names)
+    # QGIS reads what was compiled of the translations, not their sources.
+    sources = {name for name in kept if name.endswith(".ts")}
+    assert {f"fleet_supervisor/{name}" for name in kept - makers - service - sources} <= set(names)
 
 
 def test_what_lies_about_stays_out(root, tmp_path):
@@ -102,6 +133,7 @@ def test_what_lies_about_stays_out(root, tmp_path):
     for part in ("__init__.py", "metadata.txt", "LICENSE", "CHANGELOG.md"):
         shutil.copy(root / part, tree / part)
     (tree / "resources").mkdir()
+    (tree / "docs").mkdir()
     before = plugin_files(tree)
     for stray in ("plugin/notes.txt", "robot_bridge/fleet.db", "robot_bridge/x.so", "plugin/.secret.py"):
         (tree / stray).touch()

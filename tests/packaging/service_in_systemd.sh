@@ -1,0 +1,37 @@
+# Runs systemd as process 1 on a copy of this system that nothing outside sees, with the service installed.
+# Arguments: an empty folder, the repository, a Python of the system, the folder of packages that it is to see. To be
+# run by unshare.
+set -e
+folder=$1 repository=$2 python=$3 packages=$4
+
+mount -t tmpfs tmpfs "$folder"
+mkdir "$folder/changed" "$folder/work" "$folder/root"
+root=$folder/root
+mount -t overlay overlay -o "lowerdir=/,upperdir=$folder/changed,workdir=$folder/work" "$root"
+mount -t proc proc "$root/proc"
+mount -t tmpfs tmpfs "$root/run"
+mount --rbind /dev "$root/dev"
+mount --rbind /sys "$root/sys"
+ip link set lo up
+
+make -s -C "$repository" install-service DESTDIR="$root" PREFIX=/opt/robot-bridge PROGRAM=no
+mkdir -p "$root/opt/robot-bridge/bin" "$root/opt/robot-bridge/packages" "$root/var/lib/robot-bridge" "$root/etc/systemd/system/robot-bridge.service.d"
+# The service sees no /tmp of others, where the repository may lie.
+cp -r "$repository/robot_bridge" "$root/opt/robot-bridge/"
+mount --bind "$packages" "$root/opt/robot-bridge/packages"
+printf '#!/bin/sh\nexport PYTHONPATH=/opt/robot-bridge:/opt/robot-bridge/packages\nexec %s "$@"\n' "$python" > "$root/opt/robot-bridge/bin/python"
+chmod 755 "$root/opt/robot-bridge/bin/python"
+# Nothing else of this system is to start; the log goes where a test can read it.
+cat > "$root/etc/systemd/system/robot-bridge.service.d/alone.conf" <<'END'
+[Unit]
+DefaultDependencies=no
+[Service]
+StandardOutput=append:/var/log/robot-bridge.log
+StandardError=append:/var/log/robot-bridge.log
+END
+chroot "$root" systemd-sysusers /usr/lib/sysusers.d/robot-bridge.conf
+cp -r "$repository/resources/sample_site" "$root/var/lib/robot-bridge/site"
+chroot "$root" chown -R robot-bridge: /var/lib/robot-bridge
+
+exec chroot "$root" /usr/bin/env -i container=other PATH=/usr/sbin:/usr/bin:/sbin:/bin \
+    /lib/systemd/systemd --system --unit=robot-bridge.service --show-status=no
