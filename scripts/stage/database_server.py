@@ -7,7 +7,9 @@ import contextlib
 import itertools
 import os
 import pwd
+import random
 import secrets
+import select
 import shutil
 import signal
 import socket
@@ -113,9 +115,15 @@ class DatabaseServer(abc.ABC):
         self._process = None
 
     def kill(self) -> None:
-        """End the server the way a power cut does."""
+        """End the server and every process of it the way a power cut does."""
         assert self._process is not None
+        # A stopped process starts no other one while they are listed. One left alive may wait for ever for
+        # a lock of one that died, and keep the next server from the memory that they share.
+        self._process.send_signal(signal.SIGSTOP)
+        workers = _children(self._process.pid)
         self._process.kill()
+        for worker in workers:
+            _kill(worker)
         self._process.wait()
 
     def new_database(self, name: str | None = None) -> str:
@@ -147,7 +155,8 @@ class DatabaseServer(abc.ABC):
     def _require(self, command: Sequence[str | Path], text: str = "", **environment: str) -> str:
         done = self._run(command, text, **environment)
         if done.returncode:
-            raise StageError(f"{Path(command[0]).name} failed: {done.stderr or done.stdout}")
+            said = f"{done.stderr or done.stdout}\nThe server said last:\n{self._log()}"
+            raise StageError(f"{Path(command[0]).name} failed: {said}")
         return done.stdout
 
     def _as_account(self, *options: str) -> list[str]:
@@ -166,7 +175,8 @@ class DatabaseServer(abc.ABC):
         return pwd.getpwnam("nobody")
 
     def _log(self) -> str:
-        return "\n".join((self.folder / "server.log").read_text(errors="replace").splitlines()[-15:])
+        log = self.folder / "server.log"
+        return "\n".join(log.read_text(errors="replace").splitlines()[-15:]) if log.exists() else "nothing"
 
     def _program(self, name: str) -> str:
         return find_program(name)
@@ -192,10 +202,13 @@ class DatabaseServer(abc.ABC):
 
 
 def free_port() -> int:
-    """Return a port on loopback that nobody listens on."""
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return int(probe.getsockname()[1])
+    """Return a port on loopback that nobody listens on and no client is given while a server is down."""
+    lowest = int(Path("/proc/sys/net/ipv4/ip_local_port_range").read_text(encoding="ascii").split()[0])
+    for port in random.sample(range(10_000, max(lowest, 20_000)), 100):
+        with socket.socket() as probe, contextlib.suppress(OSError):
+            probe.bind(("127.0.0.1", port))
+            return port
+    raise StageError("100 ports of 127.0.0.1 from 10000 on were all taken")
 
 
 def find_program(name: str, *folders: str) -> str:
@@ -204,6 +217,21 @@ def find_program(name: str, *folders: str) -> str:
     if found is None:
         raise StageError(f"{name} is not on this machine; make setup installs it where there is apt")
     return found
+
+
+def _children(pid: int) -> list[int]:
+    listed = Path(f"/proc/{pid}/task/{pid}/children").read_text(encoding="ascii")
+    return [int(child) for child in listed.split()]
+
+
+def _kill(pid: int) -> None:
+    with contextlib.suppress(ProcessLookupError):
+        process = os.pidfd_open(pid)
+        try:
+            os.kill(pid, signal.SIGKILL)
+            select.select([process], [], [])  # readable when the process has ended
+        finally:
+            os.close(process)
 
 
 def _remove_when_this_program_ends(folder: Path) -> subprocess.Popen[bytes]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import signal
 import subprocess
@@ -37,6 +38,17 @@ def name_of(url: str) -> str:
     return url.rsplit("/", 1)[1]
 
 
+def children_of(pid):
+    return Path(f"/proc/{pid}/task/{pid}/children").read_text(encoding="ascii").split()
+
+
+def runs(pid):
+    # One that nobody has taken notice of yet is dead, too.
+    with contextlib.suppress(FileNotFoundError):
+        return Path(f"/proc/{pid}/stat").read_text(encoding="ascii").rsplit(")", 1)[1].split()[0] not in "ZX"
+    return False
+
+
 @BOTH
 def test_every_database_is_new_and_empty(kind, server):
     first, second = server.new_database(), server.new_database()
@@ -50,7 +62,9 @@ def test_every_database_is_new_and_empty(kind, server):
 def test_a_killed_server_comes_back_on_its_port_with_what_was_committed(kind, server):
     port, name = server.port, name_of(server.new_database())
     server.sql("create table t (i int); insert into t values (7)", name)
+    workers = children_of(server.pid)
     server.kill()
+    assert [worker for worker in workers if runs(worker)] == []
     server.start()
     assert server.port == port
     assert server.sql("select i from t", name) == "7"
