@@ -29,6 +29,8 @@ def driven(loop, operator, dock):
     loop.start_robot("r1", (20, 8, 0))
     loop.start_robot("r2", (20, 84, 0))
     operator.connect_to(loop, ["r1", "r2"])
+    # There is something to show a pixel of the time line before the command, too.
+    QTest.qWait(2000)
     began = time.time()
     operator.set_cone("r1", 40.0, 8.0)
     operator.wait_for_state("r1", "SetPosEnd", CommandState.REACHED)
