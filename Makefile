@@ -5,6 +5,7 @@
 READY := .venv/.fleet-setup
 RUN := .venv/bin/python
 HEADLESS := env QT_QPA_PLATFORM=offscreen XDG_RUNTIME_DIR=$(CURDIR)/build/run
+DRAW := $(HEADLESS) PYTHONPATH=scripts $(RUN) -m pictures
 
 # Given on the command line: make test ARGS="-k robotmap" JOBS=0 (ARGS=-rs says why tests were skipped),
 # make install PROFILE=work LINK=1
@@ -50,12 +51,12 @@ desktop: $(READY) ## open QGIS Desktop with the plugin, the sample site and thre
 screenshots: $(READY) build/run ## make the pictures in docs/images, in real windows under Xvfb
 	@$(RUN) scripts/desktop.py --screenshot docs/images/desktop.png
 	@$(RUN) scripts/roles_picture.py
-	@$(HEADLESS) $(RUN) scripts/robot_map_pictures.py
-	@$(HEADLESS) $(RUN) scripts/cone_pictures.py
-	@$(HEADLESS) $(RUN) scripts/assignment_picture.py
+	@$(DRAW).robot_maps
+	@$(DRAW).cones
+	@$(DRAW).assignment
 	@$(RUN) scripts/cone_plan_pictures.py
-	@$(HEADLESS) $(RUN) scripts/roads_picture.py
-	@$(HEADLESS) $(RUN) scripts/surfaces_pictures.py
+	@$(DRAW).roads
+	@$(DRAW).road_surfaces
 
 install: $(READY) ## put the plugin into your QGIS profile (PROFILE=name, LINK=1 links this folder)
 	@$(RUN) scripts/install_plugin.py --profile "$(PROFILE)" $(if $(LINK),--link)

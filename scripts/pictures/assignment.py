@@ -1,42 +1,28 @@
 """Draw docs/images/assignment.png: a double lane change shared out among three robots on the sample site.
 
-python scripts/assignment_picture.py [docs/images]
+PYTHONPATH=scripts python -m pictures.assignment [docs/images]
 """
 
 from __future__ import annotations
 
-import argparse
-import os
 import tempfile
 from pathlib import Path
 from typing import Any
 
-from cone_pictures import CRS, DIMENSIONS, PLACE, SITE, render
-from plugin_files import ROOT
-from robot_map_pictures import register_plugin, run
+from .cones import DIMENSIONS, EXTENT, PIXELS_PER_M, PLACE
+from .stage import CRS, SITE, draw_map, drawing, photo, run, vector
 
 STORE = (640428.0, 5193490.0)
 ROBOTS = {"r1": (640429.0, 5193487.5), "r2": (640429.0, 5193485.5), "r3": (640429.0, 5193483.5)}
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("folder", type=Path, nargs="?", default=ROOT / "docs" / "images")
-    folder = parser.parse_args().folder.resolve()
-    os.environ["QT_QPA_PLATFORM"] = "offscreen"
-    from qgis.core import QgsApplication
-
-    application = QgsApplication([], True)
-    application.initQgis()
-    register_plugin()
-    with tempfile.TemporaryDirectory() as place:
+    with drawing(__doc__) as folder, tempfile.TemporaryDirectory() as place:
         draw(Path(place), folder / "assignment.png")
 
 
 def draw(place: Path, picture: Path) -> None:
     """Place the layout, assign its cones, and draw what the robots are to do over the orthophoto."""
-    from qgis.core import QgsRasterLayer, QgsVectorLayer
-
     layout = {"LAYOUT": "iso3888_1", "POINT": f"{PLACE[0]},{PLACE[1]} [{CRS}]", "HEADING": 90}
     cones = run(
         "cone_layout.ConeLayout",
@@ -57,12 +43,8 @@ def draw(place: Path, picture: Path) -> None:
         },
     )
     print(plan)
-    shown: list[Any] = []
-    for name in ("targets", "paths"):
-        layer = QgsVectorLayer(plan[name.upper()], name, "ogr")
-        layer.loadNamedStyle(str(ROOT / "resources" / "styles" / f"assigned_{name}.qml"))
-        shown.append(layer)
-    render([*shown, QgsRasterLayer(str(SITE / "orthophoto.tif"), "Orthophoto", "gdal")], picture)
+    shown = [vector(plan[name.upper()], style=f"assigned_{name}") for name in ("targets", "paths")]
+    draw_map([*shown, photo()], EXTENT, PIXELS_PER_M, picture)
 
 
 def points(places: dict[str, tuple[float, float]]) -> Any:

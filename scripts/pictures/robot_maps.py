@@ -1,6 +1,6 @@
 """Draw docs/images/exported-window.png and findings.png with a QGIS that has no display.
 
-python scripts/robot_map_pictures.py [docs/images]
+PYTHONPATH=scripts python -m pictures.robot_maps [docs/images]
 
 The first is a window of the sample site, exported as a robot map and loaded again over the orthophoto. The
 second is the same map with faults put into it, and what the check finds.
@@ -8,11 +8,6 @@ second is the same map with faults put into it, and what the check finds.
 
 from __future__ import annotations
 
-import argparse
-import importlib
-import importlib.util
-import os
-import sys
 import tempfile
 from dataclasses import replace
 from pathlib import Path
@@ -20,11 +15,10 @@ from types import ModuleType
 from typing import Any
 
 import numpy as np
-from plugin_files import PACKAGE, ROOT
-from stage.picture import reduce_colours
 
-SITE = ROOT / "resources" / "sample_site"
-CRS, ORIGIN = "EPSG:32633", (640420.0, 5193480.0)
+from .stage import CRS, SITE, draw_map, drawing, part, photo, run, vector
+
+ORIGIN = (640420.0, 5193480.0)
 LAYERS = ("buildings", "walls", "columns", "litter_bins", "benches", "stairs")
 CENTER, WIDTH, HEIGHT = (148.0, 98.0), 92, 72
 MARGIN_M = 4.0
@@ -38,16 +32,7 @@ SLIVER = ((138.0, 84.0), (150.0, 84.0), (150.0, 84.03), (138.0, 84.03))
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("folder", type=Path, nargs="?", default=ROOT / "docs" / "images")
-    folder = parser.parse_args().folder.resolve()
-    os.environ["QT_QPA_PLATFORM"] = "offscreen"
-    from qgis.core import QgsApplication
-
-    application = QgsApplication([], True)
-    application.initQgis()
-    register_plugin()
-    with tempfile.TemporaryDirectory() as place:
+    with drawing(__doc__) as folder, tempfile.TemporaryDirectory() as place:
         sound, faulty = Path(place) / "window.txt", Path(place) / "faulty.txt"
         print(run("export_robot_map.ExportRobotMap", export_parameters(sound)))
         loaded = load(sound)
@@ -55,36 +40,8 @@ def main() -> None:
         put_faults_in(sound, faulty)
         found = run("check_robot_map.CheckRobotMap", {"MAP": str(faulty), "FINDINGS": str(faulty) + ".gpkg"})
         print(found)
-        findings = styled(found["FINDINGS"], "Findings", "findings")
+        findings = vector(found["FINDINGS"], style="robot_map_findings")
         draw([findings, *load(faulty)], folder / "findings.png")
-
-
-def register_plugin() -> None:
-    """Make the repository's root importable under the name that QGIS gives it."""
-    spec = importlib.util.spec_from_file_location(
-        PACKAGE, ROOT / "__init__.py", submodule_search_locations=[str(ROOT)]
-    )
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[PACKAGE] = module
-    spec.loader.exec_module(module)
-
-
-def part(name: str) -> ModuleType:
-    return importlib.import_module(f"{PACKAGE}.{name}")
-
-
-def run(algorithm: str, parameters: dict[str, Any]) -> dict[str, Any]:
-    """Run an algorithm of the plugin, given as module.class, and return its outputs."""
-    from qgis.core import QgsProcessingContext, QgsProcessingFeedback, QgsProject
-
-    module, name = algorithm.split(".")
-    made = getattr(part(f"plugin.processing.{module}"), name)().create()
-    context, feedback = QgsProcessingContext(), QgsProcessingFeedback()
-    context.setProject(QgsProject.instance())
-    results, fine = made.run(parameters, context, feedback)
-    if not fine:
-        raise SystemExit(f"{name} failed:\n{feedback.textLog()}")
-    return results
 
 
 def export_parameters(target: Path) -> dict[str, Any]:
@@ -105,15 +62,7 @@ def load(file: Path) -> list[Any]:
     names = {"SEGMENTS": "segments", "LINES": "lines", "AREAS": "areas", "BORDER": "border"}
     outputs = {name: f"{file}.{look}.gpkg" for name, look in names.items()}
     made = run("load_robot_map.LoadRobotMap", {"MAP": str(file), **outputs})
-    return [styled(made[name], name, look) for name, look in names.items()]
-
-
-def styled(source: str, name: str, look: str) -> Any:
-    from qgis.core import QgsVectorLayer
-
-    layer = QgsVectorLayer(source, name, "ogr")
-    layer.loadNamedStyle(str(ROOT / "resources" / "styles" / f"robot_map_{look}.qml"))
-    return layer
+    return [vector(made[name], style=f"robot_map_{look}") for name, look in names.items()]
 
 
 def put_faults_in(sound: Path, faulty: Path) -> None:
@@ -153,31 +102,9 @@ def obstacle_along(model: ModuleType, id: int, kind: Any, points: Any) -> Any:
 
 def draw(layers: list[Any], picture: Path) -> None:
     """Draw ``layers`` over the orthophoto of the sample site."""
-    from qgis.core import (
-        QgsCoordinateReferenceSystem,
-        QgsMapRendererParallelJob,
-        QgsMapSettings,
-        QgsRasterLayer,
-        QgsRectangle,
-    )
-    from qgis.PyQt.QtCore import QSize
-
     x, y = CENTER[0] + ORIGIN[0], CENTER[1] + ORIGIN[1]
-    half_width, half_height = WIDTH / 2 + MARGIN_M, HEIGHT / 2 + MARGIN_M
-    photo = QgsRasterLayer(str(SITE / "orthophoto.tif"), "Orthophoto", "gdal")
-    settings = QgsMapSettings()
-    settings.setLayers([*layers, photo])
-    settings.setDestinationCrs(QgsCoordinateReferenceSystem(CRS))
-    settings.setExtent(QgsRectangle(x - half_width, y - half_height, x + half_width, y + half_height))
-    width, height = round(2 * half_width * PIXELS_PER_M), round(2 * half_height * PIXELS_PER_M)
-    settings.setOutputSize(QSize(width, height))
-    settings.setOutputDpi(96)
-    job = QgsMapRendererParallelJob(settings)
-    job.start()
-    job.waitForFinished()
-    if not job.renderedImage().save(str(picture)):
-        raise SystemExit(f"{picture} cannot be written: choose a folder that exists.")
-    reduce_colours(picture)
+    across, up = WIDTH / 2 + MARGIN_M, HEIGHT / 2 + MARGIN_M
+    draw_map([*layers, photo()], (x - across, y - up, x + across, y + up), PIXELS_PER_M, picture)
 
 
 if __name__ == "__main__":

@@ -1,40 +1,28 @@
 """Draw docs/images/road-surfaces*.png with a QGIS that has no display: generated surfaces, real and made up.
 
-python scripts/surfaces_pictures.py [docs/images]
+PYTHONPATH=scripts python -m pictures.road_surfaces [docs/images]
 
 The second one is of the real track: without the data beside the project it is left as it is.
 """
 
 from __future__ import annotations
 
-import argparse
-import os
 import tempfile
 from pathlib import Path
 from typing import Any
 
 from plugin_files import ROOT
-from robot_map_pictures import CRS, SITE, register_plugin, run
-from stage.picture import reduce_colours
+
+from .stage import CRS, SITE, draw_map, drawing, photo, run, vector
 
 DATA = ROOT.parent / "shared" / "data" / "zalazone"
-STYLES = ROOT / "resources" / "styles"
 EXTENT = (640420.0, 5193482.0, 640620.0, 5193622.0)
 PIXELS_PER_M = 5
 MARGIN_M = 8.0
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("folder", type=Path, nargs="?", default=ROOT / "docs" / "images")
-    folder = parser.parse_args().folder.resolve()
-    os.environ["QT_QPA_PLATFORM"] = "offscreen"
-    from qgis.core import QgsApplication
-
-    application = QgsApplication([], True)
-    application.initQgis()
-    register_plugin()
-    with tempfile.TemporaryDirectory() as place:
+    with drawing(__doc__) as folder, tempfile.TemporaryDirectory() as place:
         made = Path(place)
         sample_site(made / "sample.gpkg", folder / "road-surfaces.png")
         if DATA.is_dir():
@@ -43,12 +31,10 @@ def main() -> None:
 
 def sample_site(made: Path, picture: Path) -> None:
     """Draw the surfaces that the sample site's centrelines make, over its orthophoto."""
-    from qgis.core import QgsRasterLayer
-
     roads = f"{SITE / 'site.gpkg'}|layername=road_centrelines"
     print(run("build_road_surfaces.BuildRoadSurfaces", {"ROADS": roads, "SURFACES": str(made)}))
-    photo = QgsRasterLayer(str(SITE / "orthophoto.tif"), "Orthophoto", "gdal")
-    draw([_line(roads, "#ffffff", 0.5, "dash"), _styled(str(made)), photo], EXTENT, picture)
+    layers = [_line(roads, "#ffffff", 0.5, "dash"), vector(str(made), style="road_surfaces"), photo()]
+    draw_map(layers, EXTENT, PIXELS_PER_M, picture)
 
 
 def real_track(folder: Path, picture: Path) -> None:
@@ -62,52 +48,13 @@ def real_track(folder: Path, picture: Path) -> None:
     surfaces = _solid(made)
     box = surfaces.extent().buffered(MARGIN_M)
     extent = (box.xMinimum(), box.yMinimum(), box.xMaximum(), box.yMaximum())
-    draw([_dots(drive), _outline(real, "#c01c28"), surfaces], extent, picture)
-
-
-def draw(layers: list[Any], extent: tuple[float, ...], picture: Path) -> None:
-    """Draw ``layers``, the top one first."""
-    from qgis.core import (
-        QgsCoordinateReferenceSystem,
-        QgsMapRendererParallelJob,
-        QgsMapSettings,
-        QgsRectangle,
-    )
-    from qgis.PyQt.QtCore import QSize
-
-    settings = QgsMapSettings()
-    settings.setLayers(layers)
-    settings.setDestinationCrs(QgsCoordinateReferenceSystem(CRS))
-    settings.setExtent(QgsRectangle(*extent))
-    settings.setOutputSize(QSize(*(round((extent[k + 2] - extent[k]) * PIXELS_PER_M) for k in (0, 1))))
-    settings.setOutputDpi(96)
-    job = QgsMapRendererParallelJob(settings)
-    job.start()
-    job.waitForFinished()
-    if not job.renderedImage().save(str(picture)):
-        raise SystemExit(f"{picture} cannot be written: choose a folder that exists.")
-    reduce_colours(picture)
-
-
-def _vector(source: str, provider: str = "ogr") -> Any:
-    from qgis.core import QgsVectorLayer
-
-    layer = QgsVectorLayer(source, "layer", provider)
-    if not layer.isValid():
-        raise SystemExit(f"QGIS cannot open {source}.")
-    return layer
-
-
-def _styled(source: str) -> Any:
-    layer = _vector(source)
-    layer.loadNamedStyle(str(STYLES / "road_surfaces.qml"))
-    return layer
+    draw_map([_dots(drive), _outline(real, "#c01c28"), surfaces], extent, PIXELS_PER_M, picture)
 
 
 def _solid(source: str) -> Any:
     from qgis.core import QgsCategorizedSymbolRenderer, QgsFillSymbol, QgsRendererCategory
 
-    layer = _vector(source)
+    layer = vector(source)
     colours = {"asphalt": "#a9b4c0", "parking pavement": "#e6c88f"}
     categories = [
         QgsRendererCategory(
@@ -123,7 +70,7 @@ def _parking(source: str) -> Any:
     """Return the digitised parking, under the name that the style knows."""
     from fleet_supervisor.plugin.sites.roles import LayerExpressions, LayerSetup, keep_setup
 
-    layer = _vector(source)
+    layer = vector(source)
     expressions = LayerExpressions(
         filter="\"surface\" = 'parking_pavement'", semantics="replace(\"surface\", '_', ' ')"
     )
@@ -134,7 +81,7 @@ def _parking(source: str) -> Any:
 def _line(source: str, colour: str, width: float, style: str) -> Any:
     from qgis.core import QgsLineSymbol, QgsSingleSymbolRenderer
 
-    layer = _vector(source)
+    layer = vector(source)
     look = {"line_color": colour, "line_width": str(width), "line_style": style}
     layer.setRenderer(QgsSingleSymbolRenderer(QgsLineSymbol.createSimple(look)))
     return layer
@@ -143,7 +90,7 @@ def _line(source: str, colour: str, width: float, style: str) -> Any:
 def _outline(source: str, colour: str) -> Any:
     from qgis.core import QgsFillSymbol, QgsSingleSymbolRenderer
 
-    layer = _vector(source)
+    layer = vector(source)
     look = {"style": "no", "outline_color": colour, "outline_width": "0.4"}
     layer.setRenderer(QgsSingleSymbolRenderer(QgsFillSymbol.createSimple(look)))
     return layer
@@ -152,7 +99,7 @@ def _outline(source: str, colour: str) -> Any:
 def _dots(source: str) -> Any:
     from qgis.core import QgsMarkerSymbol, QgsSingleSymbolRenderer
 
-    layer = _vector(source, "delimitedtext")
+    layer = vector(source, provider="delimitedtext")
     look = {"name": "circle", "size": "1.5", "color": "#1a202c", "outline_style": "no"}
     layer.setRenderer(QgsSingleSymbolRenderer(QgsMarkerSymbol.createSimple(look)))
     return layer

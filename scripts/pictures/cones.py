@@ -1,26 +1,23 @@
 """Draw docs/images/cones-*.png: every standard layout, and one on the sample site, with no display.
 
-python scripts/cone_pictures.py [docs/images]
+PYTHONPATH=scripts python -m pictures.cones [docs/images]
 """
 
 from __future__ import annotations
 
-import argparse
-import os
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from plugin_files import ROOT
-from robot_map_pictures import part, register_plugin, run
 from stage.picture import reduce_colours
 
-SITE = ROOT / "resources" / "sample_site"
-CRS = "EPSG:32633"
+from .stage import CRS, SITE, draw_map, drawing, part, photo, run, vector
+
 PLACE = (640432.0, 5193486.2)
 DIMENSIONS = "vehicle_width=1.7; exit_length=15"
 EXTENT = (640424.0, 5193480.0, 640552.0, 5193508.0)
+PIXELS_PER_M = 1100 / 128
 FILL = {"orange": "#f26a1b", "big_orange": "#c22800", "blue": "#2d6cdf", "yellow": "#f2c200"}
 LONG, ROUND = (1100, 260), (760, 790)
 MARGIN, FOOT = 46, 40
@@ -30,18 +27,9 @@ SHOWN: dict[str, dict[str, float]] = {"circle": {"radius": 30, "spacing": 8}}
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("folder", type=Path, nargs="?", default=ROOT / "docs" / "images")
-    folder = parser.parse_args().folder.resolve()
-    os.environ["QT_QPA_PLATFORM"] = "offscreen"
-    from qgis.core import QgsApplication
-
-    application = QgsApplication([], True)
-    application.initQgis()
-    register_plugin()
-    for name, kind in part("robot_bridge.layouts.catalogue").LAYOUTS.items():
-        draw(kind.of(SHOWN.get(name, {})).cones(), folder / f"cones-{name.replace('_', '-')}.png")
-    with tempfile.TemporaryDirectory() as place:
+    with drawing(__doc__) as folder, tempfile.TemporaryDirectory() as place:
+        for name, kind in part("robot_bridge.layouts.catalogue").LAYOUTS.items():
+            draw(kind.of(SHOWN.get(name, {})).cones(), folder / f"cones-{name.replace('_', '-')}.png")
         draw_on_site(Path(place) / "cones.gpkg", folder / "cones-on-site.png")
 
 
@@ -122,8 +110,6 @@ def draw_scale(painter: Any, scale: Scale) -> None:
 
 def draw_on_site(file: Path, picture: Path) -> None:
     """Place the double lane change on the sample site's straight and draw it over the orthophoto."""
-    from qgis.core import QgsRasterLayer, QgsVectorLayer
-
     site = SITE / "sample_site.gpkg"
     made = run(
         "cone_layout.ConeLayout",
@@ -140,34 +126,7 @@ def draw_on_site(file: Path, picture: Path) -> None:
         },
     )
     print(made)
-    cones = QgsVectorLayer(made["CONES"], "Cones", "ogr")
-    cones.loadNamedStyle(str(ROOT / "resources" / "styles" / "cones.qml"))
-    photo = QgsRasterLayer(str(SITE / "orthophoto.tif"), "Orthophoto", "gdal")
-    render([cones, photo], picture)
-
-
-def render(layers: list[Any], picture: Path) -> None:
-    from qgis.core import (
-        QgsCoordinateReferenceSystem,
-        QgsMapRendererParallelJob,
-        QgsMapSettings,
-        QgsRectangle,
-    )
-    from qgis.PyQt.QtCore import QSize
-
-    extent = QgsRectangle(*EXTENT)
-    settings = QgsMapSettings()
-    settings.setLayers(layers)
-    settings.setDestinationCrs(QgsCoordinateReferenceSystem(CRS))
-    settings.setExtent(extent)
-    settings.setOutputSize(QSize(1100, round(1100 * extent.height() / extent.width())))
-    settings.setOutputDpi(96)
-    job = QgsMapRendererParallelJob(settings)
-    job.start()
-    job.waitForFinished()
-    if not job.renderedImage().save(str(picture)):
-        raise SystemExit(f"{picture} cannot be written: choose a folder that exists.")
-    reduce_colours(picture)
+    draw_map([vector(made["CONES"], style="cones"), photo()], EXTENT, PIXELS_PER_M, picture)
 
 
 if __name__ == "__main__":
