@@ -28,6 +28,14 @@ def tr(text: str, /, **values: object) -> str:
     return translated.format(**values) if values else translated
 
 
+def tr_page(text: str, /) -> str:
+    """Return a text of several paragraphs in the language of QGIS; line breaks in ``text`` are blanks.
+
+    In one line, because QGIS takes every line break of a help for the end of a paragraph.
+    """
+    return tr(" ".join(text.split()))
+
+
 def tr_count(number: int, one: str, many: str, /, **values: object) -> str:
     """Return the text for a number of things: ``one`` of them, or ``many`` with ``%n`` for the number.
 

@@ -22,7 +22,7 @@ CONTEXT = "FleetSupervisor"
 FORMS = {"ca": 2, "es": 2, "hu": 1}
 """The languages, and into how many forms each puts a number of things, as Qt counts them."""
 HEAD = b'<?xml version="1.0" encoding="utf-8"?>\n<!DOCTYPE TS>\n'
-CALLS = {"tr": 0, "tr_count": 2}
+CALLS = {"tr": 0, "tr_count": 2, "tr_page": 0}
 """What takes a text that is translated, and which of its arguments that is."""
 
 
@@ -60,7 +60,8 @@ def _texts_of(path: Path, name: str) -> Iterator[Text]:
         argument = node.args[CALLS[called]]
         place = f"{name}:{node.lineno}"
         if isinstance(argument, ast.Constant) and isinstance(argument.value, str):
-            yield Text(argument.value, place, called == "tr_count")
+            source = " ".join(argument.value.split()) if called == "tr_page" else argument.value
+            yield Text(source, place, called == "tr_count")
         elif isinstance(argument, (ast.JoinedStr, ast.BinOp)):
             raise TranslationsError(f"{place}: write the text as one literal with {{placeholders}}")
 

@@ -90,7 +90,7 @@ class AccessFields(QWidget):
         grid.setContentsMargins(0, 0, 0, 0)
         grid.setHorizontalSpacing(6)
         grid.setVerticalSpacing(4)
-        for row, (text, field) in enumerate((("&Token", self._token), (tr("CA &file"), self._ca))):
+        for row, (text, field) in enumerate(((tr("&Token"), self._token), (tr("CA &file"), self._ca))):
             label = QLabel(text)
             label.setBuddy(field)
             grid.addWidget(label, row, 0)

@@ -49,7 +49,7 @@ class FleetDock(QgsDockWidget):
     """Lays the parts out so that a panel of 420 pixels shows all of them uncut."""
 
     def __init__(self, desk: Desk, actions: Actions, edits: QueueEdits, parent: QWidget | None = None):
-        super().__init__("Fleet", parent)
+        super().__init__(tr("Fleet"), parent)
         self.setObjectName("fleet_dock")
         self._desk = desk
         self.connection_panel = ConnectionPanel(actions.connect)

@@ -10,6 +10,7 @@ from qgis.PyQt.QtCore import QObject, pyqtSignal
 
 from ...robot_bridge.messages import Abort, AbortAll, ClearEmergencyStop, EmergencyStop, Send, to_json
 from ..errors import NotSentError
+from ..language import tr
 from ..wire.outbox import Answer, Order
 from .drafts import TARGETS, Draft
 
@@ -52,11 +53,14 @@ class Orders(QObject):
         :raises NotSentError: when it must not or cannot be sent; nothing was sent then.
         """
         if draft.fault:
-            raise NotSentError(f"{draft.in_words()} was not sent: {draft.fault}")
+            raise NotSentError(tr("{draft} was not sent: {fault}", draft=draft.in_words(), fault=draft.fault))
         if draft.kind == TARGETS:
             raise NotSentError(
-                f"{draft.in_words()} were not sent: several targets are driven to one after the other. Press "
-                "Add to queue."
+                tr(
+                    "{draft} were not sent: several targets are driven to one after the other. Press Add "
+                    "to queue.",
+                    draft=draft.in_words(),
+                )
             )
         op, params = draft.message()
         return self._command(draft.robot, op, params, draft.in_words(), draft, draft.override)
@@ -66,7 +70,7 @@ class Orders(QObject):
 
         :raises NotSentError: when it cannot be sent.
         """
-        return self._command(robot, Abort.__name__, {}, f"Abort of {robot}", None)
+        return self._command(robot, Abort.__name__, {}, tr("Abort of {robot}", robot=robot), None)
 
     def abort_all(self) -> str:
         """Ask every robot to give up its task and return the order's key.
@@ -75,7 +79,7 @@ class Orders(QObject):
         """
         command = str(uuid.uuid4())
         order = Order(command, AbortAll.method, to_json(AbortAll(command)), self._clock())
-        return self._put(order, "ABORT ALL")
+        return self._put(order, tr("ABORT ALL"))
 
     @property
     def awaits_stop(self) -> bool:
@@ -90,7 +94,7 @@ class Orders(QObject):
         stop = str(uuid.uuid4())
         key = self._put(
             Order(stop, EmergencyStop.method, to_json(EmergencyStop(stop)), self._clock(), lasting=True),
-            "EMERGENCY STOP",
+            tr("EMERGENCY STOP"),
         )
         self._pending[key].stops = True
         return key
@@ -102,7 +106,7 @@ class Orders(QObject):
         """
         params = to_json(ClearEmergencyStop(reason or None, stop))
         order = Order(str(uuid.uuid4()), ClearEmergencyStop.method, params, self._clock())
-        return self._put(order, "Clear emergency stop")
+        return self._put(order, tr("Clear emergency stop"))
 
     def ask(self, order: Order, words: str) -> None:
         """Ask for something else, which is ``words`` to the operator; raises NotSentError."""
@@ -121,15 +125,21 @@ class Orders(QObject):
         if "text" in result:
             self.accepted.emit(f"{pending.words}: {result['text']}")
         elif "closure" in result:
-            self.accepted.emit(f"{pending.words}: done")
+            self.accepted.emit(tr("{words}: done", words=pending.words))
         elif "in_force" in result:
-            self.accepted.emit(f"{pending.words}: {'in force' if result['in_force'] else 'done'}")
+            self.accepted.emit(
+                tr("{words}: in force", words=pending.words)
+                if result["in_force"]
+                else tr("{words}: done", words=pending.words)
+            )
         elif result.keys() & {"revision", "queues", "placements", "tasks"}:
-            self.accepted.emit(f"{pending.words}: done")
+            self.accepted.emit(tr("{words}: done", words=pending.words))
         elif commands is None:
-            self.accepted.emit(f"{pending.words}: queued")
+            self.accepted.emit(tr("{words}: queued", words=pending.words))
         else:
-            self.accepted.emit(f"{pending.words}: sent to {len(commands)} robots")
+            self.accepted.emit(
+                tr("{words}: sent to {commands} robots", words=pending.words, commands=len(commands))
+            )
 
     def watch(self) -> None:
         """Tell once of each order that waits for its answer for too long."""
@@ -138,8 +148,12 @@ class Orders(QObject):
             if not pending.told_slow and now - pending.asked_at > SLOW_AFTER:
                 pending.told_slow = True
                 self.slow.emit(
-                    f"{pending.words}: the gateway has not answered for {SLOW_AFTER:g} s, so it may not have "
-                    "arrived. It is repeated when the link is back; it is never done twice."
+                    tr(
+                        "{words}: the gateway has not answered for {seconds:g} s, so it may not have "
+                        "arrived. It is repeated when the link is back; it is never done twice.",
+                        words=pending.words,
+                        seconds=SLOW_AFTER,
+                    )
                 )
 
     def _command(
@@ -160,6 +174,6 @@ class Orders(QObject):
         try:
             self._submit(order)
         except NotSentError as error:
-            raise NotSentError(f"{words} was NOT sent: {error}") from error
+            raise NotSentError(tr("{words} was NOT sent: {error}", words=words, error=error)) from error
         self._pending[order.key] = Pending(words, order.asked_at, draft)
         return order.key

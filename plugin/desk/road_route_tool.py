@@ -5,6 +5,7 @@ from __future__ import annotations
 from qgis.gui import QgsMapMouseEvent
 
 from ...robot_bridge.messages import RouteReport
+from ..language import tr
 from .desk import Desk
 from .drafts import ROUTE, Draft, Point
 from .route_preview import Question, in_words
@@ -52,4 +53,4 @@ class RoadRouteTool(RouteTool):
         points = route.points if question.start is None else route.points[1:]
         self.put(draft.with_leg(tuple(points), in_words(route)))
         if route.note:
-            self.desk.complained.emit(f"This leg does not follow the roads: {route.note}")
+            self.desk.complained.emit(tr("This leg does not follow the roads: {note}", note=route.note))

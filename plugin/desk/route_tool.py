@@ -7,6 +7,7 @@ from qgis.PyQt.QtCore import QEvent, QObject, Qt
 from qgis.PyQt.QtGui import QKeyEvent
 
 from ..errors import FleetError, PlacementError
+from ..language import tr
 from .commands.nudging import nudged
 from .commands.route_drag import RouteDrag
 from .commands.route_handles import RouteHandles, middle
@@ -120,8 +121,12 @@ class RouteTool(DraftTool):
         if self.desk.selected in (None, draft.robot):
             return True
         self.desk.complained.emit(
-            f"The route on the map is for {draft.robot}, but {self.desk.selected} is selected. Send it "
-            f"(Enter) or cancel it (Esc) first, or select {draft.robot} again."
+            tr(
+                "The route on the map is for {robot}, but {selected} is selected. Send it (Enter) or "
+                "cancel it (Esc) first, or select {robot} again.",
+                robot=draft.robot,
+                selected=self.desk.selected,
+            )
         )
         return False
 
@@ -157,7 +162,9 @@ class RouteTool(DraftTool):
 
     def _insert(self, draft: Draft, vertex: int) -> None:
         if vertex == 0:
-            self.desk.complained.emit("This is the first vertex: another is put before one that comes later.")
+            self.desk.complained.emit(
+                tr("This is the first vertex: another is put before one that comes later.")
+            )
             return
         self._try(lambda: self.put(route_editing.inserted(draft, vertex, middle(draft, vertex))))
         self._hold_again(vertex)

@@ -8,6 +8,7 @@ from qgis.core import QgsProject
 from qgis.gui import QgisInterface, QgsCustomDropHandler
 
 from ..errors import FleetError
+from ..language import tr
 from ..sites.published_layers import LoadedSite, load_site, loaded_already, site_folder
 from .notices import Notices
 
@@ -35,7 +36,9 @@ class SiteDrop(QgsCustomDropHandler):
         known = loaded_already(folder, self._project)
         if known:
             names = ", ".join(layer.name() for layer in known)
-            self._notices.info(f"The site in {folder} is in the project already: {names}.")
+            self._notices.info(
+                tr("The site in {folder} is in the project already: {names}.", folder=folder, names=names)
+            )
             return True
         was_empty = not self._project.mapLayers()
         try:
@@ -50,10 +53,11 @@ class SiteDrop(QgsCustomDropHandler):
 
 
 def _in_words(site: LoadedSite) -> str:
-    text = f"{site.name}: {len(site.layers)} layers loaded."
+    text = tr("{site}: {count} layers loaded.", site=site.name, count=len(site.layers))
     if site.without_role:
-        text += (
-            f" {', '.join(site.without_role)} have no role: other layers of the project have it. Plugins > "
-            "Fleet Supervisor > Layer roles changes that."
+        text += tr(
+            " {layers} have no role: other layers of the project have it. Plugins > Fleet "
+            "Supervisor > Layer roles changes that.",
+            layers=", ".join(site.without_role),
         )
     return text

@@ -120,7 +120,7 @@ class SurfaceTool(QgsMapTool):
         self._clicked = None
         crs = self._crs()
         digits = 6 if crs.isGeographic() else 2
-        where = f"{place.x():.{digits}f}, {place.y():.{digits}f} ({crs.authid() or 'no CRS'})"
+        where = f"{place.x():.{digits}f}, {place.y():.{digits}f} ({crs.authid() or tr('no CRS')})"
         self._say(tr("{told} at {where}", told=_told(_at(surfaces, place, crs)), where=where), False)
 
     def _read_anew(self) -> None:

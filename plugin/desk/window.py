@@ -8,6 +8,7 @@ from qgis.PyQt.QtCore import QObject, Qt
 from qgis.PyQt.QtWidgets import QToolBar
 
 from ..errors import FleetError
+from ..language import tr
 from ..wire.status import Phase
 from .actions import Actions
 from .clear_dialog import ClearDialog
@@ -154,7 +155,7 @@ class DeskWindow(QObject):
         link = self.desk.link
         wanted = link.phase not in (Phase.CLOSED, Phase.FAILED)
         self.actions.connect.setChecked(wanted)
-        self.actions.connect.setText("Disconnect" if wanted else "Connect")
+        self.actions.connect.setText(tr("Disconnect") if wanted else tr("Connect"))
         if link.phase is Phase.FAILED:
             self.notices.error(link.reason)
         elif link.phase is Phase.RETRYING and link.reason != self._told:

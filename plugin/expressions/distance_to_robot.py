@@ -17,11 +17,12 @@ from qgis.core import (
 )
 
 from ..errors import FleetError
+from ..language import tr, tr_page
 from .place_crs import crs_of_place
 from .robots_now import FleetNow
 
-NAME, GROUP = "distance_to_robot", "Fleet"
-_HELP = """
+NAME, GROUP = "distance_to_robot", tr("Fleet")
+_HELP = tr_page("""
 <h3>function distance_to_robot</h3>
 <p>Returns how far a robot is from a feature or a geometry, in metres of the site.</p>
 <h4>Syntax</h4>
@@ -43,7 +44,7 @@ layer whose feature is looked at, else that of the project</td></tr>
 <p>The distance is measured in the plane of the site's CRS; in a polygon it is 0. NULL stands for a robot
 whose place is not known, and while this QGIS is connected to no gateway. Places are at most half a second
 old; a layer shows them when it is drawn.</p>
-"""
+""")
 
 
 class DistanceToRobot(QgsExpressionFunction):
@@ -53,7 +54,7 @@ class DistanceToRobot(QgsExpressionFunction):
         parameter = QgsExpressionFunction.Parameter
         parameters = [parameter("robot"), parameter("geometry", True), parameter("crs", True)]
         # Handles NULL itself: an argument that is left out comes as NULL, too.
-        super().__init__(NAME, parameters, GROUP, " ".join(_HELP.split()), False, True, True)
+        super().__init__(NAME, parameters, GROUP, _HELP, False, True, True)
         self._fleet = fleet
 
     def isStatic(self, _node, _parent, _context):
@@ -75,7 +76,11 @@ class DistanceToRobot(QgsExpressionFunction):
             geometry = context.feature().geometry() if context is not None else None
         if not isinstance(geometry, QgsGeometry):
             parent.setEvalErrorString(
-                f"{NAME}: {geometry!r} is no geometry; give one, or a feature that has one"
+                tr(
+                    "{function}: {geometry!r} is no geometry; give one, or a feature that has one",
+                    function=NAME,
+                    geometry=geometry,
+                )
             )
             return None
         if geometry.isNull():
@@ -85,7 +90,9 @@ class DistanceToRobot(QgsExpressionFunction):
         except FleetError as error:
             parent.setEvalErrorString(f"{NAME}: {error}")
         except QgsCsException:
-            parent.setEvalErrorString(f"{NAME}: the geometry has no place in {robots.crs.authid()}")
+            parent.setEvalErrorString(
+                tr("{function}: the geometry has no place in {crs}", function=NAME, crs=robots.crs.authid())
+            )
         return None
 
 

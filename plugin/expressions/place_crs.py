@@ -7,6 +7,7 @@ from typing import Any
 from qgis.core import QgsCoordinateReferenceSystem, QgsProject
 
 from ..errors import FleetError
+from ..language import tr
 
 
 def crs_of_place(given: Any, of_layer: Any) -> QgsCoordinateReferenceSystem:
@@ -17,7 +18,9 @@ def crs_of_place(given: Any, of_layer: Any) -> QgsCoordinateReferenceSystem:
     if given is not None:
         crs = QgsCoordinateReferenceSystem(str(given))
         if not crs.isValid():
-            raise FleetError(f"crs {given!r} is no CRS that QGIS knows; write a code such as 'EPSG:32633'")
+            raise FleetError(
+                tr("crs {given!r} is no CRS that QGIS knows; write a code such as 'EPSG:32633'", given=given)
+            )
         return crs
     crs = QgsCoordinateReferenceSystem(str(of_layer or ""))
     return crs if crs.isValid() else QgsProject.instance().crs()

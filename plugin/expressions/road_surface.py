@@ -13,12 +13,13 @@ from qgis.core import (
 )
 
 from ..errors import FleetError
+from ..language import tr, tr_page
 from ..sites.roles import ROAD_SURFACE
 from ..sites.surface_store import SurfaceStore
 from .place_crs import crs_of_place
 
-NAME, GROUP = "road_surface", "Fleet"
-_HELP = """
+NAME, GROUP = "road_surface", tr("Fleet")
+_HELP = tr_page("""
 <h3>function road_surface</h3>
 <p>Returns the class of the road surface at a place, such as 'asphalt', or NULL where there is none.</p>
 <h4>Syntax</h4>
@@ -40,7 +41,7 @@ whose feature is looked at, else that of the project</td></tr>
 <h4>Notes</h4>
 <p>A place on an edge is on the surface. Where surfaces lie on one another a drawn one counts before a
 generated one, then the smaller before the larger.</p>
-"""
+""")
 
 
 class RoadSurface(QgsExpressionFunction):
@@ -50,7 +51,7 @@ class RoadSurface(QgsExpressionFunction):
         parameter = QgsExpressionFunction.Parameter
         parameters = [parameter("x"), parameter("y"), parameter("layer", True), parameter("crs", True)]
         # Handles NULL itself: an argument that is left out comes as NULL, too.
-        super().__init__(NAME, parameters, GROUP, " ".join(_HELP.split()), False, True, True)
+        super().__init__(NAME, parameters, GROUP, _HELP, False, True, True)
         self._store = store
 
     def usesGeometry(self, _node):
@@ -67,10 +68,12 @@ class RoadSurface(QgsExpressionFunction):
             surfaces, way = self._kept(layer, crs, context)
             found = surfaces.at(float(x), float(y), way)
         except (TypeError, ValueError):
-            parent.setEvalErrorString(f"road_surface: x is {x!r} and y is {y!r}; give two numbers")
+            parent.setEvalErrorString(
+                tr("{function}: x is {x!r} and y is {y!r}; give two numbers", function=NAME, x=x, y=y)
+            )
             return None
         except FleetError as error:
-            parent.setEvalErrorString(f"road_surface: {error}")
+            parent.setEvalErrorString(f"{NAME}: {error}")
             return None
         return None if found is None else found.label
 
@@ -91,8 +94,11 @@ class RoadSurface(QgsExpressionFunction):
             found = self._store.layers()
             if not found:
                 raise FleetError(
-                    f"no layer of the project has the role {ROAD_SURFACE}; set it in Plugins > "
-                    "Fleet Supervisor > Layer roles, or name a layer as the third argument"
+                    tr(
+                        "no layer of the project has the role {role}; set it in Plugins > Fleet Supervisor > "
+                        "Layer roles, or name a layer as the third argument",
+                        role=ROAD_SURFACE,
+                    )
                 )
             return found
         if isinstance(layer, QgsVectorLayer):
@@ -100,7 +106,7 @@ class RoadSurface(QgsExpressionFunction):
         project = QgsProject.instance()
         named = project.mapLayer(str(layer)) or next(iter(project.mapLayersByName(str(layer))), None)
         if not isinstance(named, QgsVectorLayer):
-            raise FleetError(f"no vector layer of the project has the name or id {layer!r}")
+            raise FleetError(tr("no vector layer of the project has the name or id {layer!r}", layer=layer))
         return [named]
 
 

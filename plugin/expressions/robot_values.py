@@ -6,13 +6,55 @@ from collections.abc import Callable
 
 from qgis.core import NULL, QgsExpressionFunction
 
+from ..language import tr, tr_page
 from .robots_now import FleetNow, RobotsNow
 
-GROUP = "Fleet"
-_NOT_KNOWN = (
-    "NULL stands for a robot that the gateway has not told of, and while this QGIS is connected to none. "
-    "What is not known of a robot is NULL as well."
-)
+GROUP = tr("Fleet")
+_STATE_HELP = tr_page("""
+<h3>function robot_state</h3>
+<p>Returns how far what is known of a robot can be trusted: 'fresh', 'stale', 'lost' or 'offline'.</p>
+<h4>Syntax</h4>
+<p><code>robot_state(robot)</code></p>
+<h4>Arguments</h4>
+<table><tr><td><i>robot</i></td><td>its name, as in the Fleet panel</td></tr></table>
+<h4>Examples</h4>
+<ul>
+<li><code>robot_state('r1')</code> &rarr; 'fresh'</li>
+<li><code>robot_state("robot") IN ('stale', 'lost')</code> &rarr; true of robots that are silent</li>
+</ul>
+""")
+_BATTERY_HELP = tr_page("""
+<h3>function robot_battery</h3>
+<p>Returns how full a robot's battery is, 0 to 1.</p>
+<h4>Syntax</h4>
+<p><code>robot_battery(robot)</code></p>
+<h4>Arguments</h4>
+<table><tr><td><i>robot</i></td><td>its name, as in the Fleet panel</td></tr></table>
+<h4>Examples</h4>
+<ul>
+<li><code>robot_battery('r1')</code> &rarr; 0.82</li>
+<li><code>round(100 * robot_battery('r1')) || ' %'</code> &rarr; '82 %'</li>
+</ul>
+""")
+_AGE_HELP = tr_page("""
+<h3>function robot_age</h3>
+<p>Returns the seconds since a robot's last message, by this computer's clock.</p>
+<h4>Syntax</h4>
+<p><code>robot_age(robot)</code></p>
+<h4>Arguments</h4>
+<table><tr><td><i>robot</i></td><td>its name, as in the Fleet panel</td></tr></table>
+<h4>Examples</h4>
+<ul>
+<li><code>robot_age('r1')</code> &rarr; 0.4</li>
+<li><code>robot_age('r1') &gt; 10</code> &rarr; true once it has been silent for more than 10 seconds</li>
+</ul>
+""")
+_NOTES = tr_page("""
+<h4>Notes</h4>
+<p>NULL stands for a robot that the gateway has not told of, and while this QGIS is connected to none. What is
+not known of a robot is NULL as well. Values are at most half a second old; a layer shows them when it is
+drawn.</p>
+""")
 
 
 class RobotValue(QgsExpressionFunction):
@@ -42,48 +84,7 @@ class RobotValue(QgsExpressionFunction):
 def robot_values(fleet: FleetNow) -> list[RobotValue]:
     """Return the functions; each needs to be kept as long as QGIS has it."""
     return [
-        RobotValue(
-            "robot_state",
-            _help(
-                "robot_state",
-                "Returns how far what is known of a robot can be trusted: 'fresh', 'stale', 'lost' or "
-                "'offline'.",
-                "robot_state('r1') &rarr; 'fresh'",
-                "robot_state(\"robot\") IN ('stale', 'lost') &rarr; true of robots that are silent",
-            ),
-            fleet,
-            RobotsNow.state,
-        ),
-        RobotValue(
-            "robot_battery",
-            _help(
-                "robot_battery",
-                "Returns how full a robot's battery is, 0 to 1.",
-                "robot_battery('r1') &rarr; 0.82",
-                "round(100 * robot_battery('r1')) || ' %' &rarr; '82 %'",
-            ),
-            fleet,
-            RobotsNow.charge,
-        ),
-        RobotValue(
-            "robot_age",
-            _help(
-                "robot_age",
-                "Returns the seconds since a robot's last message, by this computer's clock.",
-                "robot_age('r1') &rarr; 0.4",
-                "robot_age('r1') &gt; 10 &rarr; true once it has been silent for more than 10 seconds",
-            ),
-            fleet,
-            RobotsNow.silence,
-        ),
+        RobotValue("robot_state", _STATE_HELP + _NOTES, fleet, RobotsNow.state),
+        RobotValue("robot_battery", _BATTERY_HELP + _NOTES, fleet, RobotsNow.charge),
+        RobotValue("robot_age", _AGE_HELP + _NOTES, fleet, RobotsNow.silence),
     ]
-
-
-def _help(name: str, says: str, *examples: str) -> str:
-    listed = "".join(f"<li><code>{example}</code></li>" for example in examples)
-    return (
-        f"<h3>function {name}</h3><p>{says}</p><h4>Syntax</h4><p><code>{name}(robot)</code></p>"
-        "<h4>Arguments</h4><table><tr><td><i>robot</i></td><td>its name, as in the Fleet panel</td></tr>"
-        f"</table><h4>Examples</h4><ul>{listed}</ul><h4>Notes</h4><p>{_NOT_KNOWN} Values are at most half "
-        "a second old; a layer shows them when it is drawn.</p>"
-    )

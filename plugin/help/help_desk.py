@@ -9,6 +9,7 @@ from qgis.PyQt.QtCore import QEvent, QObject, Qt
 from qgis.PyQt.QtGui import QIcon
 from qgis.PyQt.QtWidgets import QAction, QApplication, QWidget
 
+from ..language import tr
 from .help_window import HelpWindow, show_help
 from .topics import START, topic_of
 
@@ -21,7 +22,7 @@ class HelpDesk(QObject):
     def __init__(self, iface: QgisInterface, menu: str, panel: QWidget):
         super().__init__(iface.mainWindow())
         self._iface, self._menu, self._panel = iface, menu, panel
-        self.action = QAction(QIcon(str(ICON)), "Fleet Supervisor help", self)
+        self.action = QAction(QIcon(str(ICON)), tr("Fleet Supervisor help"), self)
         self.action.setObjectName("fleet_help_action")
         self.action.triggered.connect(lambda: show_help(START, iface.mainWindow()))
         iface.addPluginToMenu(menu, self.action)

@@ -9,6 +9,7 @@ from qgis.PyQt.QtCore import Qt, QUrl
 from qgis.PyQt.QtGui import QDesktopServices, QTextBlock
 from qgis.PyQt.QtWidgets import QDialog, QTextBrowser, QVBoxLayout, QWidget
 
+from ..language import tr
 from .topics import START, Topic
 
 DOCS = Path(__file__).parents[2] / "docs"
@@ -21,7 +22,7 @@ class HelpWindow(QDialog):
     def __init__(self, parent: QWidget | None = None):
         super().__init__(parent)
         self.setObjectName("fleet_help")
-        self.setWindowTitle("Fleet Supervisor: help")
+        self.setWindowTitle(tr("Fleet Supervisor: help"))
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self.topic = START
         self.browser = QTextBrowser()
@@ -50,7 +51,11 @@ class HelpWindow(QDialog):
         try:
             text = file.read_text(encoding="utf-8")
         except OSError as error:
-            text = f"# Help\n\n{file} cannot be read: {error.strerror}. Install the plugin again."
+            text = tr(
+                "# Help\n\n{file} cannot be read: {strerror}. Install the plugin again.",
+                file=file,
+                strerror=error.strerror,
+            )
         # Pictures are as wide as screens; a page is not.
         document.setMarkdown(re.sub(r"!\[[^\]]*\]\([^)]*\)", "", text))
 

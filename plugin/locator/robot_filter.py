@@ -8,6 +8,7 @@ from qgis.core import QgsFeedback, QgsLocatorContext, QgsLocatorFilter, QgsLocat
 from qgis.PyQt.QtGui import QIcon
 
 from ..expressions.robots_now import FleetNow, RobotsNow
+from ..language import tr
 
 NAME = "fleet_robots"
 MOST = 50
@@ -32,7 +33,7 @@ class RobotFilter(QgsLocatorFilter):
         return NAME
 
     def displayName(self):
-        return "Robots"
+        return tr("Robots")
 
     def prefix(self):
         # Shorter ones of plugins are passed over, unless the user has chosen them: see RobotLocator.
@@ -61,8 +62,10 @@ class RobotFilter(QgsLocatorFilter):
         state, age = robots.state(name), robots.silence(name)
         result = QgsLocatorResult()
         result.displayString = name
-        result.description = f"{state}, heard of {age:.0f} s ago" if age is not None else str(state)
-        result.group = "Robots"
+        result.description = (
+            tr("{state}, heard of {age:.0f} s ago", state=state, age=age) if age is not None else str(state)
+        )
+        result.group = tr("Robots")
         result.score = score
         if state in self._icons:
             result.icon = self._icons[state]

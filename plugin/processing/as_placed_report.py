@@ -17,6 +17,7 @@ from qgis.core import (
     QgsProcessingParameterString,
 )
 
+from ..language import tr, tr_page
 from .errors import ParameterError, shown_by_processing
 from .fleet_algorithm import FleetAlgorithm
 from .placed_cones import deviations, read_cones
@@ -25,27 +26,29 @@ from .report_layout import Report, write_pdf
 INPUT, OUTPUT = "INPUT", "OUTPUT"
 TOLERANCE, TITLE, BACKGROUND, CRS = "TOLERANCE", "TITLE", "BACKGROUND", "CRS"
 NUMBERS = {
-    "CONE_COUNT": "Cones",
-    "WITHIN_COUNT": "Cones within the tolerance",
-    "MEAN": "Mean deviation [m]",
-    "RMS": "Root mean square deviation [m]",
-    "P95": "95 % deviate at most [m]",
-    "MAX": "Largest deviation [m]",
-    "PAGE_COUNT": "Pages",
-    "WARNING_COUNT": "Warnings",
+    "CONE_COUNT": tr("Cones"),
+    "WITHIN_COUNT": tr("Cones within the tolerance"),
+    "MEAN": tr("Mean deviation [m]"),
+    "RMS": tr("Root mean square deviation [m]"),
+    "P95": tr("95 % deviate at most [m]"),
+    "MAX": tr("Largest deviation [m]"),
+    "PAGE_COUNT": tr("Pages"),
+    "WARNING_COUNT": tr("Warnings"),
 }
 
 
 class AsPlacedReport(FleetAlgorithm):
     """Lays out figures, histogram, map and table of placed cones."""
 
-    GROUP = ("records", "Records")
+    GROUP = ("records", tr("Records"))
     NAME = "asplacedreport"
-    TITLE = "As-placed report"
-    SUMMARY = "Writes a PDF of how placed cones stand against their plan: figures, histogram, map and table."
+    TITLE = tr("As-placed report")
+    SUMMARY = tr(
+        "Writes a PDF of how placed cones stand against their plan: figures, histogram, map and table."
+    )
     ICON = "as_placed_report.svg"
     TAGS = ("cone", "placed", "planned", "deviation", "report", "pdf", "layout", "histogram")
-    HELP = """
+    HELP = tr_page("""
     <p>Compares where cones stand with where they were to stand, and writes a PDF: how many are within the
     tolerance, a histogram of the deviations, a map and a table of every cone, worst first.</p>
     <p>The cones are a layer of the GeoPackage that <i>robot-bridge placements export cones.gpkg --site
@@ -57,7 +60,7 @@ class AsPlacedReport(FleetAlgorithm):
     names. Give background layers, such as roads, to be drawn beneath.</p>
     <pre>qgis_process run fleet:asplacedreport -- INPUT="cones.gpkg|layername=placed" TOLERANCE=0.2
     OUTPUT=report.pdf</pre>
-    """
+    """)
 
     def flags(self):
         # Print layouts belong to the main thread.
@@ -65,19 +68,27 @@ class AsPlacedReport(FleetAlgorithm):
 
     def initAlgorithm(self, configuration=None):
         kinds = QgsProcessing.SourceType
-        self.addParameter(QgsProcessingParameterFeatureSource(INPUT, "Placed cones", [kinds.TypeVector]))
+        self.addParameter(QgsProcessingParameterFeatureSource(INPUT, tr("Placed cones"), [kinds.TypeVector]))
         real = QgsProcessingParameterNumber.Type.Double
         self.addParameter(
-            QgsProcessingParameterNumber(TOLERANCE, "Tolerance [m]", real, 0.20, minValue=0.001, maxValue=100)
-        )
-        self.addParameter(QgsProcessingParameterString(TITLE, "Title", "Cones as placed and as planned"))
-        self.addParameter(
-            QgsProcessingParameterMultipleLayers(
-                BACKGROUND, "Background of the map", kinds.TypeMapLayer, optional=True
+            QgsProcessingParameterNumber(
+                TOLERANCE, tr("Tolerance [m]"), real, 0.20, minValue=0.001, maxValue=100
             )
         )
-        self.addParameter(QgsProcessingParameterCrs(CRS, "Site CRS (default: the layer's)", optional=True))
-        self.addParameter(QgsProcessingParameterFileDestination(OUTPUT, "Report", "PDF files (*.pdf)"))
+        self.addParameter(
+            QgsProcessingParameterString(TITLE, tr("Title"), tr("Cones as placed and as planned"))
+        )
+        self.addParameter(
+            QgsProcessingParameterMultipleLayers(
+                BACKGROUND, tr("Background of the map"), kinds.TypeMapLayer, optional=True
+            )
+        )
+        self.addParameter(
+            QgsProcessingParameterCrs(CRS, tr("Site CRS (default: the layer's)"), optional=True)
+        )
+        self.addParameter(
+            QgsProcessingParameterFileDestination(OUTPUT, tr("Report"), tr("PDF files (*.pdf)"))
+        )
         for name, title in NUMBERS.items():
             self.addOutput(QgsProcessingOutputNumber(name, title))
 
@@ -92,7 +103,7 @@ class AsPlacedReport(FleetAlgorithm):
             cones, odd = read
             if odd:
                 feedback.pushWarning(
-                    f"{odd} features have no planned or no placed position; they are left out."
+                    tr("{odd} features have no planned or no placed position; they are left out.", odd=odd)
                 )
             tolerance = self.parameterAsDouble(parameters, TOLERANCE, context)
             figures = deviations(cones, tolerance)
@@ -109,8 +120,13 @@ class AsPlacedReport(FleetAlgorithm):
             if pages is None:
                 return {}
         feedback.pushInfo(
-            f"{figures.within} of {figures.count} cones are within {tolerance:g} m; the worst is "
-            f"{figures.most:.3f} m off."
+            tr(
+                "{within} of {count} cones are within {tolerance:g} m; the worst is {most:.3f} m off.",
+                within=figures.within,
+                count=figures.count,
+                tolerance=tolerance,
+                most=figures.most,
+            )
         )
         numbers = (*vars(figures).values(), pages, int(odd > 0))
         return {OUTPUT: str(file), **dict(zip(NUMBERS, numbers, strict=True))}
@@ -121,7 +137,9 @@ class AsPlacedReport(FleetAlgorithm):
             crs = source.sourceCrs()
         if not crs.isValid():
             raise ParameterError(
-                "The CRS of the placed cones is not known, as of a CSV: give CRS, the site's, such as "
-                "EPSG:32633."
+                tr(
+                    "The CRS of the placed cones is not known, as of a CSV: give CRS, the site's, such as "
+                    "EPSG:32633."
+                )
             )
         return crs

@@ -22,7 +22,7 @@ from ...robot_bridge.assignment.plan import Plan
 from ...robot_bridge.assignment.plan_json import to_json
 from ...robot_bridge.assignment.scheduling import BALANCED, OBJECTIVES
 from ...robot_bridge.assignment.solving import AUTOMATIC, METHODS, Wanted, assign
-from ..language import tr
+from ..language import tr, tr_page
 from .errors import ParameterError, shown_by_processing
 from .fleet_algorithm import FleetAlgorithm, fields_of
 from .job_source import JobSource, job_parameters
@@ -50,7 +50,7 @@ class AssignCones(FleetAlgorithm):
     ICON = "assign_cones.svg"
     TAGS = ("cone", "assignment", "vehicle routing", "plan", "fleet", "trips")
     STYLES = {TARGETS: "assigned_targets.qml", PATHS: "assigned_paths.qml"}  # noqa: RUF012
-    HELP = """
+    HELP = tr_page("""
     <p>Shares <b>cones</b> out among <b>robots</b>. Robots load cones to place, and unload collected ones, at
     <b>stores</b>, as often as their capacity asks for. Distances are those of the <b>roads</b>; without roads
     they are straight lines, and the log says so.</p>
@@ -65,7 +65,7 @@ class AssignCones(FleetAlgorithm):
     them, <b>plan</b> is all of it as JSON. A cone that cannot be served is named, and nothing is written.</p>
     <pre>qgis_process run fleet:assigncones -- CONES=cones.gpkg ROBOTS=robots.gpkg STORES=stores.gpkg \\
     ROADS=roads.gpkg CAPACITY=8 TIME_LIMIT=10 TARGETS=targets.gpkg PATHS=paths.gpkg PLAN=plan.json</pre>
-    """
+    """)
 
     def initAlgorithm(self, configuration=None):
         cones, robots, stores, *others = job_parameters()

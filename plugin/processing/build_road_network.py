@@ -12,7 +12,7 @@ from qgis.core import (
 )
 
 from ...robot_bridge.roads.network import Network
-from ..language import tr
+from ..language import tr, tr_page
 from .errors import shown_by_processing
 from .fleet_algorithm import FleetAlgorithm, fields_of
 from .road_source import (
@@ -61,7 +61,7 @@ class BuildRoadNetwork(FleetAlgorithm):
     )
     ICON = "build_road_network.svg"
     TAGS = ("road", "network", "graph", "topology", "noding", "snap", "repair")
-    HELP = """
+    HELP = tr_page("""
     <p>Splits road centrelines where they cross or touch, and makes a layer of edges and one of nodes.</p>
     <p>Roads of different <b>levels</b> meet only where one of them ends in a point of the other: a bridge is
     reached at its ends and passes over what is between them. <b>Direction</b>, speed, width, surface and
@@ -71,7 +71,7 @@ class BuildRoadNetwork(FleetAlgorithm):
     <i>fleet:checkroadnetwork</i> shows what is broken without changing anything.</p>
     <p>The fields of the edges are those that this algorithm and <i>fleet:route</i> read by themselves.
     docs/roads.md says more.</p>
-    """
+    """)
 
     def initAlgorithm(self, configuration=None):
         roads, tolerance, *others = road_parameters()

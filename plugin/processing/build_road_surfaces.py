@@ -17,7 +17,7 @@ from ...robot_bridge.roads.surfaces.generation import CancelledError, generate
 from ...robot_bridge.roads.surfaces.outlines import areas_of, edges_of
 from ...robot_bridge.roads.surfaces.surface import GENERATED, Surface
 from ...robot_bridge.sites.frame import SiteFrame
-from ..language import tr
+from ..language import tr, tr_page
 from ..sites.ground_reading import GroundReading, read_surfaces
 from ..sites.obstacle_source import obstacle_sources
 from ..sites.placing import SitePlacing
@@ -53,7 +53,7 @@ class BuildRoadSurfaces(FleetAlgorithm):
     ICON = "build_road_surfaces.svg"
     TAGS = ("road", "surface", "buffer", "width", "asphalt", "dissolve", "parking")
     STYLES = {SURFACES: "road_surfaces.qml"}  # noqa: RUF012
-    HELP = """
+    HELP = tr_page("""
     <p>Widens road centrelines by half their width to each side: ends are cut square, corners are mitred,
     within a road and where roads end in one point. What is of one class, such as asphalt, becomes one
     surface; pieces that do not touch are features of their own.</p>
@@ -64,7 +64,7 @@ class BuildRoadSurfaces(FleetAlgorithm):
     <b>findings</b>. Ends that stop just short of another road stay apart: mend them with
     <i>fleet:buildroadnetwork</i> and give its edges.</p>
     <p>Give the result the role road surface to publish it. docs/roads.md says more.</p>
-    """
+    """)
 
     def initAlgorithm(self, configuration=None):
         area, lines = QgsProcessing.SourceType.TypeVectorPolygon, QgsProcessing.SourceType.TypeVectorLine
@@ -122,7 +122,7 @@ class BuildRoadSurfaces(FleetAlgorithm):
         areas = areas_of(edges_of(surfaces), len(surfaces))
         for label in sorted({one.label for one in surfaces}):
             own = sum(area for area, one in zip(areas, surfaces, strict=True) if one.label == label)
-            feedback.pushInfo(tr("{value}: {own:.1f} m²", value=label or "without a class", own=own))
+            feedback.pushInfo(tr("{value}: {own:.1f} m²", value=label or tr("without a class"), own=own))
         figures = (
             len(surfaces),
             len(made),

@@ -13,7 +13,7 @@ from qgis.core import (
 
 from ...robot_bridge.roads.findings import REPAIRED, Kind, count_by_kind, find
 from ...robot_bridge.roads.network import build_network
-from ..language import tr
+from ..language import tr, tr_page
 from .errors import shown_by_processing
 from .fleet_algorithm import FleetAlgorithm, fields_of
 from .road_source import TOLERANCE, WARNING_COUNT, RoadSource, road_parameters
@@ -43,7 +43,7 @@ class CheckRoadNetwork(FleetAlgorithm):
     )
     ICON = "check_road_network.svg"
     TAGS = ("road", "network", "topology", "check", "gap", "dangle", "one-way")
-    HELP = """
+    HELP = tr_page("""
     <p>Checks the network that road centrelines make, and makes a layer of points that show what is odd, each
     with the feature to look at. Nothing is changed.</p>
     <p>What <i>fleet:buildroadnetwork</i> repairs: <b>gap</b>, an end that stops within the tolerance of
@@ -52,7 +52,7 @@ class CheckRoadNetwork(FleetAlgorithm):
     <p>What only people can judge: <b>dead end</b>; <b>disconnected part</b>, roads that are connected with
     one another but not with the longest part; <b>one-way</b>, roads from which no way leads back because of
     the directions.</p>
-    """
+    """)
 
     def initAlgorithm(self, configuration=None):
         for parameter in road_parameters():

@@ -15,7 +15,7 @@ from qgis.core import (
 )
 
 from ...robot_bridge.robotmap.checks import CHECKS, Finding, Limits, SegmentTable, Severity
-from ..language import tr
+from ..language import tr, tr_page
 from .errors import shown_by_processing
 from .fleet_algorithm import FleetAlgorithm, fields_of
 from .map_file import MAP, MapPlace, file_problem, map_parameters, map_place, read_map_file
@@ -48,7 +48,7 @@ class CheckRobotMap(FleetAlgorithm):
     ICON = "check_robot_map.svg"
     TAGS = ("check", "validate", "quality", "orientation", "gap", "overlap", "duplicate")
     STYLES = {FINDINGS: "robot_map_findings.qml"}  # noqa: RUF012
-    HELP = """
+    HELP = tr_page("""
     <p>Checks a robot map, text or binary, and makes a layer of lines that show what is odd, each with a kind,
     a severity, the obstacle to look at, and what to do.</p>
     <p><b>orientation</b>: outlines, courtyards, segments or risers that run the wrong way round. <b>gap</b>:
@@ -60,7 +60,7 @@ class CheckRobotMap(FleetAlgorithm):
     the border. <b>id</b>: ids used twice.</p>
     <p>Severities: <i>error</i> misleads a robot, <i>warning</i> is probably not meant, <i>info</i> is worth
     knowing. The map itself is not changed.</p>
-    """
+    """)
 
     def initAlgorithm(self, configuration=None):
         defaults = Limits()

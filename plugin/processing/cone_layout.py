@@ -22,7 +22,7 @@ from qgis.core import (
 from ...robot_bridge.layouts.catalogue import LAYOUTS
 from ...robot_bridge.layouts.cone import Cone
 from ...robot_bridge.layouts.placing import along, placed
-from ..language import tr
+from ..language import tr, tr_page
 from ..sites.parts import parts_of
 from .cone_ground import ground_parameters
 from .cone_layer import STYLES, ConeSetup, add_layers, site_crs_parameter, theta_of
@@ -47,7 +47,7 @@ class ConeLayout(FleetAlgorithm):
     ICON = "cone_layout.svg"
     TAGS = ("cone", "slalom", "lane change", "ISO 3888", "ISO 4138", "Formula Student", "skid pad", "moose")
     STYLES = STYLES
-    HELP = """
+    HELP = tr_page("""
     <p>Places a layout of traffic cones, either at a <b>point</b>, turned to a <b>heading</b> (degrees
     clockwise from north), or along a <b>line</b> such as a road's centreline, from <b>start</b> metres after
     its beginning. The layer has an id, the order of placing, the heading of travel, the colour and the role
@@ -59,7 +59,7 @@ class ConeLayout(FleetAlgorithm):
     are placed nevertheless.</p>
     <pre>qgis_process run fleet:conelayout -- LAYOUT=iso3888_1 POINT="640432,5193486.2 [EPSG:32633]" \\
     HEADING=90 DIMENSIONS="vehicle_width=1.7; exit_length=15" SITE_CRS=EPSG:32633 CONES=cones.gpkg</pre>
-    """
+    """)
 
     def initAlgorithm(self, configuration=None):
         for parameter in (

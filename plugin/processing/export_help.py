@@ -1,6 +1,8 @@
 """The help of ``fleet:exportrobotmap``."""
 
-_TEXT = """
+from ..language import tr_page
+
+HELP = tr_page("""
 <p>Writes the obstacles in a window of the site as a map that robots read: oriented segments with free space
 to their right, grouped by kind. Robots get metres in the <b>site frame</b>: a projected CRS, an origin in it
 and a rotation.</p>
@@ -28,7 +30,5 @@ zstandard; compact (about a third of binary, whole centimetres), which needs cbo
 <i>docs/robot-map.md</i> of the project describes them, and exports from a script.</p>
 <p>Broken geometry is repaired where that is safe and left out where it is not. Each time a warning names the
 layer and the feature; the export goes on.</p>
-"""
-
-HELP = " ".join(_TEXT.split())
+""")
 """In one line, because QGIS takes every line break for the end of a paragraph."""

@@ -23,7 +23,7 @@ from qgis.core import (
 from ...robot_bridge.robotmap.errors import RobotMapError
 from ...robot_bridge.robotmap.index import OutlineIndex
 from ..errors import FleetError
-from ..language import tr
+from ..language import tr, tr_page
 from .errors import shown_by_processing
 from .export_plan import OBSTACLES, unopened_layer
 from .export_robot_map import value_parameters
@@ -85,7 +85,7 @@ class ExportRobotMapTiles(FleetAlgorithm):
     ICON = "export_robot_map_tiles.svg"
     TAGS = ("tiles", "grid", "route", "batch", "obstacle", "partial map")
     STYLES = {INDEX: "robot_map_tiles.qml"}  # noqa: RUF012
-    HELP = """
+    HELP = tr_page("""
     <p>Writes one robot map for each tile, as <i>Export robot map</i> does for one window, and an index: a
     polygon for each tile with its file, border, counts and bytes. The layers are read once.</p>
     <p><b>Grid</b>: tiles of one size from the left-lower corner of the extent; the last ones reach beyond it.
@@ -95,7 +95,7 @@ class ExportRobotMapTiles(FleetAlgorithm):
     says how many obstacles and segments the whole area had before and after.</p>
     <p>An obstacle has the same id in every tile that it reaches into. Either every tile and the index are
     there at the end, or, after a cancel or an error, none of them.</p>
-    """
+    """)
 
     def initAlgorithm(self, configuration=None):
         kinds = QgsProcessing.SourceType

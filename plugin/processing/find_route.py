@@ -24,7 +24,7 @@ from ...robot_bridge.roads.engines.engine import Graph
 from ...robot_bridge.roads.network import Network
 from ...robot_bridge.roads.route import Route
 from ...robot_bridge.roads.routes import REACH, Restrictions, Router
-from ..language import tr
+from ..language import tr, tr_page
 from .errors import shown_by_processing
 from .fleet_algorithm import FleetAlgorithm, fields_of
 from .graph_engine import GraphEngine
@@ -82,7 +82,7 @@ class FindRoute(FleetAlgorithm):
     )
     ICON = "route_on_roads.svg"
     TAGS = ("road", "route", "shortest path", "fastest", "navigation", "path")
-    HELP = """
+    HELP = tr_page("""
     <p>Finds the way between two places near roads: each is taken to the nearest point of a road that may be
     used. Closed roads are not used, one-way roads in their direction only; <b>surfaces</b> (names with commas
     between) and a <b>least width</b> restrict the way further.</p>
@@ -95,7 +95,7 @@ class FindRoute(FleetAlgorithm):
     <i>ENGINE_USED</i> say which was used. All find the same ways.</p>
     <pre>qgis_process run fleet:route -- ROADS=roads.gpkg START="640430,5193530 [EPSG:32633]" \\
     GOAL="640600,5193570 [EPSG:32633]" SURFACES=asphalt ROUTE=route.gpkg PATH=path.gpkg</pre>
-    """
+    """)
 
     def initAlgorithm(self, configuration=None):
         roads, tolerance, *others = road_parameters()

@@ -45,8 +45,7 @@ class FleetAlgorithm(QgsProcessingAlgorithm):
         return self.SUMMARY
 
     def shortHelpString(self):
-        # In one line, because QGIS takes every line break for the end of a paragraph.
-        return " ".join(self.HELP.split())
+        return self.HELP
 
     def icon(self):
         return QIcon(self.svgIconPath())

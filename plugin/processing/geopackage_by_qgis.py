@@ -17,6 +17,7 @@ from qgis.core import (
 from ...robot_bridge.robotmap.exporters.geopackage import column_value, geopackage_layers, wkb_of
 from ...robot_bridge.robotmap.exporters.shapes import Shape
 from ...robot_bridge.robotmap.model import RobotMap
+from ..language import tr
 from .map_place import PlacedMap
 from .whole_file import OutputError
 
@@ -58,7 +59,13 @@ def _write_layer(name: str, shapes: Sequence[Shape], target: Path, place: Placed
         writer.addFeature(feature)
     writer.flushBuffer()
     if writer.hasError() != QgsVectorFileWriter.WriterError.NoError:
-        raise OutputError(f"The layer {name} of the GeoPackage cannot be written: {writer.errorMessage()}.")
+        raise OutputError(
+            tr(
+                "The layer {name} of the GeoPackage cannot be written: {error}.",
+                name=name,
+                error=writer.errorMessage(),
+            )
+        )
 
 
 def _fields(shape: Shape) -> QgsFields:

@@ -1,4 +1,4 @@
-"""A histogram of deviations as SVG; no Qt, no QGIS."""
+"""A histogram of deviations as SVG."""
 
 from __future__ import annotations
 
@@ -7,6 +7,8 @@ from xml.sax.saxutils import escape
 
 import numpy as np
 import numpy.typing as npt
+
+from ..language import tr
 
 WIDTH, HEIGHT = 860.0, 400.0
 LEFT, RIGHT, TOP, BOTTOM = 70.0, 20.0, 30.0, 62.0
@@ -50,14 +52,21 @@ def histogram(values: npt.NDArray[np.float64], tolerance: float) -> str:
     every = max(1, math.ceil(len(edges) / 11))
     parts += [_text(x[k], floor + 22, f"{edges[k] * 100:.4g}", "middle") for k in range(0, len(edges), every)]
     if values.max() > edges[-1] + 1e-9:
-        parts.append(_text(WIDTH - RIGHT, HEIGHT - 10, f"last bar: up to {values.max():.2f} m", "end"))
+        parts.append(
+            _text(
+                WIDTH - RIGHT, HEIGHT - 10, tr("last bar: up to {metres:.2f} m", metres=values.max()), "end"
+            )
+        )
     at = LEFT + (WIDTH - LEFT - RIGHT) * tolerance / edges[-1]
     line = f'<path d="M{at:.1f} {TOP - 6}V{floor}" stroke="#212529" stroke-width="2" stroke-dasharray="7 5"/>'
-    parts += [line, _text(min(at, WIDTH - 90), TOP - 10, f"tolerance {tolerance * 100:.4g} cm", "middle")]
+    parts += [
+        line,
+        _text(min(at, WIDTH - 90), TOP - 10, tr("tolerance {cm:.4g} cm", cm=tolerance * 100), "middle"),
+    ]
     parts.append(
         f'<path d="M{LEFT} {TOP}V{floor}H{WIDTH - RIGHT}" fill="none" stroke="#212529" stroke-width="1.6"/>'
     )
-    parts.append(_text((LEFT + WIDTH - RIGHT) / 2, HEIGHT - 10, "deviation in cm", "middle"))
+    parts.append(_text((LEFT + WIDTH - RIGHT) / 2, HEIGHT - 10, tr("deviation in cm"), "middle"))
     return "\n".join([*parts, "</svg>"])
 
 

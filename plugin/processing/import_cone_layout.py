@@ -24,7 +24,7 @@ from qgis.core import (
 from ...robot_bridge.layouts.cone import Cone
 from ...robot_bridge.layouts.placing import placed
 from ...robot_bridge.layouts.table import Columns, cones_of, read_csv
-from ..language import tr
+from ..language import tr, tr_page
 from .cone_ground import ground_parameters
 from .cone_layer import STYLES, ConeSetup, add_layers, site_crs_parameter
 from .errors import ParameterError, shown_by_processing
@@ -57,7 +57,7 @@ class ImportConeLayout(FleetAlgorithm):
     ICON = "import_cone_layout.svg"
     TAGS = ("cone", "layout", "CSV", "import")
     STYLES = STYLES
-    HELP = """
+    HELP = tr_page("""
     <p>Reads cones from a <b>CSV file</b> with a head line, in UTF-8, or from a <b>layer</b>. The columns are
     named by parameters; only those of x and y are needed, and not even those for a layer of points with a
     CRS, which is taken as it lies. A file or layer with several layouts gives one of them, by
@@ -68,7 +68,7 @@ class ImportConeLayout(FleetAlgorithm):
     <pre>qgis_process run fleet:importconelayout -- FILE=cone_layouts.csv COLOUR_FIELD=colour \\
     LAYOUT_FIELD=track LAYOUT=eufs_skidpad ORIGIN="640520,5193530 [EPSG:32633]" ROTATION=90 \\
     SITE_CRS=EPSG:32633 CONES=cones.gpkg</pre>
-    """
+    """)
 
     def initAlgorithm(self, configuration=None):
         real = QgsProcessingParameterNumber.Type.Double

@@ -18,7 +18,7 @@ from qgis.core import (
 
 from ...robot_bridge.robotmap.exporters.shapes import Shape, obstacle_shapes, segment_shapes
 from ...robot_bridge.robotmap.model import Border, RobotMap
-from ..language import tr
+from ..language import tr, tr_page
 from .errors import shown_by_processing
 from .fleet_algorithm import FleetAlgorithm, fields_of
 from .map_file import MAP, MapPlace, file_problem, map_parameters, map_place, read_map_file
@@ -86,7 +86,7 @@ class LoadRobotMap(FleetAlgorithm):
         SEGMENTS: "robot_map_segments.qml",
         BORDER: "robot_map_border.qml",
     }
-    HELP = """
+    HELP = tr_page("""
     <p>Reads a robot map, text or binary, and makes layers of it.</p>
     <p><b>Obstacles that are areas</b>: outlines that close, courtyards as holes. <b>Obstacles that are
     lines</b>: walls, stairs, and what the border of the map cuts. <b>Segments</b>: each from a to b, with
@@ -94,7 +94,7 @@ class LoadRobotMap(FleetAlgorithm):
     labels, height, indoors or outdoors, extras (<i>ext</i>, as JSON).</p>
     <p><b>Place</b>: a map may name its CRS, origin and rotation in its leading lines; parameters win over
     them. Where neither does, the layers are in local metres, said in a warning.</p>
-    """
+    """)
 
     def initAlgorithm(self, configuration=None):
         for parameter in map_parameters():

@@ -1,6 +1,8 @@
 """The help of ``fleet:exportnavigationmap``."""
 
-HELP = """
+from ..language import tr_page
+
+HELP = tr_page("""
 <p>Writes a robot map as other robots and people read it.</p>
 <p><b>Robot map</b>: a file of <i>fleet:exportrobotmap</i> or of the gateway, text or binary.</p>
 <p><b>Formats</b>, several at once:</p>
@@ -25,4 +27,4 @@ says what is in each.</p>
 <p>From a script, with no display:</p>
 <pre>qgis_process run fleet:exportnavigationmap -- \\
   MAP=campus.txt FORMATS=occupancy FORMATS=svg RESOLUTION=0.05 OUTPUT=campus</pre>
-"""
+""")

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 from qgis.core import QgsFeature, QgsProcessingFeatureSource, QgsProcessingFeedback
 
+from ..language import tr
 from .errors import ParameterError
 from .position_source import seconds
 
@@ -79,8 +80,11 @@ def read_cones(
     missing = [name for name in PLACES if name not in source.fields().names()]
     if missing:
         raise ParameterError(
-            f"The placed cones have no field {', '.join(missing)}: give a layer of a GeoPackage, or the CSV, "
-            "that 'robot-bridge placements export' wrote."
+            tr(
+                "The placed cones have no field {missing}: give a layer of a GeoPackage, or the CSV, "
+                "that 'robot-bridge placements export' wrote.",
+                missing=", ".join(missing),
+            )
         )
     cones, odd = [], 0
     for feature in source.getFeatures():
@@ -93,8 +97,10 @@ def read_cones(
             cones.append(cone)
     if not cones:
         raise ParameterError(
-            "There are no placed cones to report on. Check the filter of the layer, and the options of "
-            "'robot-bridge placements export'."
+            tr(
+                "There are no placed cones to report on. Check the filter of the layer, and the options "
+                "of 'robot-bridge placements export'."
+            )
         )
     return cones, odd
 

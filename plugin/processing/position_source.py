@@ -9,6 +9,7 @@ import numpy as np
 from qgis.core import QgsFeature, QgsProcessingFeatureSource, QgsProcessingFeedback
 from qgis.PyQt.QtCore import QDateTime, Qt
 
+from ..language import tr
 from .drives import Positions
 from .errors import ParameterError
 
@@ -25,12 +26,16 @@ class PositionSource:
     def __init__(self, source: QgsProcessingFeatureSource, robot: str, time: str, speed: str) -> None:
         self._source = source
         names = source.fields().names()
-        for what, name in (("robot", robot), ("time", time)):
+        for what, name in ((tr("robot"), robot), (tr("time"), time)):
             if name not in names:
                 raise ParameterError(
-                    f"The positions have no field {name} for the {what}: they have "
-                    f"{', '.join(names) or 'none'}. Give the layer 'positions' of 'robot-bridge trajectories "
-                    "export', or say which field it is."
+                    tr(
+                        "The positions have no field {name} for the {what}: they have {names}. Give the "
+                        "layer 'positions' of 'robot-bridge trajectories export', or say which field it is.",
+                        name=name,
+                        what=what,
+                        names=", ".join(names) or tr("none"),
+                    )
                 )
         self._robot, self._time = names.index(robot), names.index(time)
         self._speed = names.index(speed) if speed in names else None

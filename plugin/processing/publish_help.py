@@ -1,6 +1,8 @@
 """The help of ``fleet:publishsite``."""
 
-_TEXT = """
+from ..language import tr_page
+
+HELP = tr_page("""
 <p>Writes the layers of a site into a folder with <i>site.toml</i> and <i>site.gpkg</i>, which
 <i>robot-bridge serve --site FOLDER</i> serves.</p>
 <p><b>Layers</b>: those of the project by their roles (menu Fleet Supervisor, Layer roles), or by a <b>map
@@ -17,7 +19,5 @@ project has it.</p>
 <p>An earlier publication is replaced only after the new one is complete; a cancel leaves it as it was. Broken
 geometry is repaired where that is safe and left out where it is not, each time with a warning that names the
 layer and the feature. One publication into a folder runs at a time.</p>
-"""
-
-HELP = " ".join(_TEXT.split())
+""")
 """In one line, because QGIS takes every line break for the end of a paragraph."""

@@ -24,6 +24,7 @@ from qgis.core import (
 )
 from qgis.PyQt.QtCore import Qt
 
+from ..language import tr
 from .histogram_svg import HEIGHT, WIDTH, histogram
 from .placed_cones import Deviations, PlacedCone, values_of
 from .report_items import MARGIN, TEXT_WIDTH, add_text, corner, put
@@ -52,7 +53,13 @@ def write_pdf(
     :raises OutputError: when it cannot be written.
     """
     if not file.parent.is_dir():
-        raise OutputError(f"The report cannot be written to {file}: there is no folder {file.parent}.")
+        raise OutputError(
+            tr(
+                "The report cannot be written to {file}: there is no folder {folder}.",
+                file=file,
+                folder=file.parent,
+            )
+        )
     # A project of its own, so that nothing is left in the user's.
     project = QgsProject()
     project.setCrs(report.crs)
@@ -69,8 +76,11 @@ def write_pdf(
         done = QgsLayoutExporter(layout).exportToPdf(str(part), settings)
         if done != QgsLayoutExporter.ExportResult.Success:
             raise OutputError(
-                f"QGIS cannot make the report (layout export {int(done)}): check the free space, and the "
-                "background layers by leaving them out."
+                tr(
+                    "QGIS cannot make the report (layout export {number}): check the free space, and the "
+                    "background layers by leaving them out.",
+                    number=int(done),
+                )
             )
         pages = layout.pageCollection().pageCount()
         _put(part, file)
@@ -85,8 +95,12 @@ def _put(part: Path, file: Path) -> None:
     except OSError as error:
         beside.unlink(missing_ok=True)
         raise OutputError(
-            f"The report cannot be written to {file}: {error.strerror or error}. Close it if a program shows "
-            "it, or choose another file."
+            tr(
+                "The report cannot be written to {file}: {error}. Close it if a program shows it, or choose "
+                "another file.",
+                file=file,
+                error=error.strerror or error,
+            )
         ) from error
 
 
@@ -113,16 +127,28 @@ def _told(report: Report) -> str:
     times = [cone.at for cone in report.cones if cone.at is not None]
     share = 100.0 * figures.within / figures.count
     lines = [
-        f"{figures.within} of {figures.count} cones ({share:.0f} %) stand within "
-        f"{report.tolerance * 100:g} cm of their plan.",
-        f"Mean {_cm(figures.mean)}, RMS {_cm(figures.rms)}, 95 % within {_cm(figures.p95)}, "
-        f"largest {_cm(figures.most)}.",
+        tr(
+            "{within} of {count} cones ({share:.0f} %) stand within {tolerance:g} cm of their plan.",
+            within=figures.within,
+            count=figures.count,
+            share=share,
+            tolerance=report.tolerance * 100,
+        ),
+        tr(
+            "Mean {mean}, RMS {rms}, 95 % within {p95}, largest {most}.",
+            mean=_cm(figures.mean),
+            rms=_cm(figures.rms),
+            p95=_cm(figures.p95),
+            most=_cm(figures.most),
+        ),
     ]
     facts = []
     if robots:
-        facts.append(f"robots: {', '.join(robots[:8])}{' …' if len(robots) > 8 else ''}")
+        names = ", ".join(robots[:8]) + (" …" if len(robots) > 8 else "")
+        facts.append(tr("robots: {names}", names=names))
     if times:
-        facts.append(f"{time_in_words(min(times))} to {time_in_words(max(times))} UTC")
+        first, last = time_in_words(min(times)), time_in_words(max(times))
+        facts.append(tr("{first} to {last} UTC", first=first, last=last))
     lines.append("; ".join([*facts, report.crs.authid() or report.crs.description()]))
     return "\n".join(lines)
 
@@ -160,7 +186,10 @@ def _map(layout: QgsPrintLayout, report: Report, project: QgsProject) -> None:
     bar.setBackgroundEnabled(True)
     bar.attemptMove(corner(MARGIN + 2, 259))
     layout.addLayoutItem(bar)
-    words = f"× planned   ● placed (red: beyond the tolerance)   orange: deviation, {factor} times as long"
+    words = tr(
+        "× planned   ● placed (red: beyond the tolerance)   orange: deviation, {factor} times as long",
+        factor=factor,
+    )
     add_text(layout, words, (MARGIN, 275.5, TEXT_WIDTH, 6), 8)
 
 

@@ -14,19 +14,30 @@ from qgis.core import (
 )
 from qgis.PyQt.QtCore import Qt
 
+from ..language import tr
 from .placed_cones import PlacedCone
 from .report_items import MARGIN, TEXT_WIDTH, a4_page, put, text_format
 
-HEADS = ("Cone", "Layout", "Robot", "Placed (UTC)", "Planned E", "Planned N", "ΔE cm", "ΔN cm", "Off cm", "")
-WIDTHS = (22, 20, 16, 31, 20, 21, 10, 10, 11, 3)
-"""Of the columns, without the margins of their cells."""
+COLUMNS = (
+    (tr("Cone"), 22, False),
+    (tr("Layout"), 20, False),
+    (tr("Robot"), 16, False),
+    (tr("Placed (UTC)"), 31, False),
+    (tr("Planned E"), 20, True),
+    (tr("Planned N"), 21, True),
+    (tr("ΔE cm"), 10, True),
+    (tr("ΔN cm"), 10, True),
+    (tr("Off cm"), 11, True),
+    ("", 3, False),
+)
+"""Of each its head, its width in millimetres without the margins of its cells, and whether it has numbers."""
 
 
 def add_table(layout: QgsPrintLayout, cones: Sequence[PlacedCone], tolerance: float) -> None:
     """Put the table on the second page, and on as many more as it takes."""
     table = QgsLayoutItemTextTable(layout)
     layout.addMultiFrame(table)
-    table.setColumns([_column(head, width) for head, width in zip(HEADS, WIDTHS)])  # noqa: B905
+    table.setColumns([_column(*column) for column in COLUMNS])
     table.setContents([_row(cone, tolerance) for cone in cones])
     for set_format, size, bold in (
         (table.setContentTextFormat, 7.5, False),
@@ -43,11 +54,10 @@ def add_table(layout: QgsPrintLayout, cones: Sequence[PlacedCone], tolerance: fl
     table.recalculateFrameSizes()
 
 
-def _column(head: str, width: float) -> QgsLayoutTableColumn:
+def _column(head: str, width: float, numbers: bool) -> QgsLayoutTableColumn:
     column = QgsLayoutTableColumn()
     column.setHeading(head)
     column.setWidth(width)
-    numbers = head.startswith(("Planned", "Δ", "Off"))
     column.setHAlignment(Qt.AlignmentFlag.AlignRight if numbers else Qt.AlignmentFlag.AlignLeft)
     return column
 

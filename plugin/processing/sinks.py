@@ -64,7 +64,7 @@ def fill(
                 tr(
                     "A layer cannot be written ({reason}): choose another place or format for it, and check "
                     "the free space.",
-                    reason=sink.lastError() or "no reason is given",
+                    reason=sink.lastError() or tr("no reason is given"),
                 )
             )
     return True

@@ -19,7 +19,7 @@ from qgis.core import (
 )
 
 from ...robot_bridge.roads.surfaces.surface import Surface
-from ..language import tr
+from ..language import tr, tr_page
 from ..sites.roles import ROAD_SURFACE, layers_with_role
 from ..sites.surface_map import SurfaceMap, read_surface_map, surface_sources
 from .errors import ParameterError, shown_by_processing
@@ -45,7 +45,7 @@ class SurfaceAtPoint(FleetAlgorithm):
     SUMMARY = tr("Adds to points, in any CRS, the class of the road surface that they are on.")
     ICON = "surface_at_point.svg"
     TAGS = ("road", "surface", "asphalt", "point", "where")
-    HELP = """
+    HELP = tr_page("""
     <p>Copies points and adds <b>surface</b>, the class of the road surface that each is on, its
     <b>surface_name</b>, and <b>surface_origin</b>: whether the surface was drawn or generated from
     centrelines. They are empty where there is no surface.</p>
@@ -54,7 +54,7 @@ class SurfaceAtPoint(FleetAlgorithm):
     <p>A point on an edge is on the surface. Where surfaces lie on one another a drawn one counts before a
     generated one, then the smaller before the larger. The expression <i>road_surface(x, y)</i> tells the
     same. docs/roads.md says more.</p>
-    """
+    """)
 
     def initAlgorithm(self, configuration=None):
         kinds = QgsProcessing.SourceType

@@ -21,6 +21,7 @@ from qgis.core import (
     QgsWkbTypes,
 )
 
+from ..language import tr, tr_page
 from .drives import Drive, drives
 from .errors import shown_by_processing
 from .fleet_algorithm import FleetAlgorithm, fields_of
@@ -29,7 +30,11 @@ from .sinks import AT_ONCE, fill
 
 INPUT, OUTPUT = "INPUT", "OUTPUT"
 ROBOT_FIELD, TIME_FIELD, SPEED_FIELD, GAP, STEPS = "ROBOT_FIELD", "TIME_FIELD", "SPEED_FIELD", "GAP", "STEPS"
-NUMBERS = {"LINE_COUNT": "Lines", "POSITION_COUNT": "Positions", "TOTAL_LENGTH": "Metres driven, all robots"}
+NUMBERS = {
+    "LINE_COUNT": tr("Lines"),
+    "POSITION_COUNT": tr("Positions"),
+    "TOTAL_LENGTH": tr("Metres driven, all robots"),
+}
 _FIELDS = {
     "robot": "string",
     "begin": "datetime",
@@ -47,14 +52,14 @@ _STRETCHED = ("EPSG:3857", "EPSG:3395", "EPSG:900913")
 class Trajectories(FleetAlgorithm):
     """Makes lines of where robots have been."""
 
-    GROUP = ("records", "Records")
+    GROUP = ("records", tr("Records"))
     NAME = "trajectories"
-    TITLE = "Trajectories"
-    SUMMARY = "Makes lines of stored positions, with their time, length and speed."
+    TITLE = tr("Trajectories")
+    SUMMARY = tr("Makes lines of stored positions, with their time, length and speed.")
     ICON = "trajectories.svg"
     TAGS = ("trajectory", "track", "path", "history", "temporal", "replay", "speed")
     STYLES = {OUTPUT: "trajectories.qml"}  # noqa: RUF012
-    HELP = """
+    HELP = tr_page("""
     <p>Makes of the positions that a gateway stored one line for each drive of each robot: a robot that
     was not heard of for longer than the gap begins a new line. Or, with <b>a line for each step</b>, one
     for each pair of positions, for colours by speed and for QGIS's temporal controller.</p>
@@ -68,24 +73,29 @@ class Trajectories(FleetAlgorithm):
     <p>The layer's times are set: open QGIS's temporal controller to play them.</p>
     <pre>qgis_process run fleet:trajectories -- INPUT="drives.gpkg|layername=positions"
     OUTPUT=lines.gpkg</pre>
-    """
+    """)
 
     def initAlgorithm(self, configuration=None):
         points = QgsProcessing.SourceType.TypeVectorPoint
-        self.addParameter(QgsProcessingParameterFeatureSource(INPUT, "Positions", [points]))
-        fields = ((ROBOT_FIELD, "Field of the robot", "robot"), (TIME_FIELD, "Field of the time", "time"))
+        self.addParameter(QgsProcessingParameterFeatureSource(INPUT, tr("Positions"), [points]))
+        fields = (
+            (ROBOT_FIELD, tr("Field of the robot"), "robot"),
+            (TIME_FIELD, tr("Field of the time"), "time"),
+        )
         for name, title, default in fields:
             self.addParameter(QgsProcessingParameterField(name, title, default, INPUT, optional=True))
         self.addParameter(
-            QgsProcessingParameterField(SPEED_FIELD, "Field of the speed [m/s]", "v", INPUT, optional=True)
+            QgsProcessingParameterField(
+                SPEED_FIELD, tr("Field of the speed [m/s]"), "v", INPUT, optional=True
+            )
         )
         real = QgsProcessingParameterNumber.Type.Double
-        title = "Longest gap in a line [s]"
+        title = tr("Longest gap in a line [s]")
         self.addParameter(QgsProcessingParameterNumber(GAP, title, real, 60.0, minValue=0.001))
-        self.addParameter(QgsProcessingParameterBoolean(STEPS, "A line for each step", False))
+        self.addParameter(QgsProcessingParameterBoolean(STEPS, tr("A line for each step"), False))
         lines = QgsProcessing.SourceType.TypeVectorLine
-        self.addParameter(QgsProcessingParameterFeatureSink(OUTPUT, "Trajectories", lines))
-        for name, title in {**NUMBERS, "WARNING_COUNT": "Warnings"}.items():
+        self.addParameter(QgsProcessingParameterFeatureSink(OUTPUT, tr("Trajectories"), lines))
+        for name, title in {**NUMBERS, "WARNING_COUNT": tr("Warnings")}.items():
             self.addOutput(QgsProcessingOutputNumber(name, title))
 
     def prepareAlgorithm(self, parameters, context, feedback):
@@ -105,14 +115,23 @@ class Trajectories(FleetAlgorithm):
                 return {}
             positions, odd = read
             if odd:
-                feedback.pushWarning(f"{odd} features have no place, robot or time; they are left out.")
+                feedback.pushWarning(
+                    tr("{odd} features have no place, robot or time; they are left out.", odd=odd)
+                )
             metres = Metres(source.sourceCrs(), context.transformContext())
             made = self._write(parameters, context, feedback, source, positions, metres)
         if made is None:
             return {}
         layer, lines, length = made
         self.remember({OUTPUT: layer})
-        feedback.pushInfo(f"{lines} lines of {len(positions)} positions, {length:.1f} m in all.")
+        feedback.pushInfo(
+            tr(
+                "{lines} lines of {positions} positions, {length:.1f} m in all.",
+                lines=lines,
+                positions=len(positions),
+                length=length,
+            )
+        )
         told = dict(zip(NUMBERS, (lines, len(positions), length), strict=True))
         return {OUTPUT: layer, **told, "WARNING_COUNT": int(odd > 0)}
 

@@ -19,6 +19,7 @@ from qgis.PyQt.QtWidgets import (
 from ..errors import FleetError
 from ..help.help_window import show_help
 from ..help.topics import CONNECTIONS
+from ..language import tr
 from ..wire.addresses import DEFAULT_URL, Credentials
 from .connection_trial import ConnectionTrial
 from .connections import Connections
@@ -38,12 +39,14 @@ class ConnectionDialog(QDialog):
         super().__init__(parent)
         self._before, self._connections, self._store = connection, connections, TokenStore()
         self.setObjectName("fleet_connection_dialog")
-        self.setWindowTitle("Edit connection" if connection.name else "New connection")
+        self.setWindowTitle(tr("Edit connection") if connection.name else tr("New connection"))
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        self._name = _line("fleet_connection_name", connection.name, "such as the site's name")
+        self._name = _line("fleet_connection_name", connection.name, tr("such as the site's name"))
         self._url = _line("fleet_connection_url", connection.url, DEFAULT_URL)
-        self._operator = _line("fleet_connection_operator", connection.operator, "who you are, in every log")
-        self._token = _line("fleet_connection_token", "", "kept by QGIS, encrypted; or choose one below")
+        self._operator = _line(
+            "fleet_connection_operator", connection.operator, tr("who you are, in every log")
+        )
+        self._token = _line("fleet_connection_token", "", tr("kept by QGIS, encrypted; or choose one below"))
         self._token.setEchoMode(QLineEdit.EchoMode.Password)
         self._token.setEnabled(self._store.is_there)
         self._auth = QgsAuthConfigSelect(self)
@@ -51,9 +54,9 @@ class ConnectionDialog(QDialog):
         self._auth.setConfigId(connection.auth)
         self._ca = QgsFileWidget()
         self._ca.setObjectName("fleet_connection_ca")
-        self._ca.setFilter("Certificates (*.pem *.crt *.cer);;All files (*)")
+        self._ca.setFilter(tr("Certificates (*.pem *.crt *.cer);;All files (*)"))
         self._ca.setFilePath(connection.ca_file)
-        self._ca.lineEdit().setPlaceholderText("the site's ca.pem; empty for public authorities")
+        self._ca.lineEdit().setPlaceholderText(tr("the site's ca.pem; empty for public authorities"))
         self._verdict = VerdictLabel()
         self._trial = ConnectionTrial(self)
         self._trial.told.connect(self._verdict.tell)
@@ -73,7 +76,7 @@ class ConnectionDialog(QDialog):
             made = self.connection()
             if made.name != self._before.name and self._connections.get(made.name) is not None:
                 raise BadConnectionError(
-                    f"There is a connection {made.name} already. Give this one another name."
+                    tr("There is a connection {name} already. Give this one another name.", name=made.name)
                 )
             token = self._token.text().strip()
             if token:
@@ -94,7 +97,7 @@ class ConnectionDialog(QDialog):
 
     def try_it(self) -> None:
         """Greet the gateway with what stands in the fields, and say what became of it."""
-        self._verdict.wait("Connecting …")
+        self._verdict.wait(tr("Connecting …"))
         try:
             made = self._written()
             # The name is of no matter to the gateway.
@@ -105,7 +108,7 @@ class ConnectionDialog(QDialog):
         except FleetError as error:
             self._verdict.tell(False, str(error))
             return
-        self._trial.begin(made.url, made.operator or "connection test", Credentials(token, made.ca_file))
+        self._trial.begin(made.url, made.operator or tr("connection test"), Credentials(token, made.ca_file))
 
     def _written(self) -> GatewayConnection:
         texts = (field.text() for field in (self._name, self._url, self._operator))
@@ -115,12 +118,12 @@ class ConnectionDialog(QDialog):
         form = QFormLayout()
         form.setFieldGrowthPolicy(QFormLayout.FieldGrowthPolicy.ExpandingFieldsGrow)
         rows = (
-            ("&Name", self._name),
-            ("&Gateway", self._url),
-            ("&Operator", self._operator),
-            ("&Token", self._token),
-            ("&Authentication", self._auth),
-            ("CA &file", self._ca),
+            (tr("&Name"), self._name),
+            (tr("&Gateway"), self._url),
+            (tr("&Operator"), self._operator),
+            (tr("&Token"), self._token),
+            (tr("&Authentication"), self._auth),
+            (tr("CA &file"), self._ca),
         )
         for text, field in rows:
             label = QLabel(text)
@@ -128,7 +131,7 @@ class ConnectionDialog(QDialog):
             form.addRow(label, field)
         standard = QDialogButtonBox.StandardButton
         buttons = QDialogButtonBox(standard.Ok | standard.Cancel | standard.Help)
-        trial = buttons.addButton("T&est", QDialogButtonBox.ButtonRole.ActionRole)
+        trial = buttons.addButton(tr("T&est"), QDialogButtonBox.ButtonRole.ActionRole)
         trial.setObjectName("fleet_connection_test")
         trial.clicked.connect(self.try_it)
         buttons.accepted.connect(self.accept)

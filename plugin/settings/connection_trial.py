@@ -6,6 +6,7 @@ from qgis.PyQt.QtCore import QObject, QTimer, pyqtSignal
 
 from ..connection import Connection
 from ..errors import FleetError
+from ..language import tr
 from ..wire.addresses import Credentials
 from ..wire.status import LinkStatus, Phase
 
@@ -58,6 +59,8 @@ class ConnectionTrial(QObject):
         if link.phase in (Phase.RETRYING, Phase.FAILED):
             return False, link.reason
         if link.phase is Phase.CONNECTED and self._site is not None:
-            who = f", as {link.reason}" if link.reason else ""
-            return True, f"{self._site.name} ({self._site.crs}) answers{who}."
+            site = {"site": self._site.name, "crs": self._site.crs}
+            if link.reason:
+                return True, tr("{site} ({crs}) answers, as {who}.", who=link.reason, **site)
+            return True, tr("{site} ({crs}) answers.", **site)
         return None

@@ -7,6 +7,7 @@ from qgis.PyQt.QtWidgets import QDialog, QDialogButtonBox, QVBoxLayout, QWidget
 
 from ..help.help_window import show_help
 from ..help.topics import CONNECTIONS
+from ..language import tr
 from .connections_widget import ConnectionsWidget
 
 
@@ -16,7 +17,7 @@ class ConnectionsDialog(QDialog):
     def __init__(self, parent: QWidget | None = None):
         super().__init__(parent)
         self.setObjectName("fleet_connections_dialog")
-        self.setWindowTitle("Connections to gateways")
+        self.setWindowTitle(tr("Connections to gateways"))
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         widget = ConnectionsWidget()
         standard = QDialogButtonBox.StandardButton

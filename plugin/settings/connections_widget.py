@@ -18,6 +18,7 @@ from qgis.PyQt.QtWidgets import (
 )
 
 from ..errors import FleetError
+from ..language import tr
 from ..wire.addresses import DEFAULT_URL, Credentials
 from .connection_dialog import ConnectionDialog
 from .connection_trial import ConnectionTrial
@@ -27,8 +28,8 @@ from .preferences import exports_folder
 from .token_store import TokenStore
 from .verdict_label import VerdictLabel
 
-FILTER = "Connections (*.json)"
-TITLES = ("Name", "Gateway", "Operator")
+FILTER = tr("Connections (*.json)")
+TITLES = (tr("Name"), tr("Gateway"), tr("Operator"))
 
 
 class ConnectionsWidget(QWidget):
@@ -51,12 +52,12 @@ class ConnectionsWidget(QWidget):
         self._buttons = {
             name: self._button(name, text, action)
             for name, text, action in (
-                ("new", "&New…", self.new),
-                ("edit", "&Edit…", self.edit),
-                ("remove", "&Remove", self.remove_selected),
-                ("test", "&Test", self.try_selected),
-                ("import", "&Import…", self._choose_import),
-                ("export", "E&xport…", self._choose_export),
+                ("new", tr("&New…"), self.new),
+                ("edit", tr("&Edit…"), self.edit),
+                ("remove", tr("&Remove"), self.remove_selected),
+                ("test", tr("&Test"), self.try_selected),
+                ("import", tr("&Import…"), self._choose_import),
+                ("export", tr("E&xport…"), self._choose_export),
             )
         }
         rows = QVBoxLayout(self)
@@ -104,14 +105,16 @@ class ConnectionsWidget(QWidget):
             self._connections.remove(name)
         self.show_all()
         if names:
-            self._verdict.wait(f"Removed: {', '.join(names)}. Tokens stay in QGIS's authentication.")
+            self._verdict.wait(
+                tr("Removed: {names}. Tokens stay in QGIS's authentication.", names=", ".join(names))
+            )
 
     def try_selected(self) -> None:
         """Greet the gateway of the selected connection."""
         connection = self._connections.get(next(iter(self.selected()), ""))
         if connection is None:
             return
-        self._verdict.wait(f"Connecting to {connection.name} …")
+        self._verdict.wait(tr("Connecting to {name} …", name=connection.name))
         try:
             token = (
                 self._store.token_in(connection.auth) if connection.auth else self._store.read(connection.url)
@@ -120,14 +123,14 @@ class ConnectionsWidget(QWidget):
             self._verdict.tell(False, str(error))
             return
         credentials = Credentials(token, connection.ca_file)
-        self._trial.begin(connection.url, connection.operator or "connection test", credentials)
+        self._trial.begin(connection.url, connection.operator or tr("connection test"), credentials)
 
     def read_file(self, file: str) -> None:
         """Keep the connections in ``file`` as well; of one name those in the file count."""
         try:
             found = connections_in(Path(file).read_text(encoding="utf-8"), file)
         except (OSError, UnicodeDecodeError) as error:
-            self._verdict.tell(False, f"{file} cannot be read: {error}")
+            self._verdict.tell(False, tr("{file} cannot be read: {error}", file=file, error=error))
             return
         except FleetError as error:
             self._verdict.tell(False, str(error))
@@ -141,7 +144,15 @@ class ConnectionsWidget(QWidget):
             values = (connection.name, connection.url, connection.operator, connection.ca_file)
             self._connections.put(GatewayConnection(*values, auth))
         self.show_all()
-        self._verdict.tell(True, f"{len(found)} connections from {file}, {replaced} of them replaced.")
+        self._verdict.tell(
+            True,
+            tr(
+                "{found} connections from {file}, {replaced} of them replaced.",
+                found=len(found),
+                file=file,
+                replaced=replaced,
+            ),
+        )
 
     def write_file(self, file: str) -> None:
         """Write the selected connections, or all when none is selected, without their tokens."""
@@ -150,9 +161,11 @@ class ConnectionsWidget(QWidget):
         try:
             Path(file).write_text(connections_text(chosen), encoding="utf-8")
         except OSError as error:
-            self._verdict.tell(False, f"{file} cannot be written: {error}")
+            self._verdict.tell(False, tr("{file} cannot be written: {error}", file=file, error=error))
             return
-        self._verdict.tell(True, f"{len(chosen)} connections in {file}, without tokens.")
+        self._verdict.tell(
+            True, tr("{chosen} connections in {file}, without tokens.", chosen=len(chosen), file=file)
+        )
 
     def end(self) -> None:
         """Give up a test that is under way."""
@@ -164,12 +177,12 @@ class ConnectionsWidget(QWidget):
         dialog.open()
 
     def _choose_import(self) -> None:
-        file, _ = QFileDialog.getOpenFileName(self, "Import connections", exports_folder(), FILTER)
+        file, _ = QFileDialog.getOpenFileName(self, tr("Import connections"), exports_folder(), FILTER)
         if file:
             self.read_file(file)
 
     def _choose_export(self) -> None:
-        file, _ = QFileDialog.getSaveFileName(self, "Export connections", exports_folder(), FILTER)
+        file, _ = QFileDialog.getSaveFileName(self, tr("Export connections"), exports_folder(), FILTER)
         if file:
             self.write_file(QgsFileUtils.ensureFileNameHasExtension(file, ["json"]))
 

@@ -8,11 +8,12 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..errors import FleetError
+from ..language import tr
 from ..wire.addresses import check_address
 
 FORMAT = "fleet-supervisor-connections"
 VERSION = 1
-CHOOSE = "Choose a file that Export wrote."
+CHOOSE = tr("Choose a file that Export wrote.")
 
 
 class BadConnectionError(FleetError):
@@ -36,7 +37,7 @@ class GatewayConnection:
         """
         name = " ".join(self.name.split())
         if not name:
-            raise BadConnectionError("The connection has no name. Give it one, such as the site's.")
+            raise BadConnectionError(tr("The connection has no name. Give it one, such as the site's."))
         url = check_address(self.url)
         return GatewayConnection(name, url, self.operator.strip(), self.ca_file.strip(), self.auth)
 
@@ -59,17 +60,27 @@ def connections_in(text: str, source: str) -> list[GatewayConnection]:
     try:
         content = json.loads(text)
     except ValueError as error:
-        raise BadConnectionError(f"{source} is not JSON: {error}. {CHOOSE}") from error
+        raise BadConnectionError(
+            tr("{source} is not JSON: {error}. {choose}", source=source, error=error, choose=CHOOSE)
+        ) from error
     if not isinstance(content, dict) or content.get("format") != FORMAT:
-        raise BadConnectionError(f"{source} holds no connections to gateways. {CHOOSE}")
+        raise BadConnectionError(
+            tr("{source} holds no connections to gateways. {choose}", source=source, choose=CHOOSE)
+        )
     if content.get("version") != VERSION:
         raise BadConnectionError(
-            f"{source} is of version {content.get('version')}; this plugin reads version {VERSION}. "
-            "Update the plugin."
+            tr(
+                "{source} is of version {found}; this plugin reads version {version}. Update the plugin.",
+                source=source,
+                found=content.get("version"),
+                version=VERSION,
+            )
         )
     rows = content.get("connections")
     if not isinstance(rows, list):
-        raise BadConnectionError(f"{source} has no list named connections. {CHOOSE}")
+        raise BadConnectionError(
+            tr("{source} has no list named connections. {choose}", source=source, choose=CHOOSE)
+        )
     return [_connection(row, number, source) for number, row in enumerate(rows, 1)]
 
 
@@ -77,9 +88,17 @@ def _connection(row: Any, number: int, source: str) -> GatewayConnection:
     keys = ("name", "url", "operator", "ca_file")
     if not isinstance(row, dict) or not all(isinstance(row.get(key, ""), str) for key in keys):
         raise BadConnectionError(
-            f"{source}: connection {number} is not a set of texts named {', '.join(keys)}. {CHOOSE}"
+            tr(
+                "{source}: connection {number} is not a set of texts named {keys}. {choose}",
+                source=source,
+                number=number,
+                keys=", ".join(keys),
+                choose=CHOOSE,
+            )
         )
     try:
         return GatewayConnection(*(row.get(key, "") for key in keys)).checked()
     except FleetError as error:
-        raise BadConnectionError(f"{source}: connection {number}: {error}") from error
+        raise BadConnectionError(
+            tr("{source}: connection {number}: {error}", source=source, number=number, error=error)
+        ) from error

@@ -5,6 +5,7 @@ from __future__ import annotations
 from qgis.core import QgsApplication, QgsAuthMethodConfig
 
 from ..errors import FleetError
+from ..language import tr
 
 TITLE = "Fleet Supervisor"
 METHOD = "Basic"
@@ -57,20 +58,27 @@ class TokenStore:
         """
         if not self.is_there:
             raise TokenStoreError(
-                "This QGIS keeps no authentication (its options say why, under Authentication): enter the "
-                "token under Access."
+                tr(
+                    "This QGIS keeps no authentication (its options say why, under Authentication): enter "
+                    "the token under Access."
+                )
             )
         manager = QgsApplication.authManager()
         if config not in manager.configIds():
             raise TokenStoreError(
-                f"The authentication {config} that the connection names is not in this QGIS. Edit the "
-                "connection and choose another, or enter the token."
+                tr(
+                    "The authentication {config} that the connection names is not in this QGIS. Edit the "
+                    "connection and choose another, or enter the token.",
+                    config=config,
+                )
             )
         done, loaded = manager.loadAuthenticationConfig(config, QgsAuthMethodConfig(), True)
         if not done:
             raise TokenStoreError(
-                "QGIS did not give the token that it keeps: its master password was not given. Press Connect "
-                "and enter it, or enter the token under Access."
+                tr(
+                    "QGIS did not give the token that it keeps: its master password was not given. Press "
+                    "Connect and enter it, or enter the token under Access."
+                )
             )
         return _token(loaded)
 
@@ -101,8 +109,10 @@ class TokenStore:
             done, config = manager.storeAuthenticationConfig(config)
         if not done:
             raise TokenStoreError(
-                "QGIS did not keep the token: its master password was not given. The token is used now and "
-                "has to be entered again next time."
+                tr(
+                    "QGIS did not keep the token: its master password was not given. The token is used now "
+                    "and has to be entered again next time."
+                )
             )
         return str(config.id())
 
@@ -125,6 +135,11 @@ def _token(config: QgsAuthMethodConfig) -> str:
         header = config.configMap().get("Authorization", "")
         return header.removeprefix("Bearer ").strip()
     raise TokenStoreError(
-        f"The authentication {config.name()} is of the method {config.method()}, which gateways do not know. "
-        f"Choose one of the method {METHOD} with the token as its password."
+        tr(
+            "The authentication {config} is of the method {method}, which gateways do not know. "
+            "Choose one of the method {wanted} with the token as its password.",
+            config=config.name(),
+            method=config.method(),
+            wanted=METHOD,
+        )
     )

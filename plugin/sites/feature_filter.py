@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from qgis.core import QgsExpressionContext, QgsExpressionContextUtils, QgsFeature, QgsFields, QgsVectorLayer
 
+from ..language import tr
 from .layer_rules import LayerRules, as_flag
 from .roles import expressions_of
 
@@ -30,10 +31,12 @@ class FeatureFilter:
         if self._rule is None:
             return True
         self._rules.at(feature)
-        value = self._rules.value("filter", self._rule, notes, otherwise="it is left out")
+        value = self._rules.value("filter", self._rule, notes, otherwise=tr("it is left out"))
         if value is None:
             return False
         flag = as_flag(value)
         if flag is None:
-            notes.append(f"its filter gives {value!r}, which is neither true nor false; it is left out")
+            notes.append(
+                tr("its filter gives {value!r}, which is neither true nor false; it is left out", value=value)
+            )
         return flag is True

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 from qgis.core import QgsExpression, QgsFeature
 
+from ..language import tr
 from .layer_rules import LayerRules, as_flag, as_metres
 from .roles import RAMP, LayerExpressions
 
@@ -71,13 +72,21 @@ class FeatureValues:
         )
 
     def _height_of(self, what: str, rule: QgsExpression | None, notes: list[str]) -> float | None:
-        otherwise = "the estimate" if rule is self._height and self._estimate else "the default"
-        value = self._rules.value(what, rule, notes, otherwise=f"{otherwise} is used")
+        has_estimate = rule is self._height and self._estimate is not None
+        otherwise = tr("the estimate is used") if has_estimate else tr("the default is used")
+        value = self._rules.value(what, rule, notes, otherwise=otherwise)
         if value is None or value == "":
             return None
         height = as_metres(value)
         if height is None or height < 0:
-            notes.append(f"its {what} {value!r} is not a number of metres of 0 or more; {otherwise} is used")
+            notes.append(
+                tr(
+                    "its {what} {value!r} is not a number of metres of 0 or more; {otherwise}",
+                    what=what,
+                    value=value,
+                    otherwise=otherwise,
+                )
+            )
             return None
         return height
 
@@ -87,7 +96,12 @@ class FeatureValues:
             return 0.0
         metres = as_metres(value)
         if metres is None:
-            notes.append(f"its base {value!r} is not a number of metres; it is taken to stand on the ground")
+            notes.append(
+                tr(
+                    "its base {value!r} is not a number of metres; it is taken to stand on the ground",
+                    value=value,
+                )
+            )
             return 0.0
         return metres
 
@@ -101,5 +115,7 @@ class FeatureValues:
             return True
         flag = as_flag(value)
         if flag is None:
-            notes.append(f"its outdoor flag {value!r} is neither true nor false; true is used")
+            notes.append(
+                tr("its outdoor flag {value!r} is neither true nor false; true is used", value=value)
+            )
         return flag is not False

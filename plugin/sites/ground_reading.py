@@ -12,6 +12,7 @@ from qgis.core import QgsAbstractGeometry, QgsFeature, QgsFeedback, QgsGeometry
 from ...robot_bridge.roads.centrelines import DEFAULT_SPEED
 from ...robot_bridge.roads.surfaces.surface import DRAWN, GENERATED, Surface
 from ...robot_bridge.sites.features import Area, Centreline
+from ..language import tr
 from .feature_filter import FeatureFilter
 from .layer_rules import LayerRules
 from .obstacle_source import ObstacleSource
@@ -80,8 +81,14 @@ def read_centrelines(
         reading.warnings += layer.rules.warnings
         if unknown:
             reading.warnings.append(
-                f"Layer {source.name}: the width of {len(unknown)} of its roads is not known and taken as "
-                f"{default_width:g} m (feature {unknown[0]} is the first)"
+                tr(
+                    "Layer {layer}: the width of {count} of its roads is not known and taken as "
+                    "{width:g} m (feature {first} is the first)",
+                    layer=source.name,
+                    count=len(unknown),
+                    width=default_width,
+                    first=unknown[0],
+                )
             )
     return reading
 
@@ -131,7 +138,7 @@ def _polygons(
     for feature, geometry in layer.features(reading, feedback):
         shapes, notes = shapes_of(geometry)
         if any(not shape.closed for shape in shapes):
-            notes.append("has a line, which is no area; it is left out")
+            notes.append(tr("has a line, which is no area; it is left out"))
         label = layer.label(feature, notes)
         layer.note(feature, notes, reading)
         for rings in polygons_of(shapes):
@@ -171,12 +178,12 @@ class _GroundLayer:
                 continue
             geometry = feature.geometry()
             if geometry.isNull() or geometry.isEmpty():
-                self.note(feature, ["has no geometry; it is left out"], reading)
+                self.note(feature, [tr("has no geometry; it is left out")], reading)
                 continue
             try:
                 moved = self.placing.to_metres(geometry)
             except PlacingError as error:
-                why = f"cannot be transformed into the site's CRS ({error}); it is left out"
+                why = tr("cannot be transformed into the site's CRS ({error}); it is left out", error=error)
                 self.note(feature, [why], reading)
                 continue
             self.rules.at(feature)
@@ -189,7 +196,10 @@ class _GroundLayer:
 
     def note(self, feature: QgsFeature, notes: Sequence[str], reading: GroundReading) -> None:
         """Warn of ``feature``."""
-        reading.warnings += [f"Layer {self.source.name}, feature {feature.id()}: {note}" for note in notes]
+        reading.warnings += [
+            tr("Layer {layer}, feature {id}: {note}", layer=self.source.name, id=feature.id(), note=note)
+            for note in notes
+        ]
 
 
 def lines_of(geometry: QgsGeometry, notes: list[str]) -> list[np.ndarray]:
@@ -200,10 +210,10 @@ def lines_of(geometry: QgsGeometry, notes: list[str]) -> list[np.ndarray]:
     parts = parts_of(geometry)
     notes += parts.notes
     if not parts.finite:
-        notes.append("has a coordinate that is no number; it is left out")
+        notes.append(tr("has a coordinate that is no number; it is left out"))
         return []
     if parts.polygons:
-        notes.append("has a polygon, which is no centreline; it is left out")
+        notes.append(tr("has a polygon, which is no centreline; it is left out"))
     lines, line_notes = lines_with_length(parts.lines)
     notes += line_notes
     return lines

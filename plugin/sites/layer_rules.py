@@ -8,9 +8,11 @@ from typing import Any
 
 from qgis.core import NULL, QgsExpression, QgsExpressionContext, QgsFeature, QgsFeatureRequest, QgsFields
 
+from ..language import tr
 from .errors import ExpressionError
 
 _FLAGS = {"1": True, "true": True, "yes": True, "0": False, "false": False, "no": False}
+DEFAULT_IS_USED = tr("the default is used")
 _METRES = re.compile(r"\s*([+-]?\d+(?:[.,]\d+)?)\s*m?\s*", re.ASCII)
 
 
@@ -35,8 +37,14 @@ class LayerRules:
         missing = self._missing(expression)
         if missing:
             self.warnings.append(
-                f"Layer {self._layer}: it has no field {missing}, which the {what} expression "
-                f"{text!r} reads; the default is used for all its features"
+                tr(
+                    "Layer {layer}: it has no field {missing}, which the {what} expression {text!r} reads; "
+                    "the default is used for all its features",
+                    layer=self._layer,
+                    missing=missing,
+                    what=what,
+                    text=text,
+                )
             )
             return None
         expression.prepare(self._context)
@@ -53,9 +61,15 @@ class LayerRules:
         missing = self._missing(expression)
         if missing:
             raise ExpressionError(
-                f"The {what} expression {text!r} for the layer {self._layer} reads the field {missing}, "
-                "which the layer does not have. Correct it, or write attribute('...') for a field that some "
-                "layers lack."
+                tr(
+                    "The {what} expression {text!r} for the layer {layer} reads the field {missing}, which "
+                    "the layer does not have. Correct it, or write attribute('...') for a field that some "
+                    "layers lack.",
+                    what=what,
+                    text=text,
+                    layer=self._layer,
+                    missing=missing,
+                )
             )
         expression.prepare(self._context)
         return expression
@@ -69,14 +83,21 @@ class LayerRules:
         what: str,
         expression: QgsExpression | None,
         notes: list[str],
-        otherwise: str = "the default is used",
+        otherwise: str = DEFAULT_IS_USED,
     ) -> Any:
         """Return what ``expression`` says of the feature, None for nothing; a failure becomes a note."""
         if expression is None:
             return None
         value = expression.evaluate(self._context)
         if expression.hasEvalError():
-            notes.append(f"the {what} expression fails: {expression.evalErrorString()}; {otherwise}")
+            notes.append(
+                tr(
+                    "the {what} expression fails: {error}; {otherwise}",
+                    what=what,
+                    error=expression.evalErrorString(),
+                    otherwise=otherwise,
+                )
+            )
             return None
         return None if value is None or value == NULL else value
 
@@ -90,7 +111,13 @@ class LayerRules:
             return None
         metres = as_metres(value)
         if metres is None or metres <= 0:
-            notes.append(f"its {what} {value!r} is not a number of metres above 0; the default is used")
+            notes.append(
+                tr(
+                    "its {what} {value!r} is not a number of metres above 0; the default is used",
+                    what=what,
+                    value=value,
+                )
+            )
             return None
         return metres
 
@@ -106,8 +133,13 @@ class LayerRules:
         expression = QgsExpression(text)
         if expression.hasParserError():
             raise ExpressionError(
-                f"The {what} expression {text!r} for the layer {self._layer} is not one: "
-                f"{expression.parserErrorString().strip()}. Correct it."
+                tr(
+                    "The {what} expression {text!r} for the layer {layer} is not one: {error}. Correct it.",
+                    what=what,
+                    text=text,
+                    layer=self._layer,
+                    error=expression.parserErrorString().strip(),
+                )
             )
         return expression
 

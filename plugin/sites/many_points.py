@@ -8,7 +8,16 @@ import numpy as np
 from qgis.core import QgsCoordinateTransform, QgsCsException, QgsGeometry, QgsPointXY
 
 _LINE_HEADER = struct.Struct("<BII")
-_LINE_STRING = 2
+_POINT_HEADER = struct.Struct("<BI")
+_POINT, _LINE_STRING = 1, 2
+
+
+def line_of(xy: np.ndarray) -> QgsGeometry:
+    """Return (n, 2) coordinates as a line, a single one as a point; an object for each would be slow."""
+    head = _POINT_HEADER.pack(1, _POINT) if len(xy) == 1 else _LINE_HEADER.pack(1, _LINE_STRING, len(xy))
+    geometry = QgsGeometry()
+    geometry.fromWkb(head + xy.astype("<f8").tobytes())
+    return geometry
 
 
 def moved_together(xy: np.ndarray, transform: QgsCoordinateTransform) -> np.ndarray:
@@ -18,10 +27,8 @@ def moved_together(xy: np.ndarray, transform: QgsCoordinateTransform) -> np.ndar
     """
     if len(xy) == 0 or transform.isShortCircuited():
         return np.asarray(xy, dtype=np.float64).reshape(-1, 2)
-    geometry = QgsGeometry()
     # A line string of one point is none, so the first point goes twice.
-    line = np.concatenate([xy[:1], xy])
-    geometry.fromWkb(_LINE_HEADER.pack(1, _LINE_STRING, len(line)) + line.astype("<f8").tobytes())
+    geometry = line_of(np.concatenate([xy[:1], xy]))
     geometry.transform(transform)
     return np.frombuffer(bytes(geometry.asWkb()), dtype="<f8", offset=_LINE_HEADER.size).reshape(-1, 2)[1:]
 

@@ -8,6 +8,8 @@ from typing import NamedTuple
 import numpy as np
 from qgis.core import QgsAbstractGeometry, QgsCurve, QgsCurvePolygon, QgsGeometry, QgsGeometryCollection
 
+from ..language import tr
+
 
 class Parts(NamedTuple):
     """Polygons as lists of (n, 2) rings, shell first; (n, 2) lines; a note for each part that is neither."""
@@ -44,7 +46,7 @@ def parts_of(geometry: QgsGeometry) -> Parts:
             parts.lines.append(_points(part))
         else:
             kind = part.geometryType().lower()
-            parts.notes.append(f"has a {kind}, which is no area or line; it is left out")
+            parts.notes.append(tr("has a {kind}, which is no area or line; it is left out", kind=kind))
     return parts
 
 

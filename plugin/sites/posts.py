@@ -10,6 +10,7 @@ from qgis.core import QgsFeature, QgsGeometry
 from ...robot_bridge.robotmap.errors import ShapingError
 from ...robot_bridge.robotmap.model import ShapeType
 from ...robot_bridge.robotmap.templates import Template, template
+from ..language import tr
 from .layer_rules import LayerRules
 from .roles import LayerExpressions
 from .shapes import NO_PLACE, Shape, Shapes
@@ -55,7 +56,7 @@ class Posts:
         try:
             return template(str(value))
         except ShapingError as error:
-            notes.append(f"{error}; its width is used")
+            notes.append(tr("{error}; its width is used", error=error))
             return None
 
     def _round(self, notes: list[str]) -> Template:
@@ -63,7 +64,13 @@ class Posts:
         try:
             return template(f"circle {POST_ACROSS_M if width is None else width}")
         except ShapingError:
-            notes.append(f"its width {width:g} m is none of furniture; {POST_ACROSS_M:g} is used")
+            notes.append(
+                tr(
+                    "its width {width:g} m is none of furniture; {used:g} is used",
+                    width=width,
+                    used=POST_ACROSS_M,
+                )
+            )
             return template(f"circle {POST_ACROSS_M}")
 
     def _degrees(self, notes: list[str]) -> float:
@@ -75,6 +82,8 @@ class Posts:
         except ValueError:
             degrees = math.nan
         if not math.isfinite(degrees):
-            notes.append(f"its rotation {value!r} is not a number of degrees; it is not turned")
+            notes.append(
+                tr("its rotation {value!r} is not a number of degrees; it is not turned", value=value)
+            )
             return 0.0
         return degrees

@@ -12,6 +12,7 @@ from ...robot_bridge.sites.geopackage import GEOPACKAGE_FILE
 from ...robot_bridge.sites.layers import CENTRELINES, KEEPOUTS, OBSTACLES, SURFACES
 from ...robot_bridge.sites.settings import SETTINGS_FILE
 from ...robot_bridge.sites.settings_toml import value_text
+from ..language import tr
 from .errors import PublicationError
 from .roles import (
     KEEPOUT,
@@ -25,7 +26,7 @@ from .roles import (
 )
 
 GROUP = "Fleet"
-AGAIN = "Publish the site again."
+AGAIN = tr("Publish the site again.")
 STYLES = Path(__file__).parents[2] / "resources" / "styles"
 
 
@@ -40,13 +41,13 @@ class _Part:
 PARTS = (
     _Part(
         KEEPOUTS.name,
-        "Keepouts",
+        tr("Keepouts"),
         "keepouts.qml",
         LayerSetup(KEEPOUT, LayerExpressions(semantics='"name"')),
     ),
     _Part(
         OBSTACLES.name,
-        "Obstacles",
+        tr("Obstacles"),
         "",
         LayerSetup(
             OBSTACLE,
@@ -57,13 +58,13 @@ PARTS = (
     ),
     _Part(
         CENTRELINES.name,
-        "Road centrelines",
+        tr("Road centrelines"),
         "road_centrelines.qml",
         LayerSetup(ROAD_CENTRELINE, LayerExpressions(semantics='"surface"', width='"width_m"')),
     ),
     _Part(
         SURFACES.name,
-        "Road surfaces",
+        tr("Road surfaces"),
         "road_surfaces.qml",
         LayerSetup(ROAD_SURFACE, LayerExpressions(semantics='"surface"')),
     ),
@@ -98,11 +99,26 @@ def load_site(folder: Path, project: QgsProject) -> LoadedSite:
     name = _site_name(folder)
     file = folder / GEOPACKAGE_FILE
     if not file.is_file():
-        raise PublicationError(f"{folder} has a {SETTINGS_FILE} and no {GEOPACKAGE_FILE}. {AGAIN}")
+        raise PublicationError(
+            tr(
+                "{folder} has a {settings} and no {geopackage}. {again}",
+                folder=folder,
+                settings=SETTINGS_FILE,
+                geopackage=GEOPACKAGE_FILE,
+                again=AGAIN,
+            )
+        )
     opened = [(part, QgsVectorLayer(f"{file}|layername={part.layer}", part.title, "ogr")) for part in PARTS]
     unread = [part.layer for part, layer in opened if not layer.isValid()]
     if unread:
-        raise PublicationError(f"{file} has no layer {', '.join(unread)} that can be read. {AGAIN}")
+        raise PublicationError(
+            tr(
+                "{file} has no layer {layers} that can be read. {again}",
+                file=file,
+                layers=", ".join(unread),
+                again=AGAIN,
+            )
+        )
     taken = {part.setup.role for part in PARTS if layers_with_role(project, part.setup.role)}
     group = _group(project, name)
     for part, layer in opened:
@@ -128,7 +144,7 @@ def _site_name(folder: Path) -> str:
     try:
         text = file.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
-        raise PublicationError(f"{file} cannot be read: {error}") from error
+        raise PublicationError(tr("{file} cannot be read: {error}", file=file, error=error)) from error
     for key in ("name", "id"):
         value = value_text(text, "site", key) or ""
         try:
@@ -136,7 +152,9 @@ def _site_name(folder: Path) -> str:
         except ValueError:
             if len(value) > 2:
                 return value[1:-1]
-    raise PublicationError(f"{file} names no site: it has no table [site] with a name. {AGAIN}")
+    raise PublicationError(
+        tr("{file} names no site: it has no table [site] with a name. {again}", file=file, again=AGAIN)
+    )
 
 
 def _group(project: QgsProject, name: str) -> QgsLayerTreeGroup:

@@ -7,6 +7,7 @@ from qgis.core import QgsGeometry
 
 from ...robot_bridge.robotmap.chords import ramp_normal
 from ...robot_bridge.robotmap.errors import ShapingError
+from ..language import tr
 
 NORMAL = "n"
 """The extra of a ramp: the upward unit normal of its surface in the site frame (paper 1, section II)."""
@@ -34,5 +35,5 @@ def normal_extra(points: np.ndarray, z: np.ndarray, notes: list[str]) -> dict[st
     try:
         return {NORMAL: ramp_normal(np.column_stack([points, z]))}
     except ShapingError:
-        notes.append("its corners span no surface that one can drive on; its normal is left out")
+        notes.append(tr("its corners span no surface that one can drive on; its normal is left out"))
         return {}

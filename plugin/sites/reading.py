@@ -9,6 +9,7 @@ import numpy as np
 from qgis.core import QgsFeature, QgsFeedback, QgsGeometry, QgsRectangle, QgsWkbTypes
 
 from ...robot_bridge.robotmap.outlines import OutlineRow, Outlines
+from ..language import tr, tr_count
 from .feature_filter import FeatureFilter
 from .feature_values import FeatureValues
 from .layer_rules import LayerRules
@@ -107,7 +108,7 @@ class _LayerReader:
             return
         geometry = feature.geometry()
         if geometry.isNull() or geometry.isEmpty():
-            reading.warnings.append(self._named(feature, "has no geometry; it is left out"))
+            reading.warnings.append(self._named(feature, tr("has no geometry; it is left out")))
             return
         is_points = geometry.type() == QgsWkbTypes.GeometryType.PointGeometry
         if not _may_touch(geometry.boundingBox(), self._around if is_points else self._area):
@@ -118,7 +119,10 @@ class _LayerReader:
                 self._posts_in(feature, metres) if is_points else shapes_of(metres, self.source.role)
             )
         except PlacingError as error:
-            shapes, notes = [], [f"cannot be transformed into the site's CRS ({error}); it is left out"]
+            shapes, notes = (
+                [],
+                [tr("cannot be transformed into the site's CRS ({error}); it is left out", error=error)],
+            )
         if shapes:
             notes = [*notes, *self._add(feature, shapes, reading)]
         reading.warnings.extend(self._named(feature, note) for note in notes)
@@ -128,19 +132,31 @@ class _LayerReader:
         name, role = self.source.name, self.source.role
         reading.warnings.extend(self._rules.warnings)
         if role and role not in OBSTACLE_ROLES:
-            reading.warnings.append(f"Layer {name}: its role is {role}, yet it is exported as obstacles")
-        if self._unknown:
-            count = len(self._unknown)
-            unknown = "1 height is" if count == 1 else f"{count} heights are"
             reading.warnings.append(
-                f"Layer {name}: {unknown} not known and estimated as {self._default_height:g} m "
-                f"({_features(self._unknown)})"
+                tr("Layer {name}: its role is {role}, yet it is exported as obstacles", name=name, role=role)
+            )
+        if self._unknown:
+            reading.warnings.append(
+                tr_count(
+                    len(self._unknown),
+                    "Layer {name}: 1 height is not known and estimated as {height:g} m ({features})",
+                    "Layer {name}: %n heights are not known and estimated as {height:g} m ({features})",
+                    name=name,
+                    height=self._default_height,
+                    features=_features(self._unknown),
+                )
             )
         if self._odd_for_role:
-            wanted = "lines, one a riser" if role == STAIRS else "polygons"
+            wanted = tr("lines, one a riser") if role == STAIRS else tr("polygons")
             reading.warnings.append(
-                f"Layer {name}: its role {role} wants {wanted}; other features are exported as plain "
-                f"obstacles ({_features(self._odd_for_role)})"
+                tr(
+                    "Layer {name}: its role {role} wants {wanted}; other features are exported as plain "
+                    "obstacles ({features})",
+                    name=name,
+                    role=role,
+                    wanted=wanted,
+                    features=_features(self._odd_for_role),
+                )
             )
 
     def _posts_in(self, feature: QgsFeature, points: QgsGeometry) -> Shapes:
@@ -186,7 +202,7 @@ class _LayerReader:
         return notes
 
     def _named(self, feature: QgsFeature, note: str) -> str:
-        return f"Layer {self.source.name}, feature {feature.id()}: {note}"
+        return tr("Layer {layer}, feature {id}: {note}", layer=self.source.name, id=feature.id(), note=note)
 
 
 def _may_touch(box: QgsRectangle, area: QgsRectangle | None) -> bool:
@@ -210,5 +226,6 @@ def _odd(shape: Shape, role: str) -> bool:
 
 def _features(ids: Sequence[int]) -> str:
     shown = ", ".join(str(number) for number in ids[:NAMED])
-    more = f" and {len(ids) - NAMED} more" if len(ids) > NAMED else ""
-    return f"feature{'s' if len(ids) > 1 else ''} {shown}{more}"
+    if len(ids) > NAMED:
+        return tr("features {shown} and {more} more", shown=shown, more=len(ids) - NAMED)
+    return tr("features {shown}", shown=shown) if len(ids) > 1 else tr("feature {shown}", shown=shown)

@@ -9,6 +9,7 @@ from typing import Any
 from qgis.core import QgsExpression
 
 from ...robot_bridge.roads.centrelines import BACKWARD, BOTH, FORWARD
+from ..language import tr
 from .layer_rules import LayerRules, as_flag, as_metres
 
 _DIRECTIONS = {
@@ -112,7 +113,10 @@ class RoadRules:
         direction = _DIRECTIONS.get(str(value).strip().lower())
         if direction is None:
             notes.append(
-                f"its direction {value!r} is none of yes, -1 and no; it is taken as driven both ways"
+                tr(
+                    "its direction {value!r} is none of yes, -1 and no; it is taken as driven both ways",
+                    value=value,
+                )
             )
         return direction or BOTH
 
@@ -122,7 +126,7 @@ class RoadRules:
             return None
         speed = as_metres(value) if self._speed else _from_kmh(value)
         if speed is None or speed <= 0:
-            notes.append(f"its speed {value!r} is no number above 0; the default is used")
+            notes.append(tr("its speed {value!r} is no number above 0; the default is used", value=value))
             return None
         return speed
 
@@ -130,14 +134,19 @@ class RoadRules:
         value = self._value("closed", self._closed, notes)
         closed = False if value is None else as_flag(value)
         if closed is None:
-            notes.append(f"whether it is closed, {value!r}, is neither true nor false; it is taken as closed")
+            notes.append(
+                tr(
+                    "whether it is closed, {value!r}, is neither true nor false; it is taken as closed",
+                    value=value,
+                )
+            )
         return closed is not False
 
     def _level_of(self, notes: list[str]) -> int:
         value = self._value("level", self._level, notes)
         number = None if value is None else as_metres(value)
         if value is not None and number is None:
-            notes.append(f"its level {value!r} is no number; it is taken to be on the ground")
+            notes.append(tr("its level {value!r} is no number; it is taken to be on the ground", value=value))
         if number is not None:
             return round(number)
         for level, rule in self._structures:

@@ -9,6 +9,7 @@ import numpy as np
 from qgis.core import QgsAbstractGeometry, QgsGeometry
 
 from ...robot_bridge.robotmap.model import ShapeType
+from ..language import tr
 from .parts import parts_of
 from .ramps import corner_heights
 from .roles import RAMP, STAIRS
@@ -17,7 +18,7 @@ from .soundness import lines_with_length, risers_of, sound_polygons
 SAGITTA_M = 0.02
 """How far a chord may be from the curve it stands for (design, section 6)."""
 
-NO_PLACE = "has a coordinate that is no number or has no place in the site's CRS; it is left out"
+NO_PLACE = tr("has a coordinate that is no number or has no place in the site's CRS; it is left out")
 
 
 class Shape(NamedTuple):

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from qgis.core import Qgis, QgsGeometry, QgsPointXY
 
+from ..language import tr, tr_count
 from .parts import Parts, parts_of
 
 STRAIGHT_M = 0.02
@@ -28,8 +29,8 @@ def sound_polygons(polygons: Sequence[list[np.ndarray]]) -> tuple[list[list[np.n
     repaired = geometry.makeValid()
     parts = parts_of(repaired) if not repaired.isNull() else Parts([], [], [])
     if not parts.polygons:
-        return [], [*notes, f"{_fault(geometry)}; it cannot be repaired and is left out"]
-    return parts.polygons, [*notes, f"{_fault(geometry)}; it was repaired"]
+        return [], [*notes, tr("{fault}; it cannot be repaired and is left out", fault=_fault(geometry))]
+    return parts.polygons, [*notes, tr("{fault}; it was repaired", fault=_fault(geometry))]
 
 
 def lines_with_length(lines: Sequence[np.ndarray]) -> tuple[list[np.ndarray], list[str]]:
@@ -39,7 +40,9 @@ def lines_with_length(lines: Sequence[np.ndarray]) -> tuple[list[np.ndarray], li
         moves = np.ones(len(line), dtype=bool)
         moves[1:] = (line[1:] != line[:-1]).any(axis=1)
         if moves.sum() < 2:
-            notes.append(f"line {number} has fewer than two different points; it is left out")
+            notes.append(
+                tr("line {number} has fewer than two different points; it is left out", number=number)
+            )
         else:
             kept.append(line[moves])
     return kept, notes
@@ -57,7 +60,9 @@ def risers_of(lines: Sequence[np.ndarray]) -> tuple[np.ndarray, list[str]]:
         length = max(float(np.hypot(*along)), 1e-9)
         off = along[0] * (line[:, 1] - line[0, 1]) - along[1] * (line[:, 0] - line[0, 0])
         if np.abs(off).max() / length > STRAIGHT_M or length == 1e-9:
-            notes.append(f"riser {number} is bent; the straight line between its ends is used")
+            notes.append(
+                tr("riser {number} is bent; the straight line between its ends is used", number=number)
+            )
     ends = np.array([line[[0, -1]] for line in lines])
     middle = ends.mean(axis=1)
     climb = np.diff(middle, axis=0, append=middle[-1:] * 2 - middle[-2:-1])
@@ -77,12 +82,27 @@ def _encloses_nothing(ring: np.ndarray) -> bool:
 
 
 def _flat_note(number: int, k: int, ring: np.ndarray) -> str:
-    which = f"the outer ring of part {number}" if k == 0 else f"courtyard {k} of part {number}"
-    place = f" at ({ring[0, 0]:.2f} {ring[0, 1]:.2f})" if len(ring) else ""
+    place = _place(*ring[0]) if len(ring) else ""
     count = len(np.unique(ring, axis=0))
-    lost = "the part" if k == 0 else "the courtyard"
-    points = f"{count} different point{'' if count == 1 else 's'}"
-    return f"{which}{place} has {points} and encloses nothing; {lost} is left out"
+    points = tr_count(count, "1 different point", "%n different points")
+    if k == 0:
+        return tr(
+            "the outer ring of part {number}{place} has {points} and encloses nothing; the part is left out",
+            number=number,
+            place=place,
+            points=points,
+        )
+    return tr(
+        "courtyard {k} of part {number}{place} has {points} and encloses nothing; the courtyard is left out",
+        k=k,
+        number=number,
+        place=place,
+        points=points,
+    )
+
+
+def _place(x: float, y: float) -> str:
+    return tr(" at ({x:.2f} {y:.2f})", x=x, y=y)
 
 
 def _as_geometry(polygons: Sequence[list[np.ndarray]]) -> QgsGeometry:
@@ -94,6 +114,6 @@ def _as_geometry(polygons: Sequence[list[np.ndarray]]) -> QgsGeometry:
 def _fault(geometry: QgsGeometry) -> str:
     """Return what GEOS finds wrong first, and where."""
     for error in geometry.validateGeometry(Qgis.GeometryValidationEngine.Geos):
-        place = f" at ({error.where().x():.2f} {error.where().y():.2f})" if error.hasWhere() else ""
-        return f"the polygon is broken{place}: {error.what()}"
-    return f"the polygon is broken: {geometry.lastError() or 'not valid'}"
+        place = _place(error.where().x(), error.where().y()) if error.hasWhere() else ""
+        return tr("the polygon is broken{place}: {what}", place=place, what=error.what())
+    return tr("the polygon is broken{place}: {what}", place="", what=geometry.lastError() or tr("not valid"))

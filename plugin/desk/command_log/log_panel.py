@@ -204,7 +204,7 @@ class CommandLog(QWidget):
 
     def _ask_where(self) -> None:
         path, _ = QFileDialog.getSaveFileName(
-            self, tr("Export commands"), export_path("commands.csv"), "CSV (*.csv)"
+            self, tr("Export commands"), export_path("commands.csv"), tr("CSV (*.csv)")
         )
         if path:
             self.export(path)

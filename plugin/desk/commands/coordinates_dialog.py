@@ -64,7 +64,7 @@ class CoordinatesDialog(QDialog):
 
     def _lay_out(self) -> None:
         form = QFormLayout()
-        form.addRow("&Coordinates", self._text)
+        form.addRow(tr("&Coordinates"), self._text)
         form.addRow(tr("C&RS"), self._crs)
         buttons = QDialogButtonBox()
         buttons.addButton(self._set, QDialogButtonBox.ButtonRole.ApplyRole)

@@ -10,6 +10,7 @@ from qgis.PyQt import sip
 from qgis.PyQt.QtCore import QObject, QTimer
 
 from ...errors import PlacementError
+from ...language import tr
 from ..desk import PULL_EVERY_MS, Desk
 from .following import Whom, keep_in_view, show_places
 from .hover_card import card
@@ -96,7 +97,9 @@ class LiveView(QObject):
         placed = [view for view in views if view is not None and view.has_pose]
         if not placed:
             for robot in robots[:1]:
-                self._desk.complained.emit(f"{robot} has not said yet where it is; the map cannot go there.")
+                self._desk.complained.emit(
+                    tr("{robot} has not said yet where it is; the map cannot go there.", robot=robot)
+                )
             return
         self._show(np.array([(view.report.x, view.report.y) for view in placed]))
 
@@ -118,7 +121,7 @@ class LiveView(QObject):
         self.following = whom
         if whom is Whom.SELECTED and not self._desk.selection:
             self._desk.complained.emit(
-                "No robot is selected to be followed. Select one in the table or on the map."
+                tr("No robot is selected to be followed. Select one in the table or on the map.")
             )
 
     def _pulled(self) -> None:

@@ -9,6 +9,7 @@ from qgis.PyQt.QtGui import QPixmap
 from qgis.PyQt.QtWidgets import QCheckBox, QLabel, QListView, QVBoxLayout, QWidget
 
 from ...errors import FleetError
+from ...language import tr
 from ..desk import Desk
 from ..live.following import show_places
 from ..observation_book import is_pending
@@ -30,7 +31,7 @@ class ObservationDock(QgsDockWidget):
     """Keeps list, form and layer true to what is known; :meth:`remove` undoes what it did elsewhere."""
 
     def __init__(self, desk: Desk, parent: QWidget | None = None):
-        super().__init__("Observations", parent)
+        super().__init__(tr("Observations"), parent)
         self.setObjectName("fleet_observation_dock")
         self._desk = desk
         self.thumbnails = Thumbnails(self)
@@ -40,7 +41,7 @@ class ObservationDock(QgsDockWidget):
         self.head = QLabel()
         self.head.setObjectName("fleet_observation_head")
         self.head.setWordWrap(True)
-        self.reviewed = QCheckBox("Show reviewed ones, too")
+        self.reviewed = QCheckBox(tr("Show reviewed ones, too"))
         self.reviewed.setObjectName("fleet_observation_reviewed")
         self.list = QListView()
         self.list.setObjectName("fleet_observation_list")
@@ -74,11 +75,13 @@ class ObservationDock(QgsDockWidget):
             self.choose(chosen)
         waiting = book.pending
         if not len(book):
-            text = "No robot has told of an object or image yet."
+            text = tr("No robot has told of an object or image yet.")
         else:
-            text = f"{waiting} to be reviewed" if waiting else "All are reviewed."
+            text = tr("{waiting} to be reviewed", waiting=waiting) if waiting else tr("All are reviewed.")
         self.head.setText(text)
-        self.setWindowTitle(f"Observations ({waiting})" if waiting else "Observations")
+        self.setWindowTitle(
+            tr("Observations ({waiting})", waiting=waiting) if waiting else tr("Observations")
+        )
         self.layer.show(book, self._desk.site)
         self._show_chosen()
 
@@ -123,7 +126,13 @@ class ObservationDock(QgsDockWidget):
         try:
             self.feed.review(request)
         except FleetError as error:
-            self._desk.failed.emit(f"Observation {request.observation} was NOT reviewed: {error}")
+            self._desk.failed.emit(
+                tr(
+                    "Observation {observation} was NOT reviewed: {error}",
+                    observation=request.observation,
+                    error=error,
+                )
+            )
         self._show_chosen()
 
     def _reviewed(self, number: int) -> None:
@@ -138,7 +147,7 @@ class ObservationDock(QgsDockWidget):
         self.refresh()
 
     def _refused(self, number: int, why: str) -> None:
-        self._desk.failed.emit(f"Observation {number} was not reviewed: {why}")
+        self._desk.failed.emit(tr("Observation {number} was not reviewed: {why}", number=number, why=why))
         self._show_chosen()
 
     def _show_chosen(self) -> None:

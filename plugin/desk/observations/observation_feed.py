@@ -12,6 +12,7 @@ from ....robot_bridge.messages import (
     ReviewObservation,
 )
 from ...errors import FleetError
+from ...language import tr
 from ...wire.outbox import Answer
 from ...wire.status import Phase
 from ..desk import Desk
@@ -90,7 +91,7 @@ class ObservationFeed(QObject):
     def _take_page(self, answer: Answer) -> None:
         if answer.error is not None:
             if self._desk.link.phase is Phase.CONNECTED:
-                self._desk.complained.emit(f"What robots saw is not known: {answer.error}")
+                self._desk.complained.emit(tr("What robots saw is not known: {error}", error=answer.error))
             return
         found = (answer.result or {}).get("observations") or []
         if len(found) == PAGE:

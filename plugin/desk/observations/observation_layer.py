@@ -17,6 +17,7 @@ from qgis.core import (
 )
 
 from ....robot_bridge.messages import ObservationReport, SiteReport
+from ...language import tr
 from ..observation_book import ObservationBook
 from ..road_board import time_of_day
 from ..road_layers import LiveLayer
@@ -42,7 +43,7 @@ class ObservationLayer:
 
     def __init__(self, project: QgsProject, thumbnails: Thumbnails):
         self._thumbnails = thumbnails
-        self._live = LiveLayer(project, "observations", "Observations", "Point", FIELDS, style)
+        self._live = LiveLayer(project, "observations", tr("Observations"), "Point", FIELDS, style)
 
     @property
     def layer(self) -> QgsVectorLayer | None:

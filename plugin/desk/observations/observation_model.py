@@ -7,13 +7,19 @@ from typing import Any
 from qgis.PyQt.QtCore import QAbstractListModel, QModelIndex, QObject, QSize, Qt
 from qgis.PyQt.QtGui import QColor, QIcon, QPixmap
 
-from ....robot_bridge.messages import ObservationReport
+from ....robot_bridge.messages import ObservationReport, ObservationState
+from ...language import tr
 from ..road_board import time_of_day
 from .observation_layer import COLOURS
 from .thumbnails import Thumbnails
 
 NUMBER = Qt.ItemDataRole.UserRole
 ICON = QSize(56, 42)
+STATES = {
+    ObservationState.PENDING: tr("to be reviewed"),
+    ObservationState.ACCEPTED: tr("accepted"),
+    ObservationState.REJECTED: tr("rejected"),
+}
 
 
 class ObservationModel(QAbstractListModel):
@@ -61,7 +67,12 @@ class ObservationModel(QAbstractListModel):
         if role == Qt.ItemDataRole.DecorationRole:
             return self._icon(one)
         if role == Qt.ItemDataRole.ToolTipRole:
-            return f"Observation {one.observation} at {one.x:.2f}, {one.y:.2f} m; double click goes there"
+            return tr(
+                "Observation {number} at {x:.2f}, {y:.2f} m; double click goes there",
+                number=one.observation,
+                x=one.x,
+                y=one.y,
+            )
         return one.observation if role == NUMBER else None
 
     def _icon(self, one: ObservationReport) -> QIcon:
@@ -76,10 +87,10 @@ class ObservationModel(QAbstractListModel):
 
 def in_words(one: ObservationReport) -> str:
     """Return two lines on an observation."""
-    kind = "image" if one.media_type else one.semantics or one.label or "object"
-    state = one.state.value
+    kind = tr("image") if one.media_type else one.semantics or one.label or tr("object")
+    state = STATES[one.state]
     if one.reviewed_by:
-        state += f" by {one.reviewed_by}"
+        state = tr("{state} by {by}", state=state, by=one.reviewed_by)
     return f"{one.object} · {kind}\n{one.robot}, {time_of_day(one.received_at)} · {state}"
 
 

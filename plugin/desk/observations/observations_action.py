@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from qgis.gui import QgisInterface
 
+from ...language import tr
 from ..desk import Desk
 from ..dock_action import DockAction
 from .observation_dock import ObservationDock
@@ -18,7 +19,7 @@ class ObservationsAction(DockAction):
             menu,
             ObservationDock(desk, iface.mainWindow()),
             icon="observations.svg",
-            text="Observations",
+            text=tr("Observations"),
             name="fleet_observations",
-            tip="Objects and images that robots told of, to be accepted for the maps or rejected",
+            tip=tr("Objects and images that robots told of, to be accepted for the maps or rejected"),
         )

@@ -18,10 +18,12 @@ from qgis.PyQt.QtWidgets import (
 )
 
 from ....robot_bridge.messages import ObservationReport, ReviewObservation
+from ...language import tr
 from ..observation_book import is_pending
+from .observation_model import STATES
 
 WORDS = ("traffic cone", "barrier", "bin", "bench", "column", "vehicle", "object")
-"""Offered besides what robots said; anything may be written."""
+"""Offered besides what robots said; anything may be written. In English: robots read them on their maps."""
 
 
 class ReviewForm(QWidget):
@@ -47,14 +49,14 @@ class ReviewForm(QWidget):
         self.reason = QLineEdit()
         self.reason.setObjectName("fleet_observation_reason")
         self.reason.setMaxLength(ReviewObservation.texts["reason"])
-        self.reason.setPlaceholderText("optional")
-        self.go = _button("fleet_observation_go", "Sho&w", "Go to it on the map")
+        self.reason.setPlaceholderText(tr("optional"))
+        self.go = _button("fleet_observation_go", tr("Sho&w"), tr("Go to it on the map"))
         self.accept = _button(
             "fleet_observation_accept",
-            "&Accept",
-            "It stands there: draw it on the maps that robots get from now on",
+            tr("&Accept"),
+            tr("It stands there: draw it on the maps that robots get from now on"),
         )
-        self.reject = _button("fleet_observation_reject", "Re&ject", "Draw it on no map")
+        self.reject = _button("fleet_observation_reject", tr("Re&ject"), tr("Draw it on no map"))
         self._lay_out()
         self.go.clicked.connect(lambda: self._report and self.place_wanted.emit(self._report.observation))
         self.accept.clicked.connect(lambda: self._want(accept=True))
@@ -112,10 +114,10 @@ class ReviewForm(QWidget):
     def _lay_out(self) -> None:
         form = QFormLayout()
         form.setContentsMargins(0, 0, 0, 0)
-        form.addRow("It is a", self.semantics)
-        form.addRow("Height", self.height)
-        form.addRow("Radius", self.radius)
-        form.addRow("Reason", self.reason)
+        form.addRow(tr("It is a"), self.semantics)
+        form.addRow(tr("Height"), self.height)
+        form.addRow(tr("Radius"), self.radius)
+        form.addRow(tr("Reason"), self.reason)
         top = QHBoxLayout()
         top.addWidget(self.picture)
         top.addLayout(form, 1)
@@ -130,12 +132,25 @@ class ReviewForm(QWidget):
 
 
 def _about(report: ObservationReport) -> str:
-    what = "An image of" if report.media_type else "An object:"
-    text = f"{what} {report.object}, told by {report.robot}, at {report.x:.2f}, {report.y:.2f} m. "
+    facts = {"object": report.object, "robot": report.robot, "x": report.x, "y": report.y}
+    if report.media_type:
+        text = tr("An image of {object}, told by {robot}, at {x:.2f}, {y:.2f} m.", **facts)
+    else:
+        text = tr("An object: {object}, told by {robot}, at {x:.2f}, {y:.2f} m.", **facts)
+    return f"{text} {_state_in_words(report)}"
+
+
+def _state_in_words(report: ObservationReport) -> str:
     if is_pending(report):
-        return text + ("It waits for your review." if not report.media_type else "Look at it: is it of use?")
-    by = f" by {report.reviewed_by}" if report.reviewed_by else ""
-    return text + f"It was {report.state.value}{by}; a new review takes the place of that."
+        return tr("Look at it: is it of use?") if report.media_type else tr("It waits for your review.")
+    state = STATES[report.state]
+    if report.reviewed_by:
+        return tr(
+            "State: {state}, by {by}. A new review takes the place of that.",
+            state=state,
+            by=report.reviewed_by,
+        )
+    return tr("State: {state}. A new review takes the place of that.", state=state)
 
 
 def _metres(name: str, largest: float) -> QDoubleSpinBox:
@@ -145,7 +160,7 @@ def _metres(name: str, largest: float) -> QDoubleSpinBox:
     box.setDecimals(2)
     box.setSingleStep(0.05)
     box.setSuffix(" m")
-    box.setSpecialValueText("not known")
+    box.setSpecialValueText(tr("not known"))
     return box
 
 

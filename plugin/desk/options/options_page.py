@@ -9,6 +9,7 @@ from qgis.PyQt.QtWidgets import QHBoxLayout, QPushButton, QTabWidget, QVBoxLayou
 
 from ...help.help_window import show_help
 from ...help.topics import OPTIONS
+from ...language import tr
 from ...settings.connections_widget import ConnectionsWidget
 from ...settings.preferences import Preferences, read_preferences, write_preferences
 from ..alarms.stored_limits import read_limits
@@ -34,10 +35,10 @@ class OptionsPage(QgsOptionsPageWidget):
         self.alarms.show_limits(read_limits())
         tabs = QTabWidget()
         tabs.setObjectName("fleet_options_tabs")
-        tabs.addTab(_page(self.connections, stretch=False), "Connections")
-        tabs.addTab(_page(self.preferences), "Map and files")
-        tabs.addTab(_page(self.alarms), "Alarms")
-        self._help = QPushButton("Fleet Supervisor &help")
+        tabs.addTab(_page(self.connections, stretch=False), tr("Connections"))
+        tabs.addTab(_page(self.preferences), tr("Map and files"))
+        tabs.addTab(_page(self.alarms), tr("Alarms"))
+        self._help = QPushButton(tr("Fleet Supervisor &help"))
         self._help.setObjectName("fleet_options_help")
         self._help.setAutoDefault(False)
         self._help.clicked.connect(lambda: show_help(OPTIONS, self))

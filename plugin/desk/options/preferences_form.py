@@ -5,25 +5,26 @@ from __future__ import annotations
 from qgis.gui import QgsFileWidget
 from qgis.PyQt.QtWidgets import QDoubleSpinBox, QFormLayout, QLabel, QWidget
 
+from ...language import tr
 from ...settings.preferences import RANGES, Preferences
 
 SPINS = (
-    ("robot_size", "&Size of robots on the map", " ×", 0.1, 1, "1 is as they come"),
+    ("robot_size", tr("&Size of robots on the map"), " ×", 0.1, 1, tr("1 is as they come")),
     (
         "positions_rate",
-        "Positions asked for, &times a second",
+        tr("Positions asked for, &times a second"),
         " /s",
         1.0,
         0,
-        "At most; from the next connection on. Fewer spare a slow network",
+        tr("At most; from the next connection on. Fewer spare a slow network"),
     ),
     (
         "layer_seconds",
-        "Layer of robots written anew &every",
+        tr("Layer of robots written anew &every"),
         " s",
         1.0,
         0,
-        "The layer Robots (live): attribute table, labels, expressions. The live map goes its own way",
+        tr("The layer Robots (live): attribute table, labels, expressions. The live map goes its own way"),
     ),
 )
 
@@ -50,8 +51,8 @@ class PreferencesForm(QWidget):
         self._folder = QgsFileWidget()
         self._folder.setObjectName("fleet_folder")
         self._folder.setStorageMode(QgsFileWidget.StorageMode.GetDirectory)
-        self._folder.lineEdit().setPlaceholderText("your documents")
-        _add(form, "&Folder for files that are written", self._folder)
+        self._folder.lineEdit().setPlaceholderText(tr("your documents"))
+        _add(form, tr("&Folder for files that are written"), self._folder)
 
     def show_preferences(self, preferences: Preferences) -> None:
         """Show these values."""

@@ -16,12 +16,13 @@ from ....robot_bridge.messages import (
     ResumeQueue,
 )
 from ...errors import FleetError
+from ...language import tr
 from ...wire.outbox import Answer
 from ..desk import Desk
 
 Request = AddTasks | MoveTask | RemoveTask | MakeCurrent | PauseQueue | ResumeQueue
 
-CHANGED_MEANWHILE = "Not done: the queue has changed since you saw it. This is how it stands now."
+CHANGED_MEANWHILE = tr("Not done: the queue has changed since you saw it. This is how it stands now.")
 
 
 class QueueEdits(QObject):
@@ -59,25 +60,27 @@ class QueueEdits(QObject):
     def move(self, robot: str, task: str, before: str | None) -> str | None:
         """Move a task in front of task ``before``, or to the end."""
         request = MoveTask(robot, self._revision(robot), task, before)
-        return self._change(request, f"Moving a task of {robot}")
+        return self._change(request, tr("Moving a task of {robot}", robot=robot))
 
     def remove(self, robot: str, task: str) -> str | None:
         """Take a task out of a queue."""
         request = RemoveTask(robot, self._revision(robot), task)
-        return self._change(request, f"Removing a task of {robot}")
+        return self._change(request, tr("Removing a task of {robot}", robot=robot))
 
     def make_current(self, robot: str, task: str) -> str | None:
         """Let a task be done first, at once unless the queue is paused."""
         request = MakeCurrent(robot, self._revision(robot), task)
-        return self._change(request, f"A task of {robot} first")
+        return self._change(request, tr("A task of {robot} first", robot=robot))
 
     def pause(self, robot: str) -> str | None:
         """Send a robot no further task."""
-        return self._change(PauseQueue(robot), f"Pausing the queue of {robot}")
+        return self._change(PauseQueue(robot), tr("Pausing the queue of {robot}", robot=robot))
 
     def resume(self, robot: str) -> str | None:
         """Let a queue that is paused go on."""
-        return self._change(ResumeQueue(robot, self._revision(robot)), f"Resuming the queue of {robot}")
+        return self._change(
+            ResumeQueue(robot, self._revision(robot)), tr("Resuming the queue of {robot}", robot=robot)
+        )
 
     def _revision(self, robot: str) -> int:
         return self._desk.queues.revision(robot)

@@ -7,10 +7,11 @@ from qgis.PyQt.QtGui import QColor, QFont
 from qgis.PyQt.QtWidgets import QAbstractItemView, QHeaderView, QTreeView, QWidget
 
 from ....robot_bridge.messages import TaskReport, TaskState
+from ...language import tr
 from ..small_views import shrink
 from .task_words import state_in_words, task_in_words
 
-COLUMNS = ("", "Task", "State")
+COLUMNS = ("", tr("Task"), tr("State"))
 MIME = "application/x-fleet-task"
 FAILED = QColor("#C62828")
 NUMBER, TASK, STATE = range(3)
@@ -53,7 +54,8 @@ class TaskModel(QAbstractTableModel):
         if role == Qt.ItemDataRole.DisplayRole:
             return (str(index.row() + 1), task_in_words(task), state_in_words(task))[column]
         if role == Qt.ItemDataRole.ToolTipRole:
-            return f"{task_in_words(task)}\n{state_in_words(task)}\nadded by {task.added_by}"
+            added = tr("added by {by}", by=task.added_by)
+            return f"{task_in_words(task)}\n{state_in_words(task)}\n{added}"
         if role == Qt.ItemDataRole.FontRole and task.state is TaskState.CURRENT:
             bold = QFont()
             bold.setBold(True)
@@ -126,7 +128,7 @@ class TaskList(QTreeView):
         header = self.header()
         header.setStretchLastSection(False)
         header.setSectionResizeMode(TASK, QHeaderView.ResizeMode.Stretch)
-        for column, widest in ((NUMBER, "000"), (STATE, "waiting: robot")):
+        for column, widest in ((NUMBER, "000"), (STATE, tr("waiting: robot"))):
             self.setColumnWidth(column, self.fontMetrics().horizontalAdvance(widest) + 14)
 
     def show_tasks(self, tasks: list[TaskReport]) -> None:

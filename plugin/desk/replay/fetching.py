@@ -7,6 +7,7 @@ from qgis.PyQt.QtCore import QObject, pyqtSignal
 
 from ....robot_bridge.messages import GetCommands, GetTrajectory
 from ...errors import FleetError
+from ...language import tr
 from ...wire.outbox import Answer
 from ..desk import Desk
 from .history import History
@@ -57,7 +58,7 @@ class Fetching(QObject):
     def stop(self) -> None:
         """Ask for no more; what is there stays."""
         if self._key:
-            self._end("Stopped: the rest of the time was not fetched.")
+            self._end(tr("Stopped: the rest of the time was not fetched."))
 
     def forget(self) -> None:
         """Hold nothing: it is another site's."""
@@ -68,14 +69,14 @@ class Fetching(QObject):
         if not self._key or answer.order.key != self._key:
             return
         if answer.error is not None:
-            self._end(f"The rest of the time was not fetched: {answer.error}")
+            self._end(tr("The rest of the time was not fetched: {error}", error=answer.error))
             return
         result = answer.result or {}
         places = result.get("places") or []
         try:
             self.history.add(places)
         except ValueError as error:
-            self._end(f"The gateway's answer cannot be used: {error}.")
+            self._end(tr("The gateway's answer cannot be used: {error}.", error=error))
             return
         if places:
             self.reached = float(places[-1][1])
@@ -84,8 +85,10 @@ class Fetching(QObject):
             self._end("")
         elif len(self.history) >= MOST:
             self._end(
-                f"Only the first {len(self.history)} positions were fetched. Choose less time, or fewer "
-                "robots."
+                tr(
+                    "Only the first {count} positions were fetched. Choose less time, or fewer robots.",
+                    count=len(self.history),
+                )
             )
         else:
             self._go_on(str(following))
@@ -96,7 +99,7 @@ class Fetching(QObject):
             request = GetTrajectory(wanted.robots, wanted.since, wanted.until, after=after, limit=PAGE)
             self._key = self._desk.inquire(request)
         except FleetError as error:
-            self._end(f"The rest of the time was not fetched: {error}")
+            self._end(tr("The rest of the time was not fetched: {error}", error=error))
             return
         self.progressed.emit()
 
@@ -105,7 +108,7 @@ class Fetching(QObject):
         self._drop_task()
         task = self._task = ArrangeTask(self.history)
         task.taskCompleted.connect(lambda: self._arranged(task, text))
-        task.taskTerminated.connect(lambda: self._arranged(task, "What came could not be put in order."))
+        task.taskTerminated.connect(lambda: self._arranged(task, tr("What came could not be put in order.")))
         QgsApplication.taskManager().addTask(task)
 
     def _arranged(self, task: ArrangeTask, text: str) -> None:
@@ -123,7 +126,7 @@ class ArrangeTask(QgsTask):
     """Puts a history in order beside the window; nobody else touches it meanwhile."""
 
     def __init__(self, history: History):
-        super().__init__("Putting positions in order", QgsTask.Flag.CanCancel)
+        super().__init__(tr("Putting positions in order"), QgsTask.Flag.CanCancel)
         self._history = history
 
     def run(self) -> bool:

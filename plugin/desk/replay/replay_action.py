@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from qgis.gui import QgisInterface
 
+from ...language import tr
 from ..desk import Desk
 from ..dock_action import DockAction
 from .replay_dock import ReplayDock
@@ -18,7 +19,7 @@ class ReplayAction(DockAction):
             menu,
             ReplayDock(desk, iface.mainWindow()),
             icon="replay.svg",
-            text="Replay",
+            text=tr("Replay"),
             name="fleet_replay",
-            tip="Play what robots did, on a map beside the live one",
+            tip=tr("Play what robots did, on a map beside the live one"),
         )

@@ -6,6 +6,7 @@ from qgis.gui import QgsDockWidget
 from qgis.PyQt.QtWidgets import QComboBox, QHBoxLayout, QLabel, QToolButton, QVBoxLayout, QWidget
 
 from ...errors import FleetError
+from ...language import tr
 from ..desk import Desk
 from .clockwork import SPEEDS, Clockwork, in_words
 from .fetching import Fetching
@@ -22,7 +23,7 @@ class ReplayDock(QgsDockWidget):
     """Puts the parts together. :meth:`remove` undoes what they did outside of it."""
 
     def __init__(self, desk: Desk, parent: QWidget | None = None):
-        super().__init__("Replay", parent)
+        super().__init__(tr("Replay"), parent)
         self.setObjectName("fleet_replay_dock")
         self._desk = desk
         self._told = ""
@@ -40,16 +41,16 @@ class ReplayDock(QgsDockWidget):
         self.play = QToolButton()
         self.play.setObjectName("fleet_replay_play")
         self.play.setText("▶")
-        self.play.setToolTip("Play, or hold (Space)")
+        self.play.setToolTip(tr("Play, or hold (Space)"))
         self.play.setShortcut("Space")
         self.speed = QComboBox()
         self.speed.setObjectName("fleet_replay_speed")
-        self.speed.setToolTip("How much faster than it was")
+        self.speed.setToolTip(tr("How much faster than it was"))
         self.speed.addItems([f"× {speed:g}" for speed in SPEEDS])
         self.speed.setCurrentIndex(SPEEDS.index(1))
         self._lay_out()
         self._wire()
-        self._say("Choose a time and press Load.")
+        self._say(tr("Choose a time and press Load."))
 
     def remove(self) -> None:
         """Stop the clock, take the layer out of the project, leave the live map alone."""
@@ -62,19 +63,19 @@ class ReplayDock(QgsDockWidget):
         """Fetch the time in the form and begin to show it."""
         since, until = self.form.stretch()
         if self._desk.site is None:
-            self._desk.complained.emit("There is nothing to replay yet. Connect to a gateway first.")
+            self._desk.complained.emit(tr("There is nothing to replay yet. Connect to a gateway first."))
             return
         if until <= since:
-            self._desk.complained.emit("The replay's time ends before it begins. Correct one of the two.")
+            self._desk.complained.emit(tr("The replay's time ends before it begins. Correct one of the two."))
             return
         robots = list(self._desk.selection) if self.form.selected.isChecked() else []
         if self.form.selected.isChecked() and not robots:
-            self._desk.complained.emit("No robot is selected to be replayed. Select one, or replay all.")
+            self._desk.complained.emit(tr("No robot is selected to be replayed. Select one, or replay all."))
             return
         try:
             self.fetching.begin(since, until, robots)
         except FleetError as error:
-            self._desk.failed.emit(f"The replay was not loaded: {error}")
+            self._desk.failed.emit(tr("The replay was not loaded: {error}", error=error))
             return
         self._robots = robots
         self.layer.remove()
@@ -82,7 +83,7 @@ class ReplayDock(QgsDockWidget):
         self.line.show_time(since, until)
         self.clockwork.show(since, until)
         self.form.show_busy(True)
-        self._say("Loading …")
+        self._say(tr("Loading …"))
 
     def _wire(self) -> None:
         self.form.wanted.connect(self.load)
@@ -102,7 +103,11 @@ class ReplayDock(QgsDockWidget):
 
     def _progressed(self) -> None:
         self._say(
-            f"Loading … {len(self.fetching.history)} positions, up to {in_words(self.fetching.reached)}"
+            tr(
+                "Loading … {positions} positions, up to {moment}",
+                positions=len(self.fetching.history),
+                moment=in_words(self.fetching.reached),
+            )
         )
 
     def _ended(self, why: str) -> None:
@@ -111,11 +116,14 @@ class ReplayDock(QgsDockWidget):
         if why:
             self._desk.complained.emit(why)
         if not len(history):
-            self._say(why or "No positions are stored of that time.")
+            self._say(why or tr("No positions are stored of that time."))
             return
         if self._desk.site is not None:
             self.layer.show(history, self._desk.site)
-        self._say(f"positions: {len(history)}, robots: {len(history.names)}" + (" · NOT ALL" if why else ""))
+        self._say(
+            tr("positions: {positions}, robots: {robots}", positions=len(history), robots=len(history.names))
+            + (tr(" · NOT ALL") if why else "")
+        )
         self._show_marks()
         self._show(self.clockwork.moment)
         try:
@@ -152,7 +160,7 @@ class ReplayDock(QgsDockWidget):
         self.layer.remove()
         self.map.show_nothing()
         self.line.show_time(0.0, 0.0)
-        self._say("Choose a time and press Load.")
+        self._say(tr("Choose a time and press Load."))
 
     def _say(self, text: str) -> None:
         self._told = text
@@ -160,9 +168,11 @@ class ReplayDock(QgsDockWidget):
 
     def _show_banner(self, moment: float) -> None:
         if not self.clockwork.is_set:
-            self.banner.setText(f"REPLAY · {self._told}")
+            self.banner.setText(tr("REPLAY · {told}", told=self._told))
             return
-        self.banner.setText(f"REPLAY, not live · {in_words(moment)} · {self._told}")
+        self.banner.setText(
+            tr("REPLAY, not live · {moment} · {told}", moment=in_words(moment), told=self._told)
+        )
 
     def _lay_out(self) -> None:
         bottom = QHBoxLayout()

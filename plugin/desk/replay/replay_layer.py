@@ -20,6 +20,7 @@ from qgis.PyQt.QtCore import QObject, QTimer, pyqtSignal
 
 from ....robot_bridge.messages import SiteReport
 from ....robot_bridge.sites.frame import SiteFrame
+from ...language import tr
 from ..live_layers import MARK, give_style
 from ..road_layers import GROUP
 from .clockwork import local
@@ -96,7 +97,7 @@ class ReplayLayer(QObject):
 
     def _make(self, crs: QgsCoordinateReferenceSystem) -> QgsVectorLayer:
         dirty = self._project.isDirty()
-        layer = QgsVectorLayer(f"LineString?{FIELDS}", "Trajectories (replay)", "memory")
+        layer = QgsVectorLayer(f"LineString?{FIELDS}", tr("Trajectories (replay)"), "memory")
         layer.setCrs(crs)
         layer.setCustomProperty(MARK, OWN_LAYER)
         layer.setCustomProperty("skipMemoryLayersCheck", 1)
@@ -115,7 +116,7 @@ class ReplayLayer(QObject):
 
     def _gone(self) -> None:
         self._task = None
-        self.failed.emit("The trajectories are not drawn: they could not be made into lines.")
+        self.failed.emit(tr("The trajectories are not drawn: they could not be made into lines."))
 
     def _write(self) -> None:
         layer = self.layer
@@ -124,7 +125,9 @@ class ReplayLayer(QObject):
         batch, self._waiting = self._waiting[:AT_ONCE], self._waiting[AT_ONCE:]
         if batch and not layer.dataProvider().addFeatures(batch)[0]:
             self._waiting = []
-            self.failed.emit(f"Not all trajectories are drawn: {layer.dataProvider().lastError()}")
+            self.failed.emit(
+                tr("Not all trajectories are drawn: {error}", error=layer.dataProvider().lastError())
+            )
         if not self._waiting:
             self._timer.stop()
             if layer is not None:
@@ -136,7 +139,7 @@ class LinesTask(QgsTask):
     """Makes the lines of ``table``, the positions of a :class:`~.history.History`."""
 
     def __init__(self, table: np.ndarray, names: list[str], frame: SiteFrame, fields: QgsFields):
-        super().__init__("Drawing what robots drove", QgsTask.Flag.CanCancel)
+        super().__init__(tr("Drawing what robots drove"), QgsTask.Flag.CanCancel)
         self._table, self._names, self._frame, self._fields = table, names, frame, fields
         self.features: list[QgsFeature] = []
 

@@ -7,13 +7,14 @@ import time
 from qgis.PyQt.QtCore import QDateTime, pyqtSignal
 from qgis.PyQt.QtWidgets import QCheckBox, QComboBox, QDateTimeEdit, QGridLayout, QPushButton, QWidget
 
+from ...language import tr
 from .clockwork import local
 
 LAST = {
-    "the last 5 minutes": 300,
-    "the last 15 minutes": 900,
-    "the last hour": 3600,
-    "the last 8 hours": 28800,
+    tr("the last 5 minutes"): 300,
+    tr("the last 15 minutes"): 900,
+    tr("the last hour"): 3600,
+    tr("the last 8 hours"): 28800,
 }
 FORMAT = "yyyy-MM-dd HH:mm:ss"
 
@@ -28,15 +29,15 @@ class StretchForm(QWidget):
         super().__init__(parent)
         self.last = QComboBox()
         self.last.setObjectName("fleet_replay_last")
-        self.last.addItems([*LAST, "from … to …"])
+        self.last.addItems([*LAST, tr("from … to …")])
         self.since = _time("fleet_replay_since")
         self.until = _time("fleet_replay_until")
-        self.selected = QCheckBox("Selected only")
+        self.selected = QCheckBox(tr("Selected only"))
         self.selected.setObjectName("fleet_replay_selected")
-        self.selected.setToolTip("Load what the selected robots did, not what all did")
-        self.since.setToolTip("From when on")
-        self.until.setToolTip("Until when")
-        self.load = QPushButton("Load")
+        self.selected.setToolTip(tr("Load what the selected robots did, not what all did"))
+        self.since.setToolTip(tr("From when on"))
+        self.until.setToolTip(tr("Until when"))
+        self.load = QPushButton(tr("Load"))
         self.load.setObjectName("fleet_replay_load")
         self._is_busy = False
         self._lay_out()
@@ -54,7 +55,7 @@ class StretchForm(QWidget):
     def show_busy(self, busy: bool) -> None:
         """Offer to stop while positions are on their way."""
         self._is_busy = busy
-        self.load.setText("Stop" if busy else "Load")
+        self.load.setText(tr("Stop") if busy else tr("Load"))
 
     def _lay_out(self) -> None:
         grid = QGridLayout(self)
