@@ -230,7 +230,7 @@ def _format_problem(parameters: Mapping[str, Any]) -> str:
     if unknown or not given:
         return tr(
             "FORMATS is {formats}: choose of {known}.",
-            formats=", ".join(map(str, unknown)) or "empty",
+            formats=", ".join(map(str, unknown)) or tr("empty"),
             known=", ".join(MADE),
         )
     return ""
