@@ -18,7 +18,7 @@ from qgis.PyQt.QtWidgets import (
 )
 from qgis.utils import iface
 
-from inside_qgis.operator_at_desk import NotHappenedError
+from inside_qgis.desk_view import NotHappenedError
 from inside_qgis.session import Session, end, start
 
 TIMEOUT = 30

@@ -1,10 +1,9 @@
-"""An operator's hands and eyes: clicks what the window shows, reads what stands there, nothing else."""
+"""An operator's hands: clicks what the window shows, nothing else."""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 
 from qgis.core import (
@@ -17,42 +16,23 @@ from qgis.core import (
 from qgis.gui import QgisInterface
 from qgis.PyQt.QtCore import QPoint, Qt
 from qgis.PyQt.QtTest import QTest
-from qgis.PyQt.QtWidgets import (
-    QAbstractButton,
-    QDockWidget,
-    QLabel,
-    QLineEdit,
-    QTableView,
-    QTreeView,
-    QWidget,
-)
+from qgis.PyQt.QtWidgets import QAbstractButton, QDockWidget, QLineEdit, QTableView, QWidget
+
+from .desk_view import DeskView, NotHappenedError
 
 POLL_MS = 50
 SMALLEST = 0
 """Qt's word for the slowest and smallest PNG."""
 
 
-class NotHappenedError(Exception):
-    """What was waited for did not happen; the text says what, and what was there instead."""
-
-
-@dataclass(frozen=True)
-class LoggedCommand:
-    """One row of the command log, as it reads."""
-
-    what: str
-    state: str
-    details: str
-
-
-class OperatorAtDesk:
-    """Works the plugin's dock and the map canvas by mouse and keyboard."""
+class OperatorAtDesk(DeskView):
+    """Works the plugin's dock and the map canvas by events that Qt is handed, and reads what they show."""
 
     def __init__(self, iface: QgisInterface):
-        self._window = iface.mainWindow()
+        super().__init__(iface)
         self.canvas = iface.mapCanvas()
 
-    # --- waiting and looking ---
+    # --- waiting ---
 
     def wait(self, what: str, condition: Callable[[], object], seconds: float) -> float:
         """Let the window work until ``condition`` holds; return how many seconds that took.
@@ -69,47 +49,6 @@ class OperatorAtDesk:
     def pause(self, seconds: float) -> None:
         """Let the window work for a while."""
         QTest.qWait(int(seconds * 1000))
-
-    def describe(self) -> str:
-        """Return what the dock says now, for an error's text."""
-        dock = self._window.findChild(QDockWidget, "fleet_dock")
-        if dock is None:
-            return "the window has no fleet dock"
-        link = self._find(QLabel, "fleet_link_state").text()
-        draft = self._find(QLabel, "fleet_draft_text").text()
-        return f"link: {link!r}; draft: {draft!r}; robots: {self.robots()}; commands: {self.commands()}"
-
-    def link_state(self) -> str:
-        """Return the dock's line on the connection."""
-        return self._find(QLabel, "fleet_link_state").text()
-
-    def robots(self) -> dict[str, dict[str, str]]:
-        """Return the robot table: a row of column title and text for each robot."""
-        model = self._find(QTableView, "fleet_robot_table").model()
-        horizontal = Qt.Orientation.Horizontal
-        titles = [model.headerData(column, horizontal) for column in range(model.columnCount())]
-        rows = (
-            {title: str(model.index(row, column).data()) for column, title in enumerate(titles)}
-            for row in range(model.rowCount())
-        )
-        return {row["Robot"]: row for row in rows}
-
-    def speed(self, robot: str) -> float:
-        """Return the speed that the table shows for ``robot``, m/s; 0 where it shows none."""
-        text = self.robots().get(robot, {}).get("Speed", "").removesuffix(" m/s")
-        return float(text) if text else 0.0
-
-    def commands(self) -> list[LoggedCommand]:
-        """Return the command log's commands, newest first."""
-        model = self._find(QTreeView, "fleet_command_log").model()
-        return [
-            LoggedCommand(*(model.index(row, column).data() or "" for column in (1, 2, 3)))
-            for row in range(model.rowCount())
-        ]
-
-    def state_of(self, robot: str) -> str:
-        """Return the state that the log shows for the newest command of ``robot``, empty when it has none."""
-        return next((entry.state for entry in self.commands() if entry.what.startswith(f"{robot} ")), "")
 
     # --- doing ---
 
@@ -172,12 +111,6 @@ class OperatorAtDesk:
         path.parent.mkdir(parents=True, exist_ok=True)
         if not widget.grab().save(str(path), "PNG", SMALLEST):
             raise NotHappenedError(f"the picture could not be saved as {path}")
-
-    def _find(self, kind: type, name: str):
-        found = self._window.findChild(kind, name)
-        if found is None:
-            raise NotHappenedError(f"the window has no {kind.__name__} named {name}; is the plugin loaded?")
-        return found
 
     def _click(self, widget: QWidget, place: QPoint) -> None:
         QTest.mouseClick(widget, Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier, place)

@@ -12,7 +12,8 @@ from qgis.core import QgsApplication, QgsProject
 from qgis.PyQt.QtCore import QTimer
 from qgis.utils import iface, unloadPlugin
 
-from .operator_at_desk import NotHappenedError, OperatorAtDesk
+from .desk_view import NotHappenedError
+from .operator_at_desk import OperatorAtDesk
 
 PLAN_VARIABLE = "FLEET_DEMO_PLAN"
 

@@ -12,6 +12,7 @@ from websockets.sync.client import connect
 from .errors import StageError
 
 TIMEOUT_S = 5.0
+HELLO = {"operator": "demo check"}
 
 
 def ask(address: str, *questions: tuple[str, Mapping[str, Any]]) -> list[dict[str, Any]]:
@@ -21,8 +22,14 @@ def ask(address: str, *questions: tuple[str, Mapping[str, Any]]) -> list[dict[st
     """
     with connect(f"{address}/desk", open_timeout=TIMEOUT_S, close_timeout=TIMEOUT_S) as wire:
         numbers = itertools.count(1)
-        _answer(wire, next(numbers), "hello", {"operator": "demo check"})
+        _answer(wire, next(numbers), "hello", HELLO)
         return [_answer(wire, next(numbers), method, params) for method, params in questions]
+
+
+def greet(address: str) -> dict[str, Any]:
+    """Return how the gateway at ``address`` answers an operator's hello: site, role, emergency stop."""
+    with connect(f"{address}/desk", open_timeout=TIMEOUT_S, close_timeout=TIMEOUT_S) as wire:
+        return _answer(wire, 1, "hello", HELLO)
 
 
 def _answer(wire: Any, number: int, method: str, params: Mapping[str, Any]) -> dict[str, Any]:

@@ -26,11 +26,14 @@ checkVersion=false
 askToSaveProjectChanges=false
 networkAndProxy\\networkTimeout=1000
 
-[fleet_supervisor]
-tour_offered=true
-
 [UI]
 Customization\\enabled=false
+"""
+
+
+GREETED = """
+[fleet_supervisor]
+tour_offered=true
 """
 
 
@@ -38,14 +41,15 @@ class Profile:
     """A QGIS configuration folder with nothing in it but the plugin, made anew.
 
     :param link: link the repository instead of copying the plugin as a release holds it.
+    :param greeted: the plugin has offered its tour already, as it does once in a profile.
     """
 
-    def __init__(self, folder: Path, *, link: bool):
+    def __init__(self, folder: Path, *, link: bool, greeted: bool = True):
         self._folder = folder
         shutil.rmtree(folder, ignore_errors=True)
         profile = folder / "profiles" / "default"
         (profile / "QGIS").mkdir(parents=True)
-        (profile / "QGIS" / "QGIS3.ini").write_text(SETTINGS, encoding="utf-8")
+        (profile / "QGIS" / "QGIS3.ini").write_text(SETTINGS + (GREETED if greeted else ""), encoding="utf-8")
         (folder / "run").mkdir(mode=0o700)
         self.plugin = install(profile, link=link)
 

@@ -19,11 +19,18 @@ SESSIONS = ROOT / "scripts" / "inside_qgis"
 
 
 def start_qgis(
-    processes: Processes, profile: Profile, session: str, plan: Mapping[str, object], display: str | None
+    processes: Processes,
+    profile: Profile,
+    session: str,
+    plan: Mapping[str, object],
+    display: str | None,
+    *,
+    path: str | None = None,
 ) -> subprocess.Popen[bytes]:
     """Open QGIS Desktop and let ``session`` (a file of scripts/inside_qgis) work by ``plan`` in it.
 
-    ``plan["journal"]`` names the file that the session writes down in what happened.
+    ``plan["journal"]`` names the file that the session writes down in what happened. ``path`` is where QGIS
+    finds other programs, in place of this program's PATH.
     """
     journal = Path(str(plan["journal"]))
     journal.unlink(missing_ok=True)
@@ -32,6 +39,8 @@ def start_qgis(
     env = profile.environment(packages=False) | {"FLEET_DEMO_PLAN": str(plan_file)}
     if display is not None:
         env |= {"DISPLAY": display, "QT_QPA_PLATFORM": "xcb"}
+    if path is not None:
+        env |= {"PATH": path}
     options = ["--nologo", "--noversioncheck", "--profile", "default", "--code", SESSIONS / session]
     return processes.start("qgis", [program("qgis"), *options], env=env)
 

@@ -1,0 +1,52 @@
+"""The third act: a robot is chosen on the map, is sent to a cone target, and gets there."""
+
+from __future__ import annotations
+
+import math
+
+from stage.errors import StageError
+
+from .scene import Scene
+
+TARGET = (52.0, 8.0)
+"""Along the straight; site frame, metres."""
+REACHED_M = 0.2
+"""The sample site's tolerance."""
+PIXEL_M = 0.3
+"""How far the place that the gateway got may lie from the one that was clicked."""
+
+
+def send_cone(scene: Scene) -> None:
+    """Select r1 on the map, set a target, send it by its key and watch."""
+    operator, film = scene.operator, scene.film
+    operator.press("Shift+F9")
+    operator.click_map(scene.gateway.place_of("r1"))
+    scene.wait_for_selection("r1")
+    film.shoot("selected", "r1 is selected by a click on the map")
+    operator.press("F8")
+    operator.click_map(TARGET)
+    operator.wait_for_text("fleet_draft_text", "Cone for r1")
+    film.shoot("cone-draft", "a cone target as a draft")
+    operator.press("Enter")
+    scene.wait_until_driving("r1")
+    require_place(scene)
+    film.shoot("driving", "r1 drives to its target")
+    operator.wait_for_state("r1", "reached")
+    require_reached(scene)
+    film.shoot("reached", "r1 reached its target")
+
+
+def require_place(scene: Scene) -> None:
+    """Raise StageError unless the gateway sent r1 where the operator clicked."""
+    sent = scene.gateway.newest_command("r1")["params"]
+    if math.dist((sent["x"], sent["y"]), TARGET) > PIXEL_M:
+        raise StageError(f"r1 was sent to {sent['x']:.2f}, {sent['y']:.2f}, but {TARGET} was clicked")
+
+
+def require_reached(scene: Scene) -> None:
+    """Raise StageError unless the gateway says reached, and r1 is where it was sent."""
+    scene.gateway.require_state("r1", "reached")
+    sent = scene.gateway.newest_command("r1")["params"]
+    off = math.dist((sent["x"], sent["y"]), scene.gateway.place_of("r1"))
+    if off > REACHED_M:
+        raise StageError(f"r1 stands {off:.2f} m from its target, not within {REACHED_M} m")

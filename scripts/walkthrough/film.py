@@ -1,0 +1,39 @@
+"""Says what has happened, and photographs the window at each step."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+
+from stage.errors import StageError
+
+from .operator_at_screen import OperatorAtScreen
+from .screen import Screen
+
+
+class Film:
+    """Numbers its pictures, ``operator-01-NAME.png``, in ``folder``; those of an earlier film go."""
+
+    def __init__(self, screen: Screen, operator: OperatorAtScreen, folder: Path):
+        self._screen, self._operator, self._folder = screen, operator, folder
+        self._began = time.monotonic()
+        self._shots = 0
+        for old in folder.glob("operator-*.png"):
+            old.unlink()
+
+    def happened(self, text: str) -> None:
+        """Say what has happened."""
+        print(f"{time.monotonic() - self._began:6.1f} s  {text}", flush=True)
+
+    def shoot(self, name: str, text: str) -> None:
+        """Photograph the window and say what it shows.
+
+        :raises StageError: when a part of the plugin cannot be read or reached, or something raised.
+        """
+        self._operator.wait_for_map()
+        if faults := [*self._operator.cut_off(), *self._operator.complaints()]:
+            raise StageError(f"in the picture {name!r}: " + "; ".join(faults))
+        self._shots += 1
+        path = self._folder / f"operator-{self._shots:02d}-{name}.png"
+        self._screen.photograph(path)
+        self.happened(f"{text}: {path.name}")

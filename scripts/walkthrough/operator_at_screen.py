@@ -1,0 +1,218 @@
+"""An operator at the screen: finds what to click, clicks it, and looks until something has happened."""
+
+from __future__ import annotations
+
+import re
+import time
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from stage.errors import StageError
+
+from robot_bridge.sites.frame import SiteFrame
+
+from .screen import Pixel, Screen
+from .window import Window
+
+POLL_S = 0.05
+PATIENCE_S = 60.0
+"""How long anything may take: other work may share the computer."""
+
+EDGE = 4
+"""Pixels by which the edge of a panel may be missed."""
+
+Place = tuple[float, float]
+"""Metres in the site frame."""
+
+
+class OperatorAtScreen:
+    """Knows the window by what it shows, and changes it by mouse and keyboard only."""
+
+    def __init__(self, screen: Screen, window: Window, frame: SiteFrame):
+        self._screen, self._window, self._frame = screen, window, frame
+
+    # --- looking ---
+
+    def wait(self, what: str, condition: Callable[[], Any], seconds: float = PATIENCE_S) -> Any:
+        """Look until ``condition`` returns something that holds, and return that.
+
+        :raises StageError: when it does not hold within ``seconds``.
+        """
+        until = time.monotonic() + seconds
+        while not (found := condition()):
+            if time.monotonic() > until:
+                raise StageError(f"{what} did not happen within {seconds:.0f} s; {self.desk()}")
+            time.sleep(POLL_S)
+        return found
+
+    def desk(self) -> dict[str, Any]:
+        """Return what the fleet panel shows."""
+        return dict(self._window.ask("desk"))
+
+    def widget(self, name: str) -> dict[str, Any]:
+        """Return how a widget stands, by its object name."""
+        return dict(self._window.ask("widget", name=name))
+
+    def text(self, name: str) -> str:
+        """Return what a widget says, nothing while it is not to be seen."""
+        return str(self.widget(name).get("text", ""))
+
+    def state_of(self, robot: str) -> str:
+        """Return the state that the log shows for the newest command of ``robot``."""
+        rows = self.desk()["commands"]
+        return next((row["state"] for row in rows if row["what"].startswith(f"{robot} ")), "")
+
+    def wait_for_state(self, robot: str, state: str, seconds: float = PATIENCE_S) -> None:
+        """Look at the log until the newest command of ``robot`` has come to ``state``."""
+        self.wait(f"{state} in the log for {robot}", lambda: self.state_of(robot) == state, seconds)
+
+    def wait_for_text(self, name: str, pattern: str) -> re.Match[str]:
+        """Look at a widget until it reads as ``pattern`` wants."""
+        return self.wait(
+            f"{name} reading {pattern!r}, not {self.text(name)!r}",
+            lambda: re.search(pattern, self.text(name)),
+        )
+
+    def wait_for_map(self) -> None:
+        """Look until the map has been drawn."""
+        self.wait("drawing the map", lambda: not self._window.ask("map")["drawing"])
+
+    def cut_off(self) -> list[str]:
+        """Return what of the plugin cannot be read or reached."""
+        return list(self._window.ask("cut_off"))
+
+    def complaints(self) -> list[str]:
+        """Return the exceptions that QGIS logged."""
+        return list(self._window.ask("complaints"))
+
+    # --- mouse ---
+
+    def click(self, name: str) -> None:
+        """Click a widget, by its object name, as soon as it can be used."""
+        self._screen.click(_middle(self._still(name)))
+
+    def click_part(self, name: str, share: float) -> None:
+        """Click a widget ``share`` of its width from its left."""
+        x, y, width, height = self._still(name)
+        self._screen.click((round(x + share * width), y + height // 2))
+
+    def click_tab(self, name: str, text: str) -> None:
+        """Click a tab by what it begins with."""
+        self._click_seen(f"the tab {text!r}", lambda: self._window.ask("tab", name=name, text=text))
+
+    def click_row(self, name: str, text: str) -> None:
+        """Click a row of a table by what it begins with."""
+        self._click_seen(
+            f"the row {text!r} of {name}", lambda: self._window.ask("cell", name=name, text=text)
+        )
+
+    def choose_from_menu(self, *entries: str) -> None:
+        """Click through the menus, from the menu bar on."""
+        for entry in entries:
+            self._click_seen(
+                f"the menu's entry {entry!r}", lambda entry=entry: self._window.ask("entry", text=entry)
+            )
+
+    def close_panel(self, name: str) -> None:
+        """Click the cross of one of QGIS's panels."""
+        self._click_seen(f"the cross of {name}", lambda: self._window.ask("panel", name=name)["cross"])
+        self.wait(f"{name} closing", lambda: not self.widget(name)["visible"])
+
+    def widen_panel(self, name: str, width: int) -> None:
+        """Drag the edge of a panel at the left of the map until it is ``width`` pixels wide."""
+        x, y, now, height = self._window.ask("panel", name=name)["rect"]
+        edge = (x + now + 2, y + height // 2)
+        with self._screen.dragging(edge, (edge[0] + width - now, edge[1])):
+            # Let go at once, QGIS would forget the last of the way.
+            self.wait(f"{name} being {width} px wide", lambda: self._width_of(name) >= width - EDGE)
+
+    def _width_of(self, name: str) -> int:
+        return int(self._window.ask("panel", name=name)["rect"][2])
+
+    def click_map(self, place: Place) -> None:
+        """Click a place of the site on the map."""
+        self._screen.click(self._pixel(place))
+
+    def point_at_map(self, place: Place) -> None:
+        """Rest the mouse on a place of the site on the map."""
+        self._screen.move(self._pixel(place))
+
+    def zoom_in(self, place: Place) -> None:
+        """Turn the wheel over a place, which stays where it is on the screen."""
+        before = self._window.ask("map")["scale"]
+        self._screen.turn_wheel(self._pixel(place))
+        self.wait("the map being larger", lambda: self._window.ask("map")["scale"] < 0.9 * before)
+        self.wait_for_map()
+
+    def drag_on_map(self, start: Place, end: Place) -> None:
+        """Drag from one place of the site to another on the map."""
+        self._screen.drag(self._pixel(start), self._pixel(end))
+
+    # --- keyboard ---
+
+    def press(self, keys: str) -> None:
+        """Press a key, with others held down: ``F8``, ``Ctrl+Shift+Z``."""
+        self._screen.press(keys)
+
+    def write(self, name: str, text: str) -> None:
+        """Click a field and type ``text`` in place of what stands there."""
+        self.click(name)
+        self.wait(f"the keyboard being in {name}", lambda: self.widget(name)["focus"])
+        self._screen.press("Ctrl+A")
+        self._screen.type(text)
+        self.wait(f"{name} reading {text!r}", lambda: self.text(name) == text)
+
+    # --- what a window manager does ---
+
+    def take_the_screen(self) -> None:
+        """Let the QGIS window fill the screen, and have the keyboard."""
+        main = self._window.ask("window")["main"]
+        self._screen.fill(main)
+        self._screen.focus(main)
+
+    def wait_for_dialog(self, name: str) -> None:
+        """Look until a dialog is there, framed and with the keyboard."""
+        self.wait(f"the dialog {name}", lambda: self.widget(name)["visible"])
+        dialog = self.wait("the dialog being over the window", lambda: self._window.ask("window")["dialog"])
+        self._screen.frame(dialog)
+        self._screen.focus(dialog)
+
+    def wait_for_no_dialog(self) -> None:
+        """Look until no dialog is there; the QGIS window has the keyboard again."""
+        self.wait("the dialog closing", lambda: self._window.ask("window")["dialog"] is None)
+        self._screen.focus(self._window.ask("window")["main"])
+
+    # --- where ---
+
+    def _still(self, name: str) -> list[int]:
+        """Return where a widget is once it can be used, is covered by nothing, and has come to rest."""
+        before: list[int] = []
+
+        def at_rest() -> list[int] | None:
+            nonlocal before
+            found = self.widget(name)
+            usable = found["visible"] and found["enabled"] and found["on_top"]
+            rest = usable and found["rect"] == before
+            before = found["rect"] if usable else []
+            return before if rest else None
+
+        try:
+            return list(self.wait(f"{name} being there to be clicked", at_rest))
+        except StageError as error:
+            raise StageError(f"{error}; {name}: {self.widget(name)}") from error
+
+    def _click_seen(self, what: str, where: Callable[[], list[int] | None]) -> None:
+        self._screen.click(_middle(self.wait(f"{what} being there", where)))
+
+    def _pixel(self, place: Place) -> Pixel:
+        x, y = self._frame.to_crs(np.array([place]))[0].tolist()
+        found = self._window.ask("place", x=x, y=y, crs=self._frame.crs)
+        if not found["shown"]:
+            raise StageError(f"the map does not show {place} (metres of the site), so it cannot be clicked")
+        return found["at"][0], found["at"][1]
+
+
+def _middle(rect: list[int]) -> Pixel:
+    x, y, width, height = rect
+    return x + width // 2, y + height // 2
