@@ -1,4 +1,4 @@
-"""A mouse, a keyboard and a camera at an X display: what a person has, and nothing that reaches into a program."""
+"""A mouse, a keyboard and a camera at an X display: what a person has, and nothing more."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What can be seen in the QGIS window: asks the reporter inside it, which says where things are and acts on none."""
+"""What can be seen in the QGIS window: asks the reporter inside it, which acts on nothing."""
 
 from __future__ import annotations
 
