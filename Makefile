@@ -18,7 +18,9 @@ LINK ?=
 # For plugins.qgis.org: make package REPOSITORY=https://... TRACKER=https://...
 REPOSITORY ?=
 TRACKER ?=
-export PYTHON DESTDIR PREFIX PROGRAM ARGS JOBS REPOSITORY TRACKER
+# How long PARTS=endurance runs; half an hour without.
+MINUTES ?=
+export PYTHON DESTDIR PREFIX PROGRAM ARGS JOBS REPOSITORY TRACKER MINUTES
 
 .PHONY: help setup demo test test-newer lint desktop screenshots install install-service uninstall-service translations package clean bench
 
@@ -73,7 +75,7 @@ translations: $(READY) ## bring resources/translations up to date with the sourc
 package: $(READY) ## build the zip for plugins.qgis.org
 	@$(RUN) scripts/package.py
 
-bench: $(READY) ## measure on the real data beside the project (PARTS=maps ...); see docs/benchmarks.md
+bench: $(READY) ## measure on the real data beside the project (PARTS=maps ..., MINUTES=5); see docs/benchmarks.md
 	@$(RUN) scripts/bench.py $(PARTS)
 
 clean: ## remove build/ (what was built, not the environment)

@@ -13,7 +13,18 @@ from benchmarks.page import Part, with_part
 
 DATA = ROOT.parent / "shared" / "data"
 PAGE = ROOT / "docs" / "benchmarks.md"
-PARTS = ["maps", "load", "round_trip", "faults", "attack", "roads", "surfaces", "assignment", "desk"]
+PARTS = [
+    "maps",
+    "load",
+    "round_trip",
+    "faults",
+    "attack",
+    "roads",
+    "surfaces",
+    "assignment",
+    "desk",
+    "endurance",
+]
 """Modules of benchmarks; each has ``measure(data)``."""
 
 

@@ -174,17 +174,29 @@ def _both(times: list[float | None]) -> str:
     return "–" if None in times else " / ".join(f"{value}" for value in times)
 
 
+def site_with_room(folder: Path) -> Path:
+    """Return the sample site, copied into ``folder``, with limits that let a crowd in from one address."""
+    site = folder / "site"
+    site.mkdir(exist_ok=True)
+    shutil.copy(SITE / "site.gpkg", site)
+    (site / "site.toml").write_text((SITE / "site.toml").read_text("utf-8") + LIMITS, "utf-8")
+    return site
+
+
 @contextmanager
 def _server(peer: str = "") -> Iterator[tuple[int, int]]:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         command: list[str | Path] = [sys.executable, HERE / "plain_fanout.py", peer]
         if not peer:
-            site = folder / "site"
-            site.mkdir()
-            shutil.copy(SITE / "site.gpkg", site)
-            (site / "site.toml").write_text((SITE / "site.toml").read_text("utf-8") + LIMITS, "utf-8")
-            options = ["--site", site, "--database", f"sqlite:///{folder}/fleet.db", "--port", "0"]
+            options = [
+                "--site",
+                site_with_room(folder),
+                "--database",
+                f"sqlite:///{folder}/fleet.db",
+                "--port",
+                "0",
+            ]
             command = [sys.executable, "-m", "robot_bridge", "serve", *options]
         with Processes(folder / "logs") as processes:
             pinned = ["taskset", "-c", str(SERVER_CORE), *command]

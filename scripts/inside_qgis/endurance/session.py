@@ -1,0 +1,190 @@
+"""`make bench PARTS=endurance` inside QGIS: an operator works, shift after shift, and the plugin is reloaded
+between two shifts; memory, what is left behind and what goes wrong are written down."""
+
+from __future__ import annotations
+
+import gc
+import resource
+import threading
+import time
+from pathlib import Path
+
+import qgis.utils
+from qgis.PyQt.QtCore import QTimer
+from qgis.PyQt.QtWidgets import QAction, QMenu, QTableView
+
+from inside_qgis.endurance.belongings import (
+    PACKAGE,
+    Belongings,
+    belongings,
+    count,
+    left_over,
+    running_threads,
+)
+from inside_qgis.endurance.play import Player, Script, Until
+from inside_qgis.endurance.pulse import Pulse
+from inside_qgis.endurance.shift import Shift
+from inside_qgis.endurance.trouble import Trouble
+from inside_qgis.session import Session, end, start
+
+CONNECTION = "Endurance"
+CONNECTS_WITHIN = 90.0
+"""Seconds: longer than the longest wait between two attempts, and a drop meanwhile."""
+GOES_WITHIN = 2.0
+"""Seconds after which everything is gone that was to be deleted when there is time."""
+SAMPLE_EVERY = 10.0
+
+
+class Endurance:
+    """The script, and what it watches."""
+
+    def __init__(self, session: Session) -> None:
+        self._session, self._plan = session, session.plan
+        self._window, self._canvas = qgis.utils.iface.mainWindow(), qgis.utils.iface.mapCanvas()
+        self._trouble = Trouble()
+        self._pulse = Pulse()
+        self._reloads = 0
+        self._began = time.monotonic()
+        self._timer = QTimer()
+        self._timer.setInterval(round(SAMPLE_EVERY * 1000))
+        self._timer.timeout.connect(self._sample)
+
+    def script(self) -> Script:
+        """Work shift after shift, with a fresh plugin each."""
+        yield from self._unload()
+        nothing = belongings(self._window, self._canvas)
+        self._timer.start()
+        shifts = self._plan["reloads"] + 1
+        for number in range(shifts):
+            self._load()
+            yield 0.5
+            yield from self._connect(first=number == 0)
+            self._pulse.go_on()
+            yield from self._work(number, self._began + self._plan["seconds"] * (number + 1) / shifts)
+            yield self._connected()
+            self._pulse.hold()
+            yield from self._unload()
+            self._look_around(nothing)
+        self._timer.stop()
+        self._pulse.remove()
+        self._trouble.remove()
+        self._tell()
+
+    def _load(self) -> None:
+        if not (qgis.utils.loadPlugin(PACKAGE) and qgis.utils.startPlugin(PACKAGE)):
+            raise RuntimeError(f"QGIS did not load {PACKAGE}")
+
+    def _unload(self) -> Script:
+        if not qgis.utils.unloadPlugin(PACKAGE):
+            raise RuntimeError(f"QGIS did not unload {PACKAGE}")
+        self._reloads += 1
+        yield GOES_WITHIN
+
+    def _connect(self, *, first: bool) -> Script:
+        """Connect by the connection that QGIS keeps; the first time it is put there."""
+        if first:
+            self._keep_connection()
+        menu = self._window.findChild(QMenu, "fleet_connections_menu")
+        menu.aboutToShow.emit()
+        menu.findChild(QAction, f"fleet_connection_{CONNECTION}").trigger()
+        self._session.operator.press("fleet_connect")
+        yield self._connected()
+
+    def _keep_connection(self) -> None:
+        from fleet_supervisor.plugin.settings.connections import Connections
+        from fleet_supervisor.plugin.settings.gateway_connection import GatewayConnection
+
+        kept = GatewayConnection(CONNECTION, self._plan["gateway"], self._plan["operator"])
+        Connections().put(kept)
+
+    def _connected(self) -> Until:
+        table = self._window.findChild(QTableView, "fleet_robot_table")
+        wanted = len(self._plan["robots"])
+
+        def holds() -> bool:
+            linked = "Connected" in self._session.operator.link_state()
+            return linked and table.model().rowCount() == wanted
+
+        return Until(f"a link with {wanted} robots", holds, CONNECTS_WITHIN)
+
+    def _work(self, number: int, until: float) -> Script:
+        shift = Shift(self._session.operator, self._plan["robots"], number)
+        while True:
+            for act in shift.acts():
+                for pause in act():
+                    yield pause
+                    if time.monotonic() >= until:
+                        shift.put_away()
+                        yield 0.5
+                        return
+
+    # --- what is watched ---
+
+    def _sample(self) -> None:
+        self._pulse.hold()
+        gc.collect()
+        self._session.happened(
+            "sample",
+            "",
+            at=time.monotonic() - self._began,
+            megabytes=_megabytes(),
+            reloads=self._reloads - 1,
+            threads=running_threads(),
+            python_threads=threading.active_count(),
+            items=len(self._canvas.scene().items()),
+            exceptions=self._trouble.exceptions.total(),
+        )
+        if qgis.utils.isPluginLoaded(PACKAGE):
+            self._pulse.go_on()
+
+    def _look_around(self, nothing: Belongings) -> None:
+        left = belongings(self._window, self._canvas)
+        more = left_over(nothing, left)
+        text = f"unloaded for the {self._reloads - 1}th time; left: {'; '.join(more) or 'nothing'}"
+        self._session.happened("unloaded", text, left=more, things=count(left), megabytes=_megabytes())
+
+    def _tell(self) -> None:
+        pulse, trouble = self._pulse, self._trouble
+        self._session.happened(
+            "end",
+            "the last shift is over",
+            exceptions=trouble.exceptions,
+            warnings=trouble.warnings,
+            told=trouble.told,
+            seconds=pulse.seconds,
+            longer={str(step): number for step, number in pulse.longer.items()},
+            work_at=pulse.work_at,
+            gaps_at=pulse.gaps_at,
+            worst=[vars(gap) for gap in pulse.worst()],
+        )
+
+
+def _megabytes() -> float:
+    pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[1])
+    return pages * resource.getpagesize() / 1e6
+
+
+def work(session: Session) -> None:
+    """Open the project and begin."""
+    session.size_window(*session.plan["window"])
+    session.open_project()
+    session.operator.show_map(session.plan["extent"], session.plan["crs"])
+    endurance = Endurance(session)
+
+    def done(error: Exception | None) -> None:
+        if error is not None:
+            session.failed(_in_words(error))
+        end()
+
+    # Kept by the session for as long as QGIS runs.
+    session.player = Player(endurance.script(), done)
+    session.player.begin()
+
+
+def _in_words(error: Exception) -> str:
+    import traceback
+
+    return "".join(traceback.format_exception(error))
+
+
+start(work)
