@@ -85,6 +85,7 @@ class Desk(QObject):
         self.roads = RoadBoard(self.orders.ask, clock, self)
         self.link = LinkStatus(Phase.CLOSED)
         self.site: SiteReport | None = None
+        self._url, self._is_other_gateway = "", False
         self.emergency: EmergencyReport | None = None
         self.selection: tuple[str, ...] = ()
         self._placement: Placement | None = None
@@ -102,13 +103,15 @@ class Desk(QObject):
     # --- the link ---
 
     def open_link(self, url: str, operator: str, credentials: Credentials | None = None) -> None:
-        """Connect to a gateway; another gateway's robots are forgotten when it says which site it serves.
+        """Connect to a gateway; what another one told is forgotten when this one says which site it serves.
 
         :raises FleetError: when the URL, the name, the token or the CA file cannot be used.
         """
         if not operator.strip():
             raise NotSentError(tr("The operator's name is empty. Write who you are: it stands in every log."))
         self.connection.open(url, operator.strip(), credentials)
+        self._is_other_gateway = self._is_other_gateway or url != self._url
+        self._url = url
         self._timer.start()
         self.pull()
 
@@ -135,9 +138,10 @@ class Desk(QObject):
         self.pulled.emit()
 
     def _take_site(self, site: SiteReport) -> None:
-        if site == self.site:
+        if site == self.site and not self._is_other_gateway:
             return
-        if self.site is None or site.id != self.site.id:
+        if self.site is None or site.id != self.site.id or self._is_other_gateway:
+            # Two gateways may serve one site, for practice and for work, each with robots of its own.
             self.picture.clear()
             self.book.clear()
             self.queues.clear()
@@ -147,7 +151,7 @@ class Desk(QObject):
             self.roads.clear()
             self.select(None)
         self.drafts.done()
-        self.site = site
+        self.site, self._is_other_gateway = site, False
         self.picture.stale_after, self.picture.lost_after = site.stale_after, site.lost_after
         self._placement = None
         self.site_changed.emit()

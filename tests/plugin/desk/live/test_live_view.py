@@ -76,6 +76,37 @@ def test_robots_of_another_site_leave_nothing_behind(driven, gateway, site, ifac
     wait(lambda: driven.view.overlay.robot_at(at.x(), at.y()) == "z9")
 
 
+def test_another_gateway_of_the_same_site_has_nothing_of_the_one_before(
+    driven, gateway, site, iface, make_robot, wait
+):
+    desk = driven.desk
+    desk.select("r1")
+    desk.orders.abort("r1")
+    wait(lambda: len(desk.book) == 1)
+    other = type(gateway)(site)
+    other.start()
+    try:
+        other.show(make_robot("z9", 20, 20))
+        desk.open_link(other.url, "anna")
+        wait(lambda: len(desk.picture) == 1 and desk.picture.row("z9") == 0)
+        assert len(desk.book) == 0 and desk.selected is None
+        assert driven.dock.log.view.model().rowCount() == 0
+        assert not is_blue(iface, 62, 40)
+    finally:
+        desk.close_link()
+        other.stop()
+
+
+def test_the_same_gateway_again_takes_nothing_away(driven, gateway, wait):
+    desk = driven.desk
+    desk.select("r1")
+    desk.close_link()
+    wait(lambda: desk.link.phase.value == "closed")
+    desk.open_link(gateway.url, "anna")
+    wait(lambda: desk.link.phase.value == "connected")
+    assert desk.selected == "r1" and len(desk.picture) == 2
+
+
 def test_a_thousand_newcomers_are_in_table_and_layer_without_the_window_waiting(
     at_desk, gateway, iface, make_robot, wait
 ):
