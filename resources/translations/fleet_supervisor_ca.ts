@@ -20,6 +20,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/access_fields.py" />
+            <source>&amp;Token</source>
+            <translation>&amp;Testimoni</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/access_fields.py" />
             <source>CA &amp;file</source>
             <translation>&amp;Fitxer de CA</translation>
         </message>
@@ -648,43 +653,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/checks.py" />
-            <source>({points:.2f}, {points2:.2f}) m</source>
-            <translation>({points:.2f}, {points2:.2f}) m</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/checks.py" />
-            <source>({x:.2f}, {y:.2f}) m is</source>
-            <translation>({x:.2f}, {y:.2f}) m és</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/checks.py" />
-            <source>The route</source>
-            <translation>La ruta</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/checks.py" />
-            <source>{layer} (feature {id})</source>
-            <translation>{layer} (entitat {id})</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/checks.py" />
-            <source>{off} of {points} points are</source>
-            <translation>{off} de {points} punts són</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/checks.py" />
-            <source>{spot} enters the keepout {name}. Choose a place or way outside it.</source>
-            <translation>{spot} entra a la zona prohibida {name}. Trieu un lloc o recorregut fora.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/checks.py" />
             <source>{where} m is outside the site {name}, which reaches from ({x_min:g}, {y_min:g}) to ({x_max:g}, {y_max:g}) m. Click inside it.</source>
             <translation>{where} m és fora del recinte {name}, que va de ({x_min:g}, {y_min:g}) a ({x_max:g}, {y_max:g}) m. Feu clic a dins.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/checks.py" />
-            <source>{where} not on a road surface.</source>
-            <translation>{where} fora de les superfícies de via.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/clear_dialog.py" />
@@ -905,6 +875,11 @@
             <location filename="../../plugin/desk/command_log/log_panel.py" />
             <source>{what} of {robot} leads to no place.</source>
             <translation>{what} de {robot} no porta a cap lloc.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/coordinates_dialog.py" />
+            <source>&amp;Coordinates</source>
+            <translation>&amp;Coordenades</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/commands/coordinates_dialog.py" />
@@ -1142,6 +1117,21 @@
         </message>
         <message>
             <location filename="../../plugin/desk/connection_panel.py" />
+            <source>&amp;Access…</source>
+            <translation>&amp;Accés…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/connection_panel.py" />
+            <source>&amp;Gateway</source>
+            <translation>&amp;Passarel·la</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/connection_panel.py" />
+            <source>&amp;Operator</source>
+            <translation>&amp;Operador</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/connection_panel.py" />
             <source>Connected</source>
             <translation>Connectat</translation>
         </message>
@@ -1217,6 +1207,16 @@
         </message>
         <message>
             <location filename="../../plugin/desk/desk.py" />
+            <source>{in_words} was not sent, since only now this is known: {warnings} Ask for it again to send it all the same.</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/desk.py" />
+            <source>{in_words} was not sent: robots were told to stop before it had been checked.</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/desk.py" />
             <source>{in_words} was not sent: {error}</source>
             <translation>{in_words} no s'ha enviat: {error}</translation>
         </message>
@@ -1227,8 +1227,18 @@
         </message>
         <message>
             <location filename="../../plugin/desk/dock.py" />
+            <source>Fleet</source>
+            <translation>Flota</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/dock.py" />
             <source>Queue</source>
             <translation>Cua</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/draft_panel.py" />
+            <source> It goes out when nothing speaks against it; Esc keeps it back.</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/desk/draft_panel.py" />
@@ -1239,6 +1249,11 @@
             <location filename="../../plugin/desk/draft_panel.py" />
             <source>Select a robot, choose Cone target or Draw route, and click on the map.</source>
             <translation>Seleccioneu un robot, trieu Objectiu de con o Dibuixa ruta, i feu clic al mapa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/draft_panel.py" />
+            <source>{in_words}. Being checked: {share:.0%}.</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/desk/draft_panel.py" />
@@ -1316,9 +1331,19 @@
             <translation>l'operació per defecte de PROJ</translation>
         </message>
         <message>
-            <location filename="../../plugin/desk/drafting/obstacle_check.py" />
-            <source>({point:.2f}, {point2:.2f}) m</source>
-            <translation>({point:.2f}, {point2:.2f}) m</translation>
+            <location filename="../../plugin/desk/drafting/keepout_check.py" />
+            <source>The route</source>
+            <translation>La ruta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/keepout_check.py" />
+            <source>{spot} enters the keepout {name}. Choose a place or way outside it.</source>
+            <translation>{spot} entra a la zona prohibida {name}. Trieu un lloc o recorregut fora.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/layer_features.py" />
+            <source>{layer} (feature {id})</source>
+            <translation>{layer} (entitat {id})</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/drafting/obstacle_check.py" />
@@ -1376,6 +1401,21 @@
             <translation>Aquesta part de la ruta segueix les vies i no es canvia a mà. Traieu-la amb Retrocés, o dibuixeu aquesta part amb Dibuixa ruta.</translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/drafting/surface_check.py" />
+            <source>({x:.2f}, {y:.2f}) m is</source>
+            <translation>({x:.2f}, {y:.2f}) m és</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/surface_check.py" />
+            <source>{off} of {points} points are</source>
+            <translation>{off} de {points} punts són</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/surface_check.py" />
+            <source>{where} not on a road surface.</source>
+            <translation>{where} fora de les superfícies de via.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/drafting/target_check.py" />
             <source>({x:.2f}, {y:.2f}) m is {away:.2f} m from {what} of {robot} at {other_x:.2f}, {other_y:.2f}: keep {clear_m:g} m between targets.</source>
             <translation>({x:.2f}, {y:.2f}) m és a {away:.2f} m de {what} de {robot} a {other_x:.2f}, {other_y:.2f}: deixeu {clear_m:g} m entre objectius.</translation>
@@ -1399,6 +1439,11 @@
             <location filename="../../plugin/desk/drafting/tasks.py" />
             <source>A start position is no task: Send tells the robot at once.</source>
             <translation>Una posició inicial no és cap tasca: Envia ho diu al robot de seguida.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/tracks.py" />
+            <source>({point:.2f}, {point2:.2f}) m</source>
+            <translation>({point:.2f}, {point2:.2f}) m</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/drafts.py" />
@@ -1434,6 +1479,11 @@
             <location filename="../../plugin/desk/drafts.py" />
             <source>a route needs at least two points: click the next one</source>
             <translation>una ruta necessita almenys dos punts: feu clic al següent</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafts.py" />
+            <source>it has not been checked to its end</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/desk/drafts.py" />
@@ -1571,6 +1621,16 @@
             <translation>{seconds:.0f} s</translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/live/live_view.py" />
+            <source>No robot is selected to be followed. Select one in the table or on the map.</source>
+            <translation>No hi ha cap robot seleccionat per seguir. Seleccioneu-ne un a la taula o al mapa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/live_view.py" />
+            <source>{robot} has not said yet where it is; the map cannot go there.</source>
+            <translation>{robot} encara no ha dit on és; el mapa no hi pot anar.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/live/names_painting.py" />
             <source>· offline</source>
             <translation>· fora de línia</translation>
@@ -1589,6 +1649,281 @@
             <location filename="../../plugin/desk/live/robot_features.py" />
             <source>Robots (live)</source>
             <translation>Robots (en directe)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/observation_dock.py" />
+            <source>All are reviewed.</source>
+            <translation>Totes estan revisades.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/observation_dock.py" />
+            <source>No robot has told of an object or image yet.</source>
+            <translation>Cap robot no ha informat encara d'un objecte o d'una imatge.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/observation_dock.py" />
+            <source>Observation {number} was not reviewed: {why}</source>
+            <translation>L'observació {number} no s'ha revisat: {why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/observation_dock.py" />
+            <source>Observation {observation} was NOT reviewed: {error}</source>
+            <translation>L'observació {observation} NO s'ha revisat: {error}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/observation_dock.py" />
+            <source>Observations</source>
+            <translation>Observacions</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/observation_dock.py" />
+            <source>Observations ({waiting})</source>
+            <translation>Observacions ({waiting})</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/observation_dock.py" />
+            <source>Show reviewed ones, too</source>
+            <translation>Mostra també les revisades</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/observation_dock.py" />
+            <source>{waiting} to be reviewed</source>
+            <translation>{waiting} per revisar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/observation_feed.py" />
+            <source>What robots saw is not known: {error}</source>
+            <translation>No se sap què han vist els robots: {error}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/observation_model.py" />
+            <source>Observation {number} at {x:.2f}, {y:.2f} m; double click goes there</source>
+            <translation>Observació {number} a {x:.2f}, {y:.2f} m; un doble clic hi va</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/observation_model.py" />
+            <source>accepted</source>
+            <translation>acceptada</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/observation_model.py" />
+            <source>image</source>
+            <translation>imatge</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/observation_model.py" />
+            <source>object</source>
+            <translation>objecte</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/observation_model.py" />
+            <source>rejected</source>
+            <translation>rebutjada</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/observation_model.py" />
+            <source>to be reviewed</source>
+            <translation>per revisar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/observation_model.py" />
+            <source>{state} by {by}</source>
+            <translation>{state} per {by}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/observations_action.py" />
+            <source>Objects and images that robots told of, to be accepted for the maps or rejected</source>
+            <translation>Objectes i imatges de què han informat els robots, per acceptar-los als mapes o rebutjar-los</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/review_form.py" />
+            <source>&amp;Accept</source>
+            <translation>&amp;Accepta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/review_form.py" />
+            <source>An image of {object}, told by {robot}, at {x:.2f}, {y:.2f} m.</source>
+            <translation>Una imatge de {object}, enviada per {robot}, a {x:.2f}, {y:.2f} m.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/review_form.py" />
+            <source>An object: {object}, told by {robot}, at {x:.2f}, {y:.2f} m.</source>
+            <translation>Un objecte: {object}, comunicat per {robot}, a {x:.2f}, {y:.2f} m.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/review_form.py" />
+            <source>Draw it on no map</source>
+            <translation>No el dibuixis a cap mapa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/review_form.py" />
+            <source>Go to it on the map</source>
+            <translation>Hi va al mapa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/review_form.py" />
+            <source>Height</source>
+            <translation>Alçada</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/review_form.py" />
+            <source>It is a</source>
+            <translation>És un</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/review_form.py" />
+            <source>It stands there: draw it on the maps that robots get from now on</source>
+            <translation>És allà: dibuixa'l als mapes que els robots rebin a partir d'ara</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/review_form.py" />
+            <source>It waits for your review.</source>
+            <translation>Espera la vostra revisió.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/review_form.py" />
+            <source>Look at it: is it of use?</source>
+            <translation>Mireu-la: és útil?</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/review_form.py" />
+            <source>Radius</source>
+            <translation>Radi</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/review_form.py" />
+            <source>Re&amp;ject</source>
+            <translation>Re&amp;butja</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/review_form.py" />
+            <source>Sho&amp;w</source>
+            <translation>&amp;Mostra</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/review_form.py" />
+            <source>State: {state}, by {by}. A new review takes the place of that.</source>
+            <translation>Estat: {state}, per {by}. Una revisió nova la substitueix.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/review_form.py" />
+            <source>State: {state}. A new review takes the place of that.</source>
+            <translation>Estat: {state}. Una revisió nova la substitueix.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/review_form.py" />
+            <source>not known</source>
+            <translation>no se sap</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/review_form.py" />
+            <source>optional</source>
+            <translation>opcional</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/options/options_page.py" />
+            <source>Alarms</source>
+            <translation>Alarmes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/options/options_page.py" />
+            <source>Connections</source>
+            <translation>Connexions</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/options/options_page.py" />
+            <source>Fleet Supervisor &amp;help</source>
+            <translation>&amp;Ajuda del Fleet Supervisor</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/options/options_page.py" />
+            <source>Map and files</source>
+            <translation>Mapa i fitxers</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/options/preferences_form.py" />
+            <source>&amp;Folder for files that are written</source>
+            <translation>&amp;Carpeta dels fitxers que s'escriuen</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/options/preferences_form.py" />
+            <source>&amp;Size of robots on the map</source>
+            <translation>&amp;Mida dels robots al mapa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/options/preferences_form.py" />
+            <source>1 is as they come</source>
+            <translation>1 és la mida original</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/options/preferences_form.py" />
+            <source>At most; from the next connection on. Fewer spare a slow network</source>
+            <translation>Com a màxim; a partir de la propera connexió. Menys descarreguen una xarxa lenta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/options/preferences_form.py" />
+            <source>Layer of robots written anew &amp;every</source>
+            <translation>La capa de robots es torna a escriure &amp;cada</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/options/preferences_form.py" />
+            <source>Positions asked for, &amp;times a second</source>
+            <translation>Posicions demanades, &amp;vegades per segon</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/options/preferences_form.py" />
+            <source>The layer Robots (live): attribute table, labels, expressions. The live map goes its own way</source>
+            <translation>La capa Robots (live): taula d'atributs, etiquetes, expressions. El mapa en viu va per una altra banda</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/options/preferences_form.py" />
+            <source>your documents</source>
+            <translation>els vostres documents</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/orders.py" />
+            <source>Abort of {robot}</source>
+            <translation>Avortar {robot}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/orders.py" />
+            <source>{draft} was not sent: {fault}</source>
+            <translation>{draft}: no s'ha enviat: {fault}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/orders.py" />
+            <source>{draft} were not sent: several targets are driven to one after the other. Press Add to queue.</source>
+            <translation>{draft}: no s'ha enviat: a diversos objectius s'hi va un darrere l'altre. Premeu Afegeix a la cua.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/orders.py" />
+            <source>{words} was NOT sent: {error}</source>
+            <translation>{words}: NO s'ha enviat: {error}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/orders.py" />
+            <source>{words}: done</source>
+            <translation>{words}: fet</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/orders.py" />
+            <source>{words}: in force</source>
+            <translation>{words}: en vigor</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/orders.py" />
+            <source>{words}: queued</source>
+            <translation>{words}: en cua</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/orders.py" />
+            <source>{words}: sent to {commands} robots</source>
+            <translation>{words}: enviat a {commands} robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/orders.py" />
+            <source>{words}: the gateway has not answered for {seconds:g} s, so it may not have arrived. It is repeated when the link is back; it is never done twice.</source>
+            <translation>{words}: la passarel·la no ha respost des de fa {seconds:g} s, així que potser no ha arribat. Es repeteix quan torna l'enllaç; mai no es fa dues vegades.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/placement.py" />
@@ -2348,6 +2683,36 @@
             <translation>queden on són</translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/queues/queue_edits.py" />
+            <source>A task of {robot} first</source>
+            <translation>Una tasca de {robot} primer</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/queue_edits.py" />
+            <source>Moving a task of {robot}</source>
+            <translation>Moure una tasca de {robot}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/queue_edits.py" />
+            <source>Not done: the queue has changed since you saw it. This is how it stands now.</source>
+            <translation>No s'ha fet: la cua ha canviat des que l'heu vista. Ara està així.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/queue_edits.py" />
+            <source>Pausing the queue of {robot}</source>
+            <translation>Posar en pausa la cua de {robot}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/queue_edits.py" />
+            <source>Removing a task of {robot}</source>
+            <translation>Treure una tasca de {robot}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/queue_edits.py" />
+            <source>Resuming the queue of {robot}</source>
+            <translation>Reprendre la cua de {robot}</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/queues/queue_panel.py" />
             <source>Do now</source>
             <translation>Fes ara</translation>
@@ -2411,6 +2776,21 @@
             <location filename="../../plugin/desk/queues/queue_panel.py" />
             <source>{selected} has no queue. Add a target or a route with Add to queue.</source>
             <translation>{selected} no té cua. Afegiu un objectiu o una ruta amb Afegeix a la cua.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/task_list.py" />
+            <source>Task</source>
+            <translation>Tasca</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/task_list.py" />
+            <source>added by {by}</source>
+            <translation>afegida per {by}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/task_list.py" />
+            <source>waiting: robot</source>
+            <translation>en espera: robot</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/desk/queues/task_words.py" />
@@ -2481,6 +2861,191 @@
             <translation>{robot}: {count}, EN PAUSA{when}{why}</translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/replay/fetching.py" />
+            <source>Only the first {count} positions were fetched. Choose less time, or fewer robots.</source>
+            <translation>Només s'han obtingut les primeres {count} posicions. Trieu menys temps o menys robots.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/fetching.py" />
+            <source>Putting positions in order</source>
+            <translation>S'ordenen les posicions</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/fetching.py" />
+            <source>Stopped: the rest of the time was not fetched.</source>
+            <translation>Aturat: no s'ha obtingut la resta del temps.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/fetching.py" />
+            <source>The gateway's answer cannot be used: {error}.</source>
+            <translation>La resposta de la passarel·la no es pot fer servir: {error}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/fetching.py" />
+            <source>The rest of the time was not fetched: {error}</source>
+            <translation>No s'ha obtingut la resta del temps: {error}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/fetching.py" />
+            <source>What came could not be put in order.</source>
+            <translation>El que ha arribat no s'ha pogut ordenar.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/replay_action.py" />
+            <source>Play what robots did, on a map beside the live one</source>
+            <translation>Reprodueix el que han fet els robots, en un mapa al costat del que és en viu</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/replay_action.py" />
+            <source>Replay</source>
+            <translation>Reproducció</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/replay_dock.py" />
+            <source> · NOT ALL</source>
+            <translation> · NO TOTES</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/replay_dock.py" />
+            <source>Choose a time and press Load.</source>
+            <translation>Trieu un temps i premeu Carrega.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/replay_dock.py" />
+            <source>How much faster than it was</source>
+            <translation>Quant més de pressa que com va ser</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/replay_dock.py" />
+            <source>Loading …</source>
+            <translation>Carregant …</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/replay_dock.py" />
+            <source>Loading … {positions} positions, up to {moment}</source>
+            <translation>Carregant … {positions} posicions, fins a {moment}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/replay_dock.py" />
+            <source>No positions are stored of that time.</source>
+            <translation>No hi ha posicions desades d'aquell temps.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/replay_dock.py" />
+            <source>No robot is selected to be replayed. Select one, or replay all.</source>
+            <translation>No hi ha cap robot seleccionat per reproduir. Seleccioneu-ne un o reproduïu-los tots.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/replay_dock.py" />
+            <source>Play, or hold (Space)</source>
+            <translation>Reprodueix o atura (Espai)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/replay_dock.py" />
+            <source>REPLAY · {told}</source>
+            <translation>REPRODUCCIÓ · {told}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/replay_dock.py" />
+            <source>REPLAY, not live · {moment} · {told}</source>
+            <translation>REPRODUCCIÓ, no en viu · {moment} · {told}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/replay_dock.py" />
+            <source>The replay was not loaded: {error}</source>
+            <translation>La reproducció no s'ha carregat: {error}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/replay_dock.py" />
+            <source>The replay's time ends before it begins. Correct one of the two.</source>
+            <translation>El temps de la reproducció acaba abans de començar. Corregiu-ne un dels dos.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/replay_dock.py" />
+            <source>There is nothing to replay yet. Connect to a gateway first.</source>
+            <translation>Encara no hi ha res per reproduir. Connecteu-vos primer a una passarel·la.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/replay_dock.py" />
+            <source>positions: {positions}, robots: {robots}</source>
+            <translation>posicions: {positions}, robots: {robots}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/replay_layer.py" />
+            <source>Drawing what robots drove</source>
+            <translation>Es dibuixa el que han recorregut els robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/replay_layer.py" />
+            <source>Not all trajectories are drawn: {error}</source>
+            <translation>No s'han dibuixat totes les trajectòries: {error}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/replay_layer.py" />
+            <source>The trajectories are not drawn: they could not be made into lines.</source>
+            <translation>Les trajectòries no s'han dibuixat: no s'han pogut convertir en línies.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/replay_layer.py" />
+            <source>Trajectories (replay)</source>
+            <translation>Trajectòries (reproducció)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/stretch_form.py" />
+            <source>From when on</source>
+            <translation>Des de quan</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/stretch_form.py" />
+            <source>Load</source>
+            <translation>Carrega</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/stretch_form.py" />
+            <source>Load what the selected robots did, not what all did</source>
+            <translation>Carrega el que han fet els robots seleccionats, no el que han fet tots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/stretch_form.py" />
+            <source>Selected only</source>
+            <translation>Només els seleccionats</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/stretch_form.py" />
+            <source>Stop</source>
+            <translation>Aturar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/stretch_form.py" />
+            <source>Until when</source>
+            <translation>Fins quan</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/stretch_form.py" />
+            <source>from … to …</source>
+            <translation>de … a …</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/stretch_form.py" />
+            <source>the last 15 minutes</source>
+            <translation>els darrers 15 minuts</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/stretch_form.py" />
+            <source>the last 5 minutes</source>
+            <translation>els darrers 5 minuts</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/stretch_form.py" />
+            <source>the last 8 hours</source>
+            <translation>les darreres 8 hores</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/stretch_form.py" />
+            <source>the last hour</source>
+            <translation>la darrera hora</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/road_board.py" />
             <source>Closing the road at {x:.1f}, {y:.1f} m</source>
             <translation>Tancament de la via a {x:.1f}, {y:.1f} m</translation>
@@ -2514,6 +3079,11 @@
             <location filename="../../plugin/desk/road_layers.py" />
             <source>until</source>
             <translation>fins a</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/road_route_tool.py" />
+            <source>This leg does not follow the roads: {note}</source>
+            <translation>Aquest tram no segueix les vies: {note}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/robots/columns.py" />
@@ -2584,11 +3154,6 @@
             <location filename="../../plugin/desk/robots/columns.py" />
             <source>Speed</source>
             <translation>Velocitat</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/robots/columns.py" />
-            <source>Task</source>
-            <translation>Tasca</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/robots/columns.py" />
@@ -2719,11 +3284,6 @@
             <location filename="../../plugin/desk/robots/position_crs.py" />
             <source>site frame</source>
             <translation>marc del recinte</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/robots/robot_details.py" />
-            <source>Alarms</source>
-            <translation>Alarmes</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/robots/robot_details.py" />
@@ -2876,6 +3436,31 @@
             <translation>{seconds} s</translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/route_tool.py" />
+            <source>The route on the map is for {robot}, but {selected} is selected. Send it (Enter) or cancel it (Esc) first, or select {robot} again.</source>
+            <translation>La ruta del mapa és per a {robot}, però el seleccionat és {selected}. Envieu-la (Retorn) o cancel·leu-la (Esc) primer, o torneu a seleccionar {robot}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/route_tool.py" />
+            <source>This is the first vertex: another is put before one that comes later.</source>
+            <translation>Aquest és el primer vèrtex: se'n posa un altre davant d'un que ve després.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/site_drop.py" />
+            <source> {layers} have no role: other layers of the project have it. Plugins &gt; Fleet Supervisor &gt; Layer roles changes that.</source>
+            <translation> {layers} no tenen paper: el tenen altres capes del projecte. Connectors &gt; Fleet Supervisor &gt; Papers de les capes ho canvia.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/site_drop.py" />
+            <source>The site in {folder} is in the project already: {names}.</source>
+            <translation>El recinte de {folder} ja és al projecte: {names}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/site_drop.py" />
+            <source>{site}: {count} layers loaded.</source>
+            <translation>{site}: {count} capes carregades.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/surface_action.py" />
             <source>Road surface</source>
             <translation>Superfície de via</translation>
@@ -2899,6 +3484,11 @@
             <location filename="../../plugin/desk/surface_tool.py" />
             <source>No road surface</source>
             <translation>Cap superfície de via</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/surface_tool.py" />
+            <source>no CRS</source>
+            <translation>sense SRC</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/surface_tool.py" />
@@ -2992,11 +3582,6 @@
         </message>
         <message>
             <location filename="../../plugin/desk/tour/steps.py" />
-            <source>Stop</source>
-            <translation>Aturar</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/tour/steps.py" />
             <source>That was the tour</source>
             <translation>Això era la visita</translation>
         </message>
@@ -3042,8 +3627,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/tour/tour_action.py" />
-            <source>Fleet Supervisor is new here. A tour of five minutes shows it with simulated robots.</source>
-            <translation>Fleet Supervisor és nou aquí. Una visita de cinc minuts el mostra amb robots simulats.</translation>
+            <source>Fleet Supervisor is new here: a five-minute tour shows it.</source>
+            <translation>El Fleet Supervisor és nou aquí: una visita de cinc minuts el mostra.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/tour/tour_action.py" />
@@ -3101,9 +3686,208 @@
             <translation>&amp;Tanca</translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/window.py" />
+            <source>Disconnect</source>
+            <translation>Desconnecta</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/window_alarms.py" />
             <source>Alarms ({number})</source>
             <translation>Alarmes ({number})</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/expressions/distance_to_robot.py" />
+            <source>&lt;h3&gt;function distance_to_robot&lt;/h3&gt; &lt;p&gt;Returns how far a robot is from a feature or a geometry, in metres of the site.&lt;/p&gt; &lt;h4&gt;Syntax&lt;/h4&gt; &lt;p&gt;&lt;code&gt;distance_to_robot(robot, [geometry], [crs])&lt;/code&gt;&lt;/p&gt; &lt;h4&gt;Arguments&lt;/h4&gt; &lt;table&gt; &lt;tr&gt;&lt;td&gt;&lt;i&gt;robot&lt;/i&gt;&lt;/td&gt;&lt;td&gt;its name, as in the Fleet panel&lt;/td&gt;&lt;/tr&gt; &lt;tr&gt;&lt;td&gt;&lt;i&gt;geometry&lt;/i&gt;&lt;/td&gt;&lt;td&gt;optional; without it, that of the feature that is looked at&lt;/td&gt;&lt;/tr&gt; &lt;tr&gt;&lt;td&gt;&lt;i&gt;crs&lt;/i&gt;&lt;/td&gt;&lt;td&gt;optional, the CRS of the geometry, such as 'EPSG:4326'; without it, that of the layer whose feature is looked at, else that of the project&lt;/td&gt;&lt;/tr&gt; &lt;/table&gt; &lt;h4&gt;Examples&lt;/h4&gt; &lt;ul&gt; &lt;li&gt;&lt;code&gt;distance_to_robot('r1')&lt;/code&gt; &amp;rarr; 12.3&lt;/li&gt; &lt;li&gt;&lt;code&gt;distance_to_robot('r1', make_point(16.8438, 46.8804), 'EPSG:4326')&lt;/code&gt; &amp;rarr; 104.6&lt;/li&gt; &lt;li&gt;&lt;code&gt;distance_to_robot('r1') &amp;lt; 5&lt;/code&gt; &amp;rarr; true of features near the robot&lt;/li&gt; &lt;/ul&gt; &lt;h4&gt;Notes&lt;/h4&gt; &lt;p&gt;The distance is measured in the plane of the site's CRS; in a polygon it is 0. NULL stands for a robot whose place is not known, and while this QGIS is connected to no gateway. Places are at most half a second old; a layer shows them when it is drawn.&lt;/p&gt;</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/expressions/distance_to_robot.py" />
+            <source>{function}: the geometry has no place in {crs}</source>
+            <translation>{function}: la geometria no té lloc a {crs}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/expressions/distance_to_robot.py" />
+            <source>{function}: {geometry!r} is no geometry; give one, or a feature that has one</source>
+            <translation>{function}: {geometry!r} no és cap geometria; doneu-ne una, o una entitat que en tingui</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/expressions/place_crs.py" />
+            <source>crs {given!r} is no CRS that QGIS knows; write a code such as 'EPSG:32633'</source>
+            <translation>crs {given!r} no és cap SRC que el QGIS conegui; escriviu un codi com ara 'EPSG:32633'</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/expressions/road_surface.py" />
+            <source>&lt;h3&gt;function road_surface&lt;/h3&gt; &lt;p&gt;Returns the class of the road surface at a place, such as 'asphalt', or NULL where there is none.&lt;/p&gt; &lt;h4&gt;Syntax&lt;/h4&gt; &lt;p&gt;&lt;code&gt;road_surface(x, y, [layer], [crs])&lt;/code&gt;&lt;/p&gt; &lt;h4&gt;Arguments&lt;/h4&gt; &lt;table&gt; &lt;tr&gt;&lt;td&gt;&lt;i&gt;x, y&lt;/i&gt;&lt;/td&gt;&lt;td&gt;the place; x is the easting or the longitude, whatever the CRS&lt;/td&gt;&lt;/tr&gt; &lt;tr&gt;&lt;td&gt;&lt;i&gt;layer&lt;/i&gt;&lt;/td&gt;&lt;td&gt;optional, the name or id of a layer of areas; without it, all layers of the project with the role road surface&lt;/td&gt;&lt;/tr&gt; &lt;tr&gt;&lt;td&gt;&lt;i&gt;crs&lt;/i&gt;&lt;/td&gt;&lt;td&gt;optional, the CRS of the place, such as 'EPSG:4326'; without it, that of the layer whose feature is looked at, else that of the project&lt;/td&gt;&lt;/tr&gt; &lt;/table&gt; &lt;h4&gt;Examples&lt;/h4&gt; &lt;ul&gt; &lt;li&gt;&lt;code&gt;road_surface($x, $y)&lt;/code&gt; &amp;rarr; 'asphalt'&lt;/li&gt; &lt;li&gt;&lt;code&gt;road_surface(16.8438, 46.8804, crs:='EPSG:4326')&lt;/code&gt; &amp;rarr; 'slippery'&lt;/li&gt; &lt;li&gt;&lt;code&gt;road_surface($x, $y, 'Road surfaces') IS NULL&lt;/code&gt; &amp;rarr; true off the road&lt;/li&gt; &lt;/ul&gt; &lt;h4&gt;Notes&lt;/h4&gt; &lt;p&gt;A place on an edge is on the surface. Where surfaces lie on one another a drawn one counts before a generated one, then the smaller before the larger.&lt;/p&gt;</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/expressions/road_surface.py" />
+            <source>no layer of the project has the role {role}; set it in Plugins &gt; Fleet Supervisor &gt; Layer roles, or name a layer as the third argument</source>
+            <translation>cap capa del projecte no té el paper {role}; poseu-lo a Connectors &gt; Fleet Supervisor &gt; Papers de les capes, o anomeneu una capa com a tercer argument</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/expressions/road_surface.py" />
+            <source>no vector layer of the project has the name or id {layer!r}</source>
+            <translation>cap capa vectorial del projecte no té el nom o l'identificador {layer!r}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/expressions/road_surface.py" />
+            <source>{function}: x is {x!r} and y is {y!r}; give two numbers</source>
+            <translation>{function}: x és {x!r} i y és {y!r}; doneu dos nombres</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/expressions/robot_values.py" />
+            <source>&lt;h3&gt;function robot_age&lt;/h3&gt; &lt;p&gt;Returns the seconds since a robot's last message, by this computer's clock.&lt;/p&gt; &lt;h4&gt;Syntax&lt;/h4&gt; &lt;p&gt;&lt;code&gt;robot_age(robot)&lt;/code&gt;&lt;/p&gt; &lt;h4&gt;Arguments&lt;/h4&gt; &lt;table&gt;&lt;tr&gt;&lt;td&gt;&lt;i&gt;robot&lt;/i&gt;&lt;/td&gt;&lt;td&gt;its name, as in the Fleet panel&lt;/td&gt;&lt;/tr&gt;&lt;/table&gt; &lt;h4&gt;Examples&lt;/h4&gt; &lt;ul&gt; &lt;li&gt;&lt;code&gt;robot_age('r1')&lt;/code&gt; &amp;rarr; 0.4&lt;/li&gt; &lt;li&gt;&lt;code&gt;robot_age('r1') &amp;gt; 10&lt;/code&gt; &amp;rarr; true once it has been silent for more than 10 seconds&lt;/li&gt; &lt;/ul&gt;</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/expressions/robot_values.py" />
+            <source>&lt;h3&gt;function robot_battery&lt;/h3&gt; &lt;p&gt;Returns how full a robot's battery is, 0 to 1.&lt;/p&gt; &lt;h4&gt;Syntax&lt;/h4&gt; &lt;p&gt;&lt;code&gt;robot_battery(robot)&lt;/code&gt;&lt;/p&gt; &lt;h4&gt;Arguments&lt;/h4&gt; &lt;table&gt;&lt;tr&gt;&lt;td&gt;&lt;i&gt;robot&lt;/i&gt;&lt;/td&gt;&lt;td&gt;its name, as in the Fleet panel&lt;/td&gt;&lt;/tr&gt;&lt;/table&gt; &lt;h4&gt;Examples&lt;/h4&gt; &lt;ul&gt; &lt;li&gt;&lt;code&gt;robot_battery('r1')&lt;/code&gt; &amp;rarr; 0.82&lt;/li&gt; &lt;li&gt;&lt;code&gt;round(100 * robot_battery('r1')) || ' %'&lt;/code&gt; &amp;rarr; '82 %'&lt;/li&gt; &lt;/ul&gt;</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/expressions/robot_values.py" />
+            <source>&lt;h3&gt;function robot_state&lt;/h3&gt; &lt;p&gt;Returns how far what is known of a robot can be trusted: 'fresh', 'stale', 'lost' or 'offline'.&lt;/p&gt; &lt;h4&gt;Syntax&lt;/h4&gt; &lt;p&gt;&lt;code&gt;robot_state(robot)&lt;/code&gt;&lt;/p&gt; &lt;h4&gt;Arguments&lt;/h4&gt; &lt;table&gt;&lt;tr&gt;&lt;td&gt;&lt;i&gt;robot&lt;/i&gt;&lt;/td&gt;&lt;td&gt;its name, as in the Fleet panel&lt;/td&gt;&lt;/tr&gt;&lt;/table&gt; &lt;h4&gt;Examples&lt;/h4&gt; &lt;ul&gt; &lt;li&gt;&lt;code&gt;robot_state('r1')&lt;/code&gt; &amp;rarr; 'fresh'&lt;/li&gt; &lt;li&gt;&lt;code&gt;robot_state("robot") IN ('stale', 'lost')&lt;/code&gt; &amp;rarr; true of robots that are silent&lt;/li&gt; &lt;/ul&gt;</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/expressions/robot_values.py" />
+            <source>&lt;h4&gt;Notes&lt;/h4&gt; &lt;p&gt;NULL stands for a robot that the gateway has not told of, and while this QGIS is connected to none. What is not known of a robot is NULL as well. Values are at most half a second old; a layer shows them when it is drawn.&lt;/p&gt;</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/help/help_desk.py" />
+            <source>Fleet Supervisor help</source>
+            <translation>Ajuda del Fleet Supervisor</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/help/help_window.py" />
+            <source># Help
+
+{file} cannot be read: {strerror}. Install the plugin again.</source>
+            <translation># Ajuda
+
+{file} no es pot llegir: {strerror}. Torneu a instal·lar el connector.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/help/help_window.py" />
+            <source>Fleet Supervisor: help</source>
+            <translation>Fleet Supervisor: ajuda</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/locator/robot_filter.py" />
+            <source>Robots</source>
+            <translation>Robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/locator/robot_filter.py" />
+            <source>{state}, heard of {age:.0f} s ago</source>
+            <translation>{state}, últim missatge fa {age:.0f} s</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>95 % deviate at most [m]</source>
+            <translation>El 95 % es desvia com a màxim [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>&lt;p&gt;Compares where cones stand with where they were to stand, and writes a PDF: how many are within the tolerance, a histogram of the deviations, a map and a table of every cone, worst first.&lt;/p&gt; &lt;p&gt;The cones are a layer of the GeoPackage that &lt;i&gt;robot-bridge placements export cones.gpkg --site site&lt;/i&gt; writes, or its CSV; for a CSV, which has none, give the site's CRS. A cone stands where the robot was when it had reached its target, and from there the site's cone offset: the gateway's knowledge, no survey.&lt;/p&gt; &lt;p&gt;On the map a cross is the plan and a circle the cone, red where it is beyond the tolerance. Deviations are small: the lines from the crosses are longer than they are by the factor that the map names. Give background layers, such as roads, to be drawn beneath.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:asplacedreport -- INPUT="cones.gpkg|layername=placed" TOLERANCE=0.2 OUTPUT=report.pdf&lt;/pre&gt;</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>Background of the map</source>
+            <translation>Fons del mapa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>Cones as placed and as planned</source>
+            <translation>Cons col·locats i planificats</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>Cones within the tolerance</source>
+            <translation>Cons dins de la tolerància</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>Largest deviation [m]</source>
+            <translation>Desviació més gran [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>Mean deviation [m]</source>
+            <translation>Desviació mitjana [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>PDF files (*.pdf)</source>
+            <translation>Fitxers PDF (*.pdf)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>Pages</source>
+            <translation>Pàgines</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>Records</source>
+            <translation>Registres</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>Report</source>
+            <translation>Informe</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>Root mean square deviation [m]</source>
+            <translation>Desviació mitjana quadràtica [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>Site CRS (default: the layer's)</source>
+            <translation>SRC del recinte (per defecte: el de la capa)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>The CRS of the placed cones is not known, as of a CSV: give CRS, the site's, such as EPSG:32633.</source>
+            <translation>No es coneix el SRC dels cons col·locats, com en un CSV: doneu CRS, el del recinte, com ara EPSG:32633.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>Title</source>
+            <translation>Títol</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>Tolerance [m]</source>
+            <translation>Tolerància [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>Warnings</source>
+            <translation>Avisos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>Writes a PDF of how placed cones stand against their plan: figures, histogram, map and table.</source>
+            <translation>Escriu un PDF de com estan els cons col·locats respecte del pla: xifres, histograma, mapa i taula.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>{odd} features have no planned or no placed position; they are left out.</source>
+            <translation>{odd} entitats no tenen posició planificada o col·locada; queden fora.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>{within} of {count} cones are within {tolerance:g} m; the worst is {most:.3f} m off.</source>
+            <translation>{within} de {count} cons són dins de {tolerance:g} m; el pitjor es desvia {most:.3f} m.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/assign_cones.py" />
+            <source>&lt;p&gt;Shares &lt;b&gt;cones&lt;/b&gt; out among &lt;b&gt;robots&lt;/b&gt;. Robots load cones to place, and unload collected ones, at &lt;b&gt;stores&lt;/b&gt;, as often as their capacity asks for. Distances are those of the &lt;b&gt;roads&lt;/b&gt;; without roads they are straight lines, and the log says so.&lt;/p&gt; &lt;p&gt;Fields that layers may have, with the parameters as defaults: cones &lt;i&gt;id, heading, stage, task&lt;/i&gt; (place or collect), &lt;i&gt;demand, service_s&lt;/i&gt;; robots &lt;i&gt;id, capacity, speed, range_m, aboard, collected, ready_s&lt;/i&gt;; stores &lt;i&gt;id, service_s&lt;/i&gt;. Every cone of a lower &lt;b&gt;stage&lt;/b&gt; is done before one of a higher stage is begun.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Objective&lt;/b&gt;: &lt;i&gt;balanced&lt;/i&gt; has the last robot finish as early as possible, &lt;i&gt;distance&lt;/i&gt; drives the fewest metres in all. &lt;b&gt;Method&lt;/b&gt;: &lt;i&gt;pyvrp&lt;/i&gt; works until the time limit is over, &lt;i&gt;preview&lt;/i&gt; is quick; &lt;i&gt;automatic&lt;/i&gt; takes pyvrp where Python has it.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Targets&lt;/b&gt; are the stops of each robot in order with their times, &lt;b&gt;paths&lt;/b&gt; the ways between them, &lt;b&gt;plan&lt;/b&gt; is all of it as JSON. A cone that cannot be served is named, and nothing is written.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:assigncones -- CONES=cones.gpkg ROBOTS=robots.gpkg STORES=stores.gpkg \ ROADS=roads.gpkg CAPACITY=8 TIME_LIMIT=10 TARGETS=targets.gpkg PATHS=paths.gpkg PLAN=plan.json&lt;/pre&gt;</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/processing/assign_cones.py" />
@@ -3182,6 +3966,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/build_road_network.py" />
+            <source>&lt;p&gt;Splits road centrelines where they cross or touch, and makes a layer of edges and one of nodes.&lt;/p&gt; &lt;p&gt;Roads of different &lt;b&gt;levels&lt;/b&gt; meet only where one of them ends in a point of the other: a bridge is reached at its ends and passes over what is between them. &lt;b&gt;Direction&lt;/b&gt;, speed, width, surface and whether a road is closed go over to its edges.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Repair&lt;/b&gt; moves ends that stop within the tolerance of a road onto it, cuts off ends that reach beyond a road by less, and leaves out what is drawn twice; the log names each repair. &lt;i&gt;fleet:checkroadnetwork&lt;/i&gt; shows what is broken without changing anything.&lt;/p&gt; &lt;p&gt;The fields of the edges are those that this algorithm and &lt;i&gt;fleet:route&lt;/i&gt; read by themselves. docs/roads.md says more.&lt;/p&gt;</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_network.py" />
             <source>Build road network</source>
             <translation>Construeix la xarxa de vies</translation>
         </message>
@@ -3217,13 +4006,13 @@
         </message>
         <message>
             <location filename="../../plugin/processing/build_road_network.py" />
-            <source>Warnings</source>
-            <translation>Avisos</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/build_road_network.py" />
             <source>{edges} edges, {nodes} nodes, {parts} parts, {repairs} repairs</source>
             <translation>{edges} arestes, {nodes} nodes, {parts} parts, {repairs} reparacions</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_surfaces.py" />
+            <source>&lt;p&gt;Widens road centrelines by half their width to each side: ends are cut square, corners are mitred, within a road and where roads end in one point. What is of one class, such as asphalt, becomes one surface; pieces that do not touch are features of their own.&lt;/p&gt; &lt;p&gt;No ground is in two surfaces. Surfaces &lt;b&gt;drawn by hand&lt;/b&gt; keep theirs and are copied to the result. Among generated ones the class that comes first in &lt;b&gt;precedence&lt;/b&gt; keeps the ground; of classes that are not named there the one with less ground, and what has no class comes last.&lt;/p&gt; &lt;p&gt;A road whose width is not known is as wide as &lt;b&gt;default width&lt;/b&gt; says, and is in the layer of &lt;b&gt;findings&lt;/b&gt;. Ends that stop just short of another road stay apart: mend them with &lt;i&gt;fleet:buildroadnetwork&lt;/i&gt; and give its edges.&lt;/p&gt; &lt;p&gt;Give the result the role road surface to publish it. docs/roads.md says more.&lt;/p&gt;</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/processing/build_road_surfaces.py" />
@@ -3277,6 +4066,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/build_road_surfaces.py" />
+            <source>without a class</source>
+            <translation>sense classe</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_surfaces.py" />
             <source>{old} of the surfaces that are given as drawn say that they were generated (field origin); they are left out and made anew</source>
             <translation>{old} de les superfícies donades com a dibuixades diuen que es van generar (camp origin); s'ometen i es tornen a fer</translation>
         </message>
@@ -3284,6 +4078,11 @@
             <location filename="../../plugin/processing/build_road_surfaces.py" />
             <source>{value}: {own:.1f} m²</source>
             <translation>{value}: {own:.1f} m²</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/check_road_network.py" />
+            <source>&lt;p&gt;Checks the network that road centrelines make, and makes a layer of points that show what is odd, each with the feature to look at. Nothing is changed.&lt;/p&gt; &lt;p&gt;What &lt;i&gt;fleet:buildroadnetwork&lt;/i&gt; repairs: &lt;b&gt;gap&lt;/b&gt;, an end that stops within the tolerance of another road; &lt;b&gt;overshoot&lt;/b&gt;, an end that reaches beyond a road by less than that; &lt;b&gt;duplicate&lt;/b&gt;, a stretch that is drawn twice.&lt;/p&gt; &lt;p&gt;What only people can judge: &lt;b&gt;dead end&lt;/b&gt;; &lt;b&gt;disconnected part&lt;/b&gt;, roads that are connected with one another but not with the longest part; &lt;b&gt;one-way&lt;/b&gt;, roads from which no way leads back because of the directions.&lt;/p&gt;</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/processing/check_road_network.py" />
@@ -3334,6 +4133,11 @@
             <location filename="../../plugin/processing/check_road_network.py" />
             <source>Roads drawn twice</source>
             <translation>Vies dibuixades dues vegades</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/check_robot_map.py" />
+            <source>&lt;p&gt;Checks a robot map, text or binary, and makes a layer of lines that show what is odd, each with a kind, a severity, the obstacle to look at, and what to do.&lt;/p&gt; &lt;p&gt;&lt;b&gt;orientation&lt;/b&gt;: outlines, courtyards, segments or risers that run the wrong way round. &lt;b&gt;gap&lt;/b&gt;: rings that do not close, and lines that stop just short of another obstacle. &lt;b&gt;sliver&lt;/b&gt;: rings next to nothing wide, segments without length. &lt;b&gt;duplicate&lt;/b&gt;, &lt;b&gt;overlap&lt;/b&gt;: obstacles that repeat, cross or cover one another or lie inside another. &lt;b&gt;shared wall&lt;/b&gt;: where two outlines touch back to back. &lt;b&gt;pocket&lt;/b&gt;: free space that a robot of the given width cannot reach; courtyards are such pockets. &lt;b&gt;height&lt;/b&gt;: heights of 0 or less, or above 0 where there must be none. &lt;b&gt;outside&lt;/b&gt;: segments beyond the border. &lt;b&gt;id&lt;/b&gt;: ids used twice.&lt;/p&gt; &lt;p&gt;Severities: &lt;i&gt;error&lt;/i&gt; misleads a robot, &lt;i&gt;warning&lt;/i&gt; is probably not meant, &lt;i&gt;info&lt;/i&gt; is worth knowing. The map itself is not changed.&lt;/p&gt;</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/processing/check_robot_map.py" />
@@ -3447,6 +4251,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/cone_layout.py" />
+            <source>&lt;p&gt;Places a layout of traffic cones, either at a &lt;b&gt;point&lt;/b&gt;, turned to a &lt;b&gt;heading&lt;/b&gt; (degrees clockwise from north), or along a &lt;b&gt;line&lt;/b&gt; such as a road's centreline, from &lt;b&gt;start&lt;/b&gt; metres after its beginning. The layer has an id, the order of placing, the heading of travel, the colour and the role of each cone.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Dimensions&lt;/b&gt; change the standard's: &lt;code&gt;vehicle_width=1.7; lane_offset=3&lt;/code&gt;. The log lists those of the layout with their values. A wrong name or value is refused with what there is.&lt;/p&gt; &lt;p&gt;Every cone is &lt;b&gt;checked&lt;/b&gt;: on one of the surfaces (of the allowed classes), away from obstacles and from other cones. What is wrong becomes a layer of findings with the cone's id and the reason; the cones are placed nevertheless.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:conelayout -- LAYOUT=iso3888_1 POINT="640432,5193486.2 [EPSG:32633]" \ HEADING=90 DIMENSIONS="vehicle_width=1.7; exit_length=15" SITE_CRS=EPSG:32633 CONES=cones.gpkg&lt;/pre&gt;</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
             <source>Against the direction of the line</source>
             <translation>En sentit contrari a la línia</translation>
         </message>
@@ -3544,6 +4353,11 @@
             <location filename="../../plugin/processing/cone_layout.py" />
             <source>{how} given: give the place of the layout, or a line that it lies along.</source>
             <translation>{how}: doneu el lloc de la disposició, o una línia per on s'estengui.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_help.py" />
+            <source>&lt;p&gt;Writes the obstacles in a window of the site as a map that robots read: oriented segments with free space to their right, grouped by kind. Robots get metres in the &lt;b&gt;site frame&lt;/b&gt;: a projected CRS, an origin in it and a rotation.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Obstacle layers&lt;/b&gt;: lines and polygons, several at once, in any CRS. Curves become chords (2 cm). What the window cuts becomes open chains; no wall is invented on the border.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Window&lt;/b&gt;: a centre with width and height in metres, or an extent. Positions may name their CRS, as in &lt;i&gt;12.5,48.1 [EPSG:4326]&lt;/i&gt;; without one they are in the site CRS.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Site CRS&lt;/b&gt;: in metres, such as the local UTM zone. EPSG:3857 is refused, because its metres are not metres. Default: the project's CRS; without a project the layers' own. A local engineering CRS is used as it is.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Height, foot, label, outdoors&lt;/b&gt;: QGIS expressions; the foot is where a feature begins above the ground, and its height counts from there. What a layer keeps (menu Fleet Supervisor, Layer roles) wins over these. There its role makes flights of risers of a layer (stairs) or surfaces without height (ramp), its filter says which features count, and points of furniture get a shape. Default: the field &lt;i&gt;height&lt;/i&gt; or &lt;i&gt;height_m&lt;/i&gt;, on the ground, the layer's name, true. Where no height is known, the default height is used, said in a warning and marked &lt;i&gt;h=est&lt;/i&gt; in the map.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Map profile&lt;/b&gt;: a file that says by layer name what layers are: &lt;i&gt;openstreetmap&lt;/i&gt;, &lt;i&gt;upc_campus_nord&lt;/i&gt; or the path of one's own. It wins over what the layers keep.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Smaller maps&lt;/b&gt; (advanced, each off unless asked for): only what the robot's plane meets, without walls between or inside buildings, lines joined, fewer corners, no short segments, heights in steps. The log says how many obstacles and segments there were before and after. Walls between buildings, corners and short segments need the Python package shapely 2.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Format&lt;/b&gt;: text; binary (the text compressed, with a check sum), which needs the Python package zstandard; compact (about a third of binary, whole centimetres), which needs cbor2 instead. The file &lt;i&gt;docs/robot-map.md&lt;/i&gt; of the project describes them, and exports from a script.&lt;/p&gt; &lt;p&gt;Broken geometry is repaired where that is safe and left out where it is not. Each time a warning names the layer and the feature; the export goes on.&lt;/p&gt;</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
@@ -3644,6 +4458,11 @@
             <location filename="../../plugin/processing/export_navigation_map.py" />
             <source>above 0, such as 0.05</source>
             <translation>superior a 0, com ara 0.05</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>empty</source>
+            <translation>buit</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
@@ -3797,6 +4616,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/export_robot_map_tiles.py" />
+            <source>&lt;p&gt;Writes one robot map for each tile, as &lt;i&gt;Export robot map&lt;/i&gt; does for one window, and an index: a polygon for each tile with its file, border, counts and bytes. The layers are read once.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Grid&lt;/b&gt;: tiles of one size from the left-lower corner of the extent; the last ones reach beyond it. &lt;b&gt;Route&lt;/b&gt;: tiles centred on the lines of a layer, so close that two that follow each other share the overlap. Sizes are in metres along the site's axes.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Advanced&lt;/b&gt;: obstacles are reduced as in &lt;i&gt;Export robot map&lt;/i&gt;, before the tiles are cut. The log says how many obstacles and segments the whole area had before and after.&lt;/p&gt; &lt;p&gt;An obstacle has the same id in every tile that it reaches into. Either every tile and the index are there at the end, or, after a cancel or an error, none of them.&lt;/p&gt;</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map_tiles.py" />
             <source>Export robot map tiles</source>
             <translation>Exporta tessel·les del mapa de robots</translation>
         </message>
@@ -3874,6 +4698,11 @@
             <location filename="../../plugin/processing/export_robot_map_tiles.py" />
             <source>{rows} tiles, {segments} segments, {size} bytes</source>
             <translation>{rows} tessel·les, {segments} segments, {size} bytes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>&lt;p&gt;Finds the way between two places near roads: each is taken to the nearest point of a road that may be used. Closed roads are not used, one-way roads in their direction only; &lt;b&gt;surfaces&lt;/b&gt; (names with commas between) and a &lt;b&gt;least width&lt;/b&gt; restrict the way further.&lt;/p&gt; &lt;p&gt;Edges that lead through a polygon of the &lt;b&gt;areas that must not be driven through&lt;/b&gt; are closed; what runs along a rim is not.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Route&lt;/b&gt; has a line for each stretch of road, in order. &lt;b&gt;Path&lt;/b&gt; is what a robot drives: points at most so far apart, corners rounded to the turning radius as far as robot and road are wide. Corners that stay tighter are counted and named in the log.&lt;/p&gt; &lt;p&gt;The &lt;b&gt;engine&lt;/b&gt; is RoutingKit or SciPy where Python has them, else QGIS's own; the log and &lt;i&gt;ENGINE_USED&lt;/i&gt; say which was used. All find the same ways.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:route -- ROADS=roads.gpkg START="640430,5193530 [EPSG:32633]" \ GOAL="640600,5193570 [EPSG:32633]" SURFACES=asphalt ROUTE=route.gpkg PATH=path.gpkg&lt;/pre&gt;</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/processing/find_route.py" />
@@ -3984,6 +4813,31 @@
             <location filename="../../plugin/processing/fleet_algorithm.py" />
             <source>Robot maps</source>
             <translation>Mapes de robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/geopackage_by_qgis.py" />
+            <source>The layer {name} of the GeoPackage cannot be written: {error}.</source>
+            <translation>La capa {name} del GeoPackage no es pot escriure: {error}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/histogram_svg.py" />
+            <source>deviation in cm</source>
+            <translation>desviació en cm</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/histogram_svg.py" />
+            <source>last bar: up to {metres:.2f} m</source>
+            <translation>última barra: fins a {metres:.2f} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/histogram_svg.py" />
+            <source>tolerance {cm:.4g} cm</source>
+            <translation>tolerància {cm:.4g} cm</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>&lt;p&gt;Reads cones from a &lt;b&gt;CSV file&lt;/b&gt; with a head line, in UTF-8, or from a &lt;b&gt;layer&lt;/b&gt;. The columns are named by parameters; only those of x and y are needed, and not even those for a layer of points with a CRS, which is taken as it lies. A file or layer with several layouts gives one of them, by &lt;b&gt;LAYOUT_FIELD&lt;/b&gt; and &lt;b&gt;LAYOUT&lt;/b&gt;.&lt;/p&gt; &lt;p&gt;Metres of a table are turned by &lt;b&gt;rotation&lt;/b&gt; (degrees, counter-clockwise) and then moved to the &lt;b&gt;origin&lt;/b&gt;. A row that cannot be read is named with its column, and nothing is placed.&lt;/p&gt; &lt;p&gt;Every cone is &lt;b&gt;checked&lt;/b&gt; as those of &lt;i&gt;Cone layout&lt;/i&gt; are.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:importconelayout -- FILE=cone_layouts.csv COLOUR_FIELD=colour \ LAYOUT_FIELD=track LAYOUT=eufs_skidpad ORIGIN="640520,5193530 [EPSG:32633]" ROTATION=90 \ SITE_CRS=EPSG:32633 CONES=cones.gpkg&lt;/pre&gt;</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/processing/import_cone_layout.py" />
@@ -4219,6 +5073,11 @@
             <location filename="../../plugin/processing/keepout_areas.py" />
             <source>Areas that must not be driven through</source>
             <translation>Zones que no s'han de travessar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/load_robot_map.py" />
+            <source>&lt;p&gt;Reads a robot map, text or binary, and makes layers of it.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Obstacles that are areas&lt;/b&gt;: outlines that close, courtyards as holes. &lt;b&gt;Obstacles that are lines&lt;/b&gt;: walls, stairs, and what the border of the map cuts. &lt;b&gt;Segments&lt;/b&gt;: each from a to b, with free space on its right; the style shows that side by ticks and the height by colour. Fields: id, shape, labels, height, indoors or outdoors, extras (&lt;i&gt;ext&lt;/i&gt;, as JSON).&lt;/p&gt; &lt;p&gt;&lt;b&gt;Place&lt;/b&gt;: a map may name its CRS, origin and rotation in its leading lines; parameters win over them. Where neither does, the layers are in local metres, said in a warning.&lt;/p&gt;</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/processing/load_robot_map.py" />
@@ -4546,6 +5405,11 @@
             <translation>{name}: no té cap velocitat superior a 0 m/s, així que no limita; s'omet</translation>
         </message>
         <message>
+            <location filename="../../plugin/processing/navigation_help.py" />
+            <source>&lt;p&gt;Writes a robot map as other robots and people read it.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Robot map&lt;/b&gt;: a file of &lt;i&gt;fleet:exportrobotmap&lt;/i&gt; or of the gateway, text or binary.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Formats&lt;/b&gt;, several at once:&lt;/p&gt; &lt;ul&gt; &lt;li&gt;&lt;i&gt;occupancy&lt;/i&gt;: occupancy grid for Nav2 (PGM and YAML). What a wall touches is occupied, so thin walls have no gap; courtyards are free; the inside of obstacles is unknown, or occupied on request. The frame of the grid is the site frame.&lt;/li&gt; &lt;li&gt;&lt;i&gt;keepout&lt;/i&gt;: mask for Nav2's keepout filter, from the keepout layer, with the filter's parameters.&lt;/li&gt; &lt;li&gt;&lt;i&gt;speed&lt;/i&gt;: mask for Nav2's speed filter, from the speed layer and its expression in m/s. A limit is never rounded up; where areas overlap the lower one holds.&lt;/li&gt; &lt;li&gt;&lt;i&gt;geojson&lt;/i&gt;: obstacles and segments in WGS 84 (RFC 7946).&lt;/li&gt; &lt;li&gt;&lt;i&gt;geopackage&lt;/i&gt;: the same in the site's CRS.&lt;/li&gt; &lt;li&gt;&lt;i&gt;svg&lt;/i&gt;, &lt;i&gt;png&lt;/i&gt;: a picture for people.&lt;/li&gt; &lt;/ul&gt; &lt;p&gt;&lt;b&gt;Keepout and speed layers&lt;/b&gt; are polygons in any CRS. Where the map's place is not known, layers are taken to be in its own metres, and a warning says so; &lt;i&gt;SITE_CRS&lt;/i&gt;, &lt;i&gt;ORIGIN&lt;/i&gt; and &lt;i&gt;ROTATION&lt;/i&gt; give it one.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Robots drive over&lt;/b&gt; obstacles that are lower: 0 keeps every kerb. Ramps are always driven on, stairs are obstacles, also from the side.&lt;/p&gt; &lt;p&gt;Existing files are replaced, each in one step, after all of them could be made. docs/navigation-maps.md says what is in each.&lt;/p&gt; &lt;p&gt;From a script, with no display:&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:exportnavigationmap -- \ MAP=campus.txt FORMATS=occupancy FORMATS=svg RESOLUTION=0.05 OUTPUT=campus&lt;/pre&gt;</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
             <location filename="../../plugin/processing/obstacle_outlines.py" />
             <source>Reducing obstacles</source>
             <translation>S'estan reduint els obstacles</translation>
@@ -4554,6 +5418,16 @@
             <location filename="../../plugin/processing/obstacle_outlines.py" />
             <source>{obstacles} obstacles with {segments} segments became {obstacles_left} with {segments_left}</source>
             <translation>{obstacles} obstacles amb {segments} segments s'han convertit en {obstacles_left} amb {segments_left}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/placed_cones.py" />
+            <source>The placed cones have no field {missing}: give a layer of a GeoPackage, or the CSV, that 'robot-bridge placements export' wrote.</source>
+            <translation>Els cons col·locats no tenen el camp {missing}: doneu una capa d'un GeoPackage, o el CSV, que hagi escrit 'robot-bridge placements export'.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/placed_cones.py" />
+            <source>There are no placed cones to report on. Check the filter of the layer, and the options of 'robot-bridge placements export'.</source>
+            <translation>No hi ha cons col·locats de què informar. Comproveu el filtre de la capa i les opcions de 'robot-bridge placements export'.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/plan_rows.py" />
@@ -4579,6 +5453,26 @@
             <location filename="../../plugin/processing/plan_rows.py" />
             <source>Trips</source>
             <translation>Viatges</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/position_source.py" />
+            <source>The positions have no field {name} for the {what}: they have {names}. Give the layer 'positions' of 'robot-bridge trajectories export', or say which field it is.</source>
+            <translation>Les posicions no tenen el camp {name} per a: {what}; tenen {names}. Doneu la capa 'positions' de 'robot-bridge trajectories export', o digueu quin camp és.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/position_source.py" />
+            <source>robot</source>
+            <translation>robot</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/position_source.py" />
+            <source>time</source>
+            <translation>temps</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_help.py" />
+            <source>&lt;p&gt;Writes the layers of a site into a folder with &lt;i&gt;site.toml&lt;/i&gt; and &lt;i&gt;site.gpkg&lt;/i&gt;, which &lt;i&gt;robot-bridge serve --site FOLDER&lt;/i&gt; serves.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Layers&lt;/b&gt;: those of the project by their roles (menu Fleet Supervisor, Layer roles), or by a &lt;b&gt;map profile&lt;/b&gt;, or the layers given here. Which features count, heights, where things begin above the ground, labels, road widths and shapes of furniture come from the expressions kept with the roles; heights, labels and widths else from the fields &lt;i&gt;height&lt;/i&gt; or &lt;i&gt;height_m&lt;/i&gt;, &lt;i&gt;surface&lt;/i&gt;, &lt;i&gt;name&lt;/i&gt;, &lt;i&gt;width_m&lt;/i&gt; or &lt;i&gt;width&lt;/i&gt;.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Version&lt;/b&gt;: 1 for a new folder, else one more than the version there. A folder that holds another site is refused unless &lt;b&gt;Replace&lt;/b&gt; is ticked.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Bounds&lt;/b&gt;: the rectangle, along the axes of the site frame, that robots may be sent into. Obstacles are published up to 100 m beyond it, so that a robot at its edge is told what stands there.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Site CRS, origin, rotation&lt;/b&gt;: where the robots' (0, 0) is and how their x axis lies. Default: as the project has it.&lt;/p&gt; &lt;p&gt;An earlier publication is replaced only after the new one is complete; a cancel leaves it as it was. Broken geometry is repaired where that is safe and left out where it is not, each time with a warning that names the layer and the feature. One publication into a folder runs at a time.&lt;/p&gt;</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/processing/publish_plan.py" />
@@ -4756,6 +5650,76 @@
             <translation>{title} (per defecte: com es va publicar, al principi {default:g})</translation>
         </message>
         <message>
+            <location filename="../../plugin/processing/report_layout.py" />
+            <source>Mean {mean}, RMS {rms}, 95 % within {p95}, largest {most}.</source>
+            <translation>Mitjana {mean}, RMS {rms}, 95 % dins de {p95}, màxima {most}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/report_layout.py" />
+            <source>QGIS cannot make the report (layout export {number}): check the free space, and the background layers by leaving them out.</source>
+            <translation>El QGIS no pot fer l'informe (exportació de la composició: {number}): comproveu l'espai lliure, i les capes de fons traient-les.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/report_layout.py" />
+            <source>The report cannot be written to {file}: there is no folder {folder}.</source>
+            <translation>L'informe no es pot escriure a {file}: no hi ha la carpeta {folder}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/report_layout.py" />
+            <source>The report cannot be written to {file}: {error}. Close it if a program shows it, or choose another file.</source>
+            <translation>L'informe no es pot escriure a {file}: {error}. Tanqueu-lo si un programa el mostra, o trieu un altre fitxer.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/report_layout.py" />
+            <source>robots: {names}</source>
+            <translation>robots: {names}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/report_layout.py" />
+            <source>{first} to {last} UTC</source>
+            <translation>de {first} a {last} UTC</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/report_layout.py" />
+            <source>{within} of {count} cones ({share:.0f} %) stand within {tolerance:g} cm of their plan.</source>
+            <translation>{within} de {count} cons ({share:.0f} %) són a menys de {tolerance:g} cm del pla.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/report_layout.py" />
+            <source>× planned   ● placed (red: beyond the tolerance)   orange: deviation, {factor} times as long</source>
+            <translation>× planificat   ● col·locat (vermell: fora de la tolerància)   taronja: desviació, {factor} vegades més llarga</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/report_table.py" />
+            <source>Off cm</source>
+            <translation>Desv. cm</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/report_table.py" />
+            <source>Placed (UTC)</source>
+            <translation>Col·locat (UTC)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/report_table.py" />
+            <source>Planned E</source>
+            <translation>Planificat E</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/report_table.py" />
+            <source>Planned N</source>
+            <translation>Planificat N</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/report_table.py" />
+            <source>ΔE cm</source>
+            <translation>ΔE cm</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/report_table.py" />
+            <source>ΔN cm</source>
+            <translation>ΔN cm</translation>
+        </message>
+        <message>
             <location filename="../../plugin/processing/road_source.py" />
             <source>CRS in metres (default: the layer's, or the project's)</source>
             <translation>SRC en metres (per defecte: el de la capa o el del projecte)</translation>
@@ -4839,6 +5803,16 @@
             <location filename="../../plugin/processing/sinks.py" />
             <source>A layer cannot be written ({reason}): choose another place or format for it, and check the free space.</source>
             <translation>No es pot escriure una capa ({reason}): trieu-li un altre lloc o format, i comproveu l'espai lliure.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/sinks.py" />
+            <source>no reason is given</source>
+            <translation>no se'n dona cap motiu</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/surface_at_point.py" />
+            <source>&lt;p&gt;Copies points and adds &lt;b&gt;surface&lt;/b&gt;, the class of the road surface that each is on, its &lt;b&gt;surface_name&lt;/b&gt;, and &lt;b&gt;surface_origin&lt;/b&gt;: whether the surface was drawn or generated from centrelines. They are empty where there is no surface.&lt;/p&gt; &lt;p&gt;The surfaces are layers of areas with a field &lt;i&gt;surface&lt;/i&gt;, or the class that their role says; without any, the project's layers with the role road surface. Points and layers may be in any CRS.&lt;/p&gt; &lt;p&gt;A point on an edge is on the surface. Where surfaces lie on one another a drawn one counts before a generated one, then the smaller before the larger. The expression &lt;i&gt;road_surface(x, y)&lt;/i&gt; tells the same. docs/roads.md says more.&lt;/p&gt;</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/processing/surface_at_point.py" />
@@ -4954,6 +5928,71 @@
             <location filename="../../plugin/processing/tile_windows.py" />
             <source>The {name} of a tile is {value} m: give at least 1 m, such as 100.</source>
             <translation>La mida ({name}) d'una tessel·la és {value} m: doneu almenys 1 m, com ara 100.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/trajectories.py" />
+            <source>&lt;p&gt;Makes of the positions that a gateway stored one line for each drive of each robot: a robot that was not heard of for longer than the gap begins a new line. Or, with &lt;b&gt;a line for each step&lt;/b&gt;, one for each pair of positions, for colours by speed and for QGIS's temporal controller.&lt;/p&gt; &lt;p&gt;The positions are the layer &lt;i&gt;positions&lt;/i&gt; of &lt;i&gt;robot-bridge trajectories export drives.gpkg --site site&lt;/i&gt;, or any points, in any CRS, with a field for the robot and one for the time (date and time, seconds since 1970, or ISO 8601; without an offset UTC).&lt;/p&gt; &lt;p&gt;Fields: &lt;b&gt;begin&lt;/b&gt; and &lt;b&gt;end&lt;/b&gt; (UTC), &lt;b&gt;duration_s&lt;/b&gt;, &lt;b&gt;length_m&lt;/b&gt;, &lt;b&gt;mean_speed&lt;/b&gt; and &lt;b&gt;top_speed&lt;/b&gt; in m/s (as the robot told it, else its fastest step), &lt;b&gt;count&lt;/b&gt; of positions. The measure M of each vertex is its time in seconds since 1970. Lengths are measured in the layer's CRS if that is in true metres, as robots drive them, else on its ellipsoid.&lt;/p&gt; &lt;p&gt;The layer's times are set: open QGIS's temporal controller to play them.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:trajectories -- INPUT="drives.gpkg|layername=positions" OUTPUT=lines.gpkg&lt;/pre&gt;</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/trajectories.py" />
+            <source>A line for each step</source>
+            <translation>Una línia per a cada pas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/trajectories.py" />
+            <source>Field of the robot</source>
+            <translation>Camp del robot</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/trajectories.py" />
+            <source>Field of the speed [m/s]</source>
+            <translation>Camp de la velocitat [m/s]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/trajectories.py" />
+            <source>Field of the time</source>
+            <translation>Camp del temps</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/trajectories.py" />
+            <source>Lines</source>
+            <translation>Línies</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/trajectories.py" />
+            <source>Longest gap in a line [s]</source>
+            <translation>Buit més llarg en una línia [s]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/trajectories.py" />
+            <source>Makes lines of stored positions, with their time, length and speed.</source>
+            <translation>Fa línies de les posicions desades, amb el seu temps, longitud i velocitat.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/trajectories.py" />
+            <source>Metres driven, all robots</source>
+            <translation>Metres recorreguts, tots els robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/trajectories.py" />
+            <source>Positions</source>
+            <translation>Posicions</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/trajectories.py" />
+            <source>Trajectories</source>
+            <translation>Trajectòries</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/trajectories.py" />
+            <source>{lines} lines of {positions} positions, {length:.1f} m in all.</source>
+            <translation>{lines} línies de {positions} posicions, {length:.1f} m en total.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/trajectories.py" />
+            <source>{odd} features have no place, robot or time; they are left out.</source>
+            <translation>{odd} entitats no tenen lloc, robot o temps; queden fora.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/whole_file.py" />
@@ -5171,6 +6210,316 @@
             <translation>superfície de via</translation>
         </message>
         <message>
+            <location filename="../../plugin/settings/connection_dialog.py" />
+            <source>&amp;Authentication</source>
+            <translation>&amp;Autenticació</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connection_dialog.py" />
+            <source>&amp;Name</source>
+            <translation>&amp;Nom</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connection_dialog.py" />
+            <source>Connecting …</source>
+            <translation>Connectant …</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connection_dialog.py" />
+            <source>Edit connection</source>
+            <translation>Edita la connexió</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connection_dialog.py" />
+            <source>New connection</source>
+            <translation>Connexió nova</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connection_dialog.py" />
+            <source>T&amp;est</source>
+            <translation>&amp;Prova</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connection_dialog.py" />
+            <source>There is a connection {name} already. Give this one another name.</source>
+            <translation>Ja hi ha una connexió {name}. Doneu un altre nom a aquesta.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connection_dialog.py" />
+            <source>connection test</source>
+            <translation>prova de connexió</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connection_dialog.py" />
+            <source>kept by QGIS, encrypted; or choose one below</source>
+            <translation>el desa el QGIS, xifrat; o trieu-ne un a sota</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connection_dialog.py" />
+            <source>such as the site's name</source>
+            <translation>com ara el nom del recinte</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connection_dialog.py" />
+            <source>who you are, in every log</source>
+            <translation>qui sou, a cada registre</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connection_trial.py" />
+            <source>{site} ({crs}) answers, as {who}.</source>
+            <translation>{site} ({crs}) respon, com a {who}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connection_trial.py" />
+            <source>{site} ({crs}) answers.</source>
+            <translation>{site} ({crs}) respon.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connections_dialog.py" />
+            <source>Connections to gateways</source>
+            <translation>Connexions a passarel·les</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connections_widget.py" />
+            <source>&amp;Edit…</source>
+            <translation>&amp;Edita…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connections_widget.py" />
+            <source>&amp;Import…</source>
+            <translation>&amp;Importa…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connections_widget.py" />
+            <source>&amp;New…</source>
+            <translation>&amp;Nova…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connections_widget.py" />
+            <source>&amp;Remove</source>
+            <translation>&amp;Treu</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connections_widget.py" />
+            <source>&amp;Test</source>
+            <translation>&amp;Prova</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connections_widget.py" />
+            <source>Connecting to {name} …</source>
+            <translation>Connectant a {name} …</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connections_widget.py" />
+            <source>Connections (*.json)</source>
+            <translation>Connexions (*.json)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connections_widget.py" />
+            <source>E&amp;xport…</source>
+            <translation>E&amp;xporta…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connections_widget.py" />
+            <source>Export connections</source>
+            <translation>Exporta connexions</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connections_widget.py" />
+            <source>Gateway</source>
+            <translation>Passarel·la</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connections_widget.py" />
+            <source>Import connections</source>
+            <translation>Importa connexions</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connections_widget.py" />
+            <source>Name</source>
+            <translation>Nom</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connections_widget.py" />
+            <source>Operator</source>
+            <translation>Operador</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connections_widget.py" />
+            <source>Removed: {names}. Tokens stay in QGIS's authentication.</source>
+            <translation>Tret: {names}. Els testimonis es queden a l'autenticació del QGIS.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connections_widget.py" />
+            <source>{chosen} connections in {file}, without tokens.</source>
+            <translation>{chosen} connexions a {file}, sense testimonis.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connections_widget.py" />
+            <source>{file} cannot be read: {error}</source>
+            <translation>{file} no es pot llegir: {error}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connections_widget.py" />
+            <source>{file} cannot be written: {error}</source>
+            <translation>{file} no es pot escriure: {error}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connections_widget.py" />
+            <source>{found} connections from {file}, {replaced} of them replaced.</source>
+            <translation>{found} connexions de {file}, {replaced} d'elles substituïdes.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/gateway_connection.py" />
+            <source>Choose a file that Export wrote.</source>
+            <translation>Trieu un fitxer que hagi escrit Exporta.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/gateway_connection.py" />
+            <source>The connection has no name. Give it one, such as the site's.</source>
+            <translation>La connexió no té nom. Doneu-n'hi un, com ara el del recinte.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/gateway_connection.py" />
+            <source>{source} has no list named connections. {choose}</source>
+            <translation>{source} no té cap llista anomenada connections. {choose}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/gateway_connection.py" />
+            <source>{source} holds no connections to gateways. {choose}</source>
+            <translation>{source} no conté connexions a passarel·les. {choose}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/gateway_connection.py" />
+            <source>{source} is not JSON: {error}. {choose}</source>
+            <translation>{source} no és JSON: {error}. {choose}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/gateway_connection.py" />
+            <source>{source} is of version {found}; this plugin reads version {version}. Update the plugin.</source>
+            <translation>{source} és de la versió {found}; aquest connector llegeix la versió {version}. Actualitzeu el connector.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/gateway_connection.py" />
+            <source>{source}: connection {number} is not a set of texts named {keys}. {choose}</source>
+            <translation>{source}: la connexió {number} no és un conjunt de textos anomenats {keys}. {choose}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/gateway_connection.py" />
+            <source>{source}: connection {number}: {error}</source>
+            <translation>{source}: connexió {number}: {error}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/token_store.py" />
+            <source>QGIS did not give the token that it keeps: its master password was not given. Press Connect and enter it, or enter the token under Access.</source>
+            <translation>El QGIS no ha donat el testimoni que desa: no se n'ha donat la contrasenya mestra. Premeu Connecta i introduïu-la, o introduïu el testimoni a Accés.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/token_store.py" />
+            <source>QGIS did not keep the token: its master password was not given. The token is used now and has to be entered again next time.</source>
+            <translation>El QGIS no ha desat el testimoni: no se n'ha donat la contrasenya mestra. El testimoni es fa servir ara i s'haurà de tornar a introduir la propera vegada.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/token_store.py" />
+            <source>The authentication {config} is of the method {method}, which gateways do not know. Choose one of the method {wanted} with the token as its password.</source>
+            <translation>L'autenticació {config} és del mètode {method}, que les passarel·les no coneixen. Trieu-ne una del mètode {wanted} amb el testimoni com a contrasenya.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/token_store.py" />
+            <source>The authentication {config} that the connection names is not in this QGIS. Edit the connection and choose another, or enter the token.</source>
+            <translation>L'autenticació {config} que anomena la connexió no és en aquest QGIS. Editeu la connexió i trieu-ne una altra, o introduïu el testimoni.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/token_store.py" />
+            <source>This QGIS keeps no authentication (its options say why, under Authentication): enter the token under Access.</source>
+            <translation>Aquest QGIS no desa autenticació (les seves opcions diuen per què, a Autenticació): introduïu el testimoni a Accés.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/feature_filter.py" />
+            <source>it is left out</source>
+            <translation>queda fora</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/feature_filter.py" />
+            <source>its filter gives {value!r}, which is neither true nor false; it is left out</source>
+            <translation>el seu filtre dona {value!r}, que no és ni cert ni fals; queda fora</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/feature_values.py" />
+            <source>its base {value!r} is not a number of metres; it is taken to stand on the ground</source>
+            <translation>la seva base {value!r} no és un nombre de metres; es pren com si fos a terra</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/feature_values.py" />
+            <source>its outdoor flag {value!r} is neither true nor false; true is used</source>
+            <translation>el seu indicador d'exterior {value!r} no és ni cert ni fals; es fa servir cert</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/feature_values.py" />
+            <source>its {what} {value!r} is not a number of metres of 0 or more; {otherwise}</source>
+            <translation>el seu {what} {value!r} no és un nombre de metres de 0 o més; {otherwise}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/feature_values.py" />
+            <source>the default is used</source>
+            <translation>es fa servir el valor per defecte</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/feature_values.py" />
+            <source>the estimate is used</source>
+            <translation>es fa servir l'estimació</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/ground_reading.py" />
+            <source>Layer {layer}, feature {id}: {note}</source>
+            <translation>Capa {layer}, entitat {id}: {note}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/ground_reading.py" />
+            <source>Layer {layer}: the width of {count} of its roads is not known and taken as {width:g} m (feature {first} is the first)</source>
+            <translation>Capa {layer}: l'amplada de {count} de les seves vies no es coneix i es pren com a {width:g} m (l'entitat {first} és la primera)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/ground_reading.py" />
+            <source>has a coordinate that is no number; it is left out</source>
+            <translation>té una coordenada que no és un nombre; queda fora</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/ground_reading.py" />
+            <source>has a line, which is no area; it is left out</source>
+            <translation>té una línia, que no és una àrea; queda fora</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/ground_reading.py" />
+            <source>has a polygon, which is no centreline; it is left out</source>
+            <translation>té un polígon, que no és un eix de via; queda fora</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/layer_rules.py" />
+            <source>Layer {layer}: it has no field {missing}, which the {what} expression {text!r} reads; the default is used for all its features</source>
+            <translation>Capa {layer}: no té el camp {missing}, que llegeix l'expressió de {what} {text!r}; es fa servir el valor per defecte per a totes les seves entitats</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/layer_rules.py" />
+            <source>The {what} expression {text!r} for the layer {layer} is not one: {error}. Correct it.</source>
+            <translation>L'expressió de {what} {text!r} per a la capa {layer} no ho és: {error}. Corregiu-la.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/layer_rules.py" />
+            <source>The {what} expression {text!r} for the layer {layer} reads the field {missing}, which the layer does not have. Correct it, or write attribute('...') for a field that some layers lack.</source>
+            <translation>L'expressió de {what} {text!r} per a la capa {layer} llegeix el camp {missing}, que la capa no té. Corregiu-la, o escriviu attribute('...') per a un camp que falta en algunes capes.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/layer_rules.py" />
+            <source>its {what} {value!r} is not a number of metres above 0; the default is used</source>
+            <translation>el seu {what} {value!r} no és un nombre de metres superior a 0; es fa servir el valor per defecte</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/layer_rules.py" />
+            <source>the {what} expression fails: {error}; {otherwise}</source>
+            <translation>l'expressió de {what} falla: {error}; {otherwise}</translation>
+        </message>
+        <message>
             <location filename="../../plugin/sites/obstacle_source.py" />
             <source>The layer {name} cannot be opened ({source}): repair its data source or leave it out.</source>
             <translation>La capa {name} no es pot obrir ({source}): repareu-ne l'origen de dades o ometeu-la.</translation>
@@ -5191,6 +6540,11 @@
             <translation>punts</translation>
         </message>
         <message>
+            <location filename="../../plugin/sites/parts.py" />
+            <source>has a {kind}, which is no area or line; it is left out</source>
+            <translation>té un {kind}, que no és ni àrea ni línia; queda fora</translation>
+        </message>
+        <message>
             <location filename="../../plugin/sites/placing.py" />
             <source>The layer {name} has no CRS, so its place on the site is not known: set the layer's CRS (Layer &gt; Set CRS of Layer), or {tick}.</source>
             <translation>La capa {name} no té SRC, així que el seu lloc al recinte no es coneix: definiu el SRC de la capa (Capa &gt; Defineix el SRC de la capa), o {tick}.</translation>
@@ -5204,6 +6558,21 @@
             <location filename="../../plugin/sites/placing.py" />
             <source>tick 'Layers without a CRS are already in the site frame's metres' (LOCAL=true)</source>
             <translation>marqueu «Les capes sense SRC ja són en metres del marc del recinte» (LOCAL=true)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/posts.py" />
+            <source>its rotation {value!r} is not a number of degrees; it is not turned</source>
+            <translation>la seva rotació {value!r} no és un nombre de graus; no es gira</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/posts.py" />
+            <source>its width {width:g} m is none of furniture; {used:g} is used</source>
+            <translation>la seva amplada de {width:g} m no és de mobiliari; es fa servir {used:g}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/posts.py" />
+            <source>{error}; its width is used</source>
+            <translation>{error}; es fa servir la seva amplada</translation>
         </message>
         <message>
             <location filename="../../plugin/sites/profile_file.py" />
@@ -5311,6 +6680,99 @@
             <translation>el procés {process} a {host}</translation>
         </message>
         <message>
+            <location filename="../../plugin/sites/published_layers.py" />
+            <source>Publish the site again.</source>
+            <translation>Torneu a publicar el recinte.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/published_layers.py" />
+            <source>{file} has no layer {layers} that can be read. {again}</source>
+            <translation>{file} no té cap capa {layers} que es pugui llegir. {again}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/published_layers.py" />
+            <source>{file} names no site: it has no table [site] with a name. {again}</source>
+            <translation>{file} no anomena cap recinte: no té la taula [site] amb un nom. {again}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/published_layers.py" />
+            <source>{folder} has a {settings} and no {geopackage}. {again}</source>
+            <translation>{folder} té {settings} i no {geopackage}. {again}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/ramps.py" />
+            <source>its corners span no surface that one can drive on; its normal is left out</source>
+            <translation>les seves cantonades no formen cap superfície per on es pugui circular; la seva normal queda fora</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/sites/reading.py" />
+            <source>Layer {name}: %n heights are not known and estimated as {height:g} m ({features})</source>
+            <translation>
+                <numerusform>Capa {name}: %n alçada no es coneix i s'estima en {height:g} m ({features})</numerusform>
+                <numerusform>Capa {name}: %n alçades no es coneixen i s'estimen en {height:g} m ({features})</numerusform>
+            </translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/reading.py" />
+            <source>Layer {name}: its role is {role}, yet it is exported as obstacles</source>
+            <translation>Capa {name}: el seu paper és {role}, però s'exporta com a obstacles</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/reading.py" />
+            <source>Layer {name}: its role {role} wants {wanted}; other features are exported as plain obstacles ({features})</source>
+            <translation>Capa {name}: el seu paper {role} vol {wanted}; les altres entitats s'exporten com a simples obstacles ({features})</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/reading.py" />
+            <source>feature {shown}</source>
+            <translation>entitat {shown}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/reading.py" />
+            <source>features {shown}</source>
+            <translation>entitats {shown}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/reading.py" />
+            <source>features {shown} and {more} more</source>
+            <translation>entitats {shown} i {more} més</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/reading.py" />
+            <source>lines, one a riser</source>
+            <translation>línies, una per graó</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/reading.py" />
+            <source>polygons</source>
+            <translation>polígons</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/road_attributes.py" />
+            <source>its direction {value!r} is none of yes, -1 and no; it is taken as driven both ways</source>
+            <translation>el seu sentit {value!r} no és yes, -1 ni no; es pren com a doble sentit</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/road_attributes.py" />
+            <source>its level {value!r} is no number; it is taken to be on the ground</source>
+            <translation>el seu nivell {value!r} no és un nombre; es pren com si fos a terra</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/road_attributes.py" />
+            <source>its speed {value!r} is no number above 0; the default is used</source>
+            <translation>la seva velocitat {value!r} no és un nombre superior a 0; es fa servir el valor per defecte</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/road_attributes.py" />
+            <source>whether it is closed, {value!r}, is neither true nor false; it is taken as closed</source>
+            <translation>si és tancada, {value!r}, no és ni cert ni fals; es pren com a tancada</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/shapes.py" />
+            <source>has a coordinate that is no number or has no place in the site's CRS; it is left out</source>
+            <translation>té una coordenada que no és un nombre o que no té lloc al SRC del recinte; queda fora</translation>
+        </message>
+        <message>
             <location filename="../../plugin/sites/site_crs.py" />
             <source> (EPSG:326xx north, EPSG:327xx south of the equator)</source>
             <translation> (EPSG:326xx al nord, EPSG:327xx al sud de l'equador)</translation>
@@ -5354,6 +6816,59 @@
             <location filename="../../plugin/sites/site_file.py" />
             <source>{file} cannot be written in {folder}: {error}. Check the folder's rights and the free space.</source>
             <translation>{file} no es pot escriure a {folder}: {error}. Comproveu els permisos de la carpeta i l'espai lliure.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/soundness.py" />
+            <source> at ({x:.2f} {y:.2f})</source>
+            <translation> a ({x:.2f} {y:.2f})</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/sites/soundness.py" />
+            <source>%n different points</source>
+            <translation>
+                <numerusform>%n punt diferent</numerusform>
+                <numerusform>%n punts diferents</numerusform>
+            </translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/soundness.py" />
+            <source>courtyard {k} of part {number}{place} has {points} and encloses nothing; the courtyard is left out</source>
+            <translation>el pati {k} de la part {number}{place} té {points} i no tanca res; el pati queda fora</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/soundness.py" />
+            <source>line {number} has fewer than two different points; it is left out</source>
+            <translation>la línia {number} té menys de dos punts diferents; queda fora</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/soundness.py" />
+            <source>not valid</source>
+            <translation>no és vàlid</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/soundness.py" />
+            <source>riser {number} is bent; the straight line between its ends is used</source>
+            <translation>el graó {number} és corbat; es fa servir la recta entre els seus extrems</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/soundness.py" />
+            <source>the outer ring of part {number}{place} has {points} and encloses nothing; the part is left out</source>
+            <translation>l'anell exterior de la part {number}{place} té {points} i no tanca res; la part queda fora</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/soundness.py" />
+            <source>the polygon is broken{place}: {what}</source>
+            <translation>el polígon està trencat{place}: {what}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/soundness.py" />
+            <source>{fault}; it cannot be repaired and is left out</source>
+            <translation>{fault}; no es pot reparar i queda fora</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/soundness.py" />
+            <source>{fault}; it was repaired</source>
+            <translation>{fault}; s'ha reparat</translation>
         </message>
         <message>
             <location filename="../../plugin/sites/surface_store.py" />

@@ -20,6 +20,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/access_fields.py" />
+            <source>&amp;Token</source>
+            <translation>&amp;Testigo</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/access_fields.py" />
             <source>CA &amp;file</source>
             <translation>A&amp;rchivo de CA</translation>
         </message>
@@ -648,43 +653,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/checks.py" />
-            <source>({points:.2f}, {points2:.2f}) m</source>
-            <translation>({points:.2f}, {points2:.2f}) m</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/checks.py" />
-            <source>({x:.2f}, {y:.2f}) m is</source>
-            <translation>({x:.2f}, {y:.2f}) m está</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/checks.py" />
-            <source>The route</source>
-            <translation>La ruta</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/checks.py" />
-            <source>{layer} (feature {id})</source>
-            <translation>{layer} (objeto {id})</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/checks.py" />
-            <source>{off} of {points} points are</source>
-            <translation>{off} de {points} puntos están</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/checks.py" />
-            <source>{spot} enters the keepout {name}. Choose a place or way outside it.</source>
-            <translation>{spot} entra en la zona prohibida {name}. Elija un lugar o recorrido fuera.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/checks.py" />
             <source>{where} m is outside the site {name}, which reaches from ({x_min:g}, {y_min:g}) to ({x_max:g}, {y_max:g}) m. Click inside it.</source>
             <translation>{where} m está fuera del recinto {name}, que va de ({x_min:g}, {y_min:g}) a ({x_max:g}, {y_max:g}) m. Haga clic dentro.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/checks.py" />
-            <source>{where} not on a road surface.</source>
-            <translation>{where} fuera de las superficies de vía.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/clear_dialog.py" />
@@ -905,6 +875,11 @@
             <location filename="../../plugin/desk/command_log/log_panel.py" />
             <source>{what} of {robot} leads to no place.</source>
             <translation>{what} de {robot} no lleva a ningún lugar.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/coordinates_dialog.py" />
+            <source>&amp;Coordinates</source>
+            <translation>&amp;Coordenadas</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/commands/coordinates_dialog.py" />
@@ -1142,6 +1117,21 @@
         </message>
         <message>
             <location filename="../../plugin/desk/connection_panel.py" />
+            <source>&amp;Access…</source>
+            <translation>&amp;Acceso…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/connection_panel.py" />
+            <source>&amp;Gateway</source>
+            <translation>&amp;Pasarela</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/connection_panel.py" />
+            <source>&amp;Operator</source>
+            <translation>&amp;Operador</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/connection_panel.py" />
             <source>Connected</source>
             <translation>Conectado</translation>
         </message>
@@ -1217,6 +1207,16 @@
         </message>
         <message>
             <location filename="../../plugin/desk/desk.py" />
+            <source>{in_words} was not sent, since only now this is known: {warnings} Ask for it again to send it all the same.</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/desk.py" />
+            <source>{in_words} was not sent: robots were told to stop before it had been checked.</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/desk.py" />
             <source>{in_words} was not sent: {error}</source>
             <translation>{in_words} no se envió: {error}</translation>
         </message>
@@ -1227,8 +1227,18 @@
         </message>
         <message>
             <location filename="../../plugin/desk/dock.py" />
+            <source>Fleet</source>
+            <translation>Flota</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/dock.py" />
             <source>Queue</source>
             <translation>Cola</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/draft_panel.py" />
+            <source> It goes out when nothing speaks against it; Esc keeps it back.</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/desk/draft_panel.py" />
@@ -1239,6 +1249,11 @@
             <location filename="../../plugin/desk/draft_panel.py" />
             <source>Select a robot, choose Cone target or Draw route, and click on the map.</source>
             <translation>Seleccione un robot, elija Objetivo de cono o Dibujar ruta, y haga clic en el mapa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/draft_panel.py" />
+            <source>{in_words}. Being checked: {share:.0%}.</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/desk/draft_panel.py" />
@@ -1316,9 +1331,19 @@
             <translation>la operación por defecto de PROJ</translation>
         </message>
         <message>
-            <location filename="../../plugin/desk/drafting/obstacle_check.py" />
-            <source>({point:.2f}, {point2:.2f}) m</source>
-            <translation>({point:.2f}, {point2:.2f}) m</translation>
+            <location filename="../../plugin/desk/drafting/keepout_check.py" />
+            <source>The route</source>
+            <translation>La ruta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/keepout_check.py" />
+            <source>{spot} enters the keepout {name}. Choose a place or way outside it.</source>
+            <translation>{spot} entra en la zona prohibida {name}. Elija un lugar o recorrido fuera.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/layer_features.py" />
+            <source>{layer} (feature {id})</source>
+            <translation>{layer} (objeto {id})</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/drafting/obstacle_check.py" />
@@ -1376,6 +1401,21 @@
             <translation>Esta parte de la ruta sigue las vías y no se cambia a mano. Quítela con Retroceso, o dibuje esta parte con Dibujar ruta.</translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/drafting/surface_check.py" />
+            <source>({x:.2f}, {y:.2f}) m is</source>
+            <translation>({x:.2f}, {y:.2f}) m está</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/surface_check.py" />
+            <source>{off} of {points} points are</source>
+            <translation>{off} de {points} puntos están</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/surface_check.py" />
+            <source>{where} not on a road surface.</source>
+            <translation>{where} fuera de las superficies de vía.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/drafting/target_check.py" />
             <source>({x:.2f}, {y:.2f}) m is {away:.2f} m from {what} of {robot} at {other_x:.2f}, {other_y:.2f}: keep {clear_m:g} m between targets.</source>
             <translation>({x:.2f}, {y:.2f}) m está a {away:.2f} m de {what} de {robot} en {other_x:.2f}, {other_y:.2f}: deje {clear_m:g} m entre objetivos.</translation>
@@ -1399,6 +1439,11 @@
             <location filename="../../plugin/desk/drafting/tasks.py" />
             <source>A start position is no task: Send tells the robot at once.</source>
             <translation>Una posición inicial no es una tarea: Enviar se lo dice al robot al instante.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/tracks.py" />
+            <source>({point:.2f}, {point2:.2f}) m</source>
+            <translation>({point:.2f}, {point2:.2f}) m</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/drafts.py" />
@@ -1434,6 +1479,11 @@
             <location filename="../../plugin/desk/drafts.py" />
             <source>a route needs at least two points: click the next one</source>
             <translation>una ruta necesita al menos dos puntos: haga clic en el siguiente</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafts.py" />
+            <source>it has not been checked to its end</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/desk/drafts.py" />
@@ -1571,6 +1621,16 @@
             <translation>{seconds:.0f} s</translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/live/live_view.py" />
+            <source>No robot is selected to be followed. Select one in the table or on the map.</source>
+            <translation>No hay ningún robot seleccionado para seguir. Seleccione uno en la tabla o en el mapa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/live_view.py" />
+            <source>{robot} has not said yet where it is; the map cannot go there.</source>
+            <translation>{robot} aún no ha dicho dónde está; el mapa no puede ir allí.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/live/names_painting.py" />
             <source>· offline</source>
             <translation>· sin conexión</translation>
@@ -1589,6 +1649,281 @@
             <location filename="../../plugin/desk/live/robot_features.py" />
             <source>Robots (live)</source>
             <translation>Robots (en vivo)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/observation_dock.py" />
+            <source>All are reviewed.</source>
+            <translation>Todas están revisadas.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/observation_dock.py" />
+            <source>No robot has told of an object or image yet.</source>
+            <translation>Ningún robot ha informado aún de un objeto o una imagen.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/observation_dock.py" />
+            <source>Observation {number} was not reviewed: {why}</source>
+            <translation>La observación {number} no se revisó: {why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/observation_dock.py" />
+            <source>Observation {observation} was NOT reviewed: {error}</source>
+            <translation>La observación {observation} NO se revisó: {error}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/observation_dock.py" />
+            <source>Observations</source>
+            <translation>Observaciones</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/observation_dock.py" />
+            <source>Observations ({waiting})</source>
+            <translation>Observaciones ({waiting})</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/observation_dock.py" />
+            <source>Show reviewed ones, too</source>
+            <translation>Mostrar también las revisadas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/observation_dock.py" />
+            <source>{waiting} to be reviewed</source>
+            <translation>{waiting} por revisar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/observation_feed.py" />
+            <source>What robots saw is not known: {error}</source>
+            <translation>No se sabe qué vieron los robots: {error}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/observation_model.py" />
+            <source>Observation {number} at {x:.2f}, {y:.2f} m; double click goes there</source>
+            <translation>Observación {number} en {x:.2f}, {y:.2f} m; un doble clic va allí</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/observation_model.py" />
+            <source>accepted</source>
+            <translation>aceptada</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/observation_model.py" />
+            <source>image</source>
+            <translation>imagen</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/observation_model.py" />
+            <source>object</source>
+            <translation>objeto</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/observation_model.py" />
+            <source>rejected</source>
+            <translation>rechazada</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/observation_model.py" />
+            <source>to be reviewed</source>
+            <translation>por revisar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/observation_model.py" />
+            <source>{state} by {by}</source>
+            <translation>{state} por {by}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/observations_action.py" />
+            <source>Objects and images that robots told of, to be accepted for the maps or rejected</source>
+            <translation>Objetos e imágenes de los que informaron los robots, para aceptarlos en los mapas o rechazarlos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/review_form.py" />
+            <source>&amp;Accept</source>
+            <translation>&amp;Aceptar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/review_form.py" />
+            <source>An image of {object}, told by {robot}, at {x:.2f}, {y:.2f} m.</source>
+            <translation>Una imagen de {object}, enviada por {robot}, en {x:.2f}, {y:.2f} m.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/review_form.py" />
+            <source>An object: {object}, told by {robot}, at {x:.2f}, {y:.2f} m.</source>
+            <translation>Un objeto: {object}, comunicado por {robot}, en {x:.2f}, {y:.2f} m.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/review_form.py" />
+            <source>Draw it on no map</source>
+            <translation>No dibujarlo en ningún mapa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/review_form.py" />
+            <source>Go to it on the map</source>
+            <translation>Ir allí en el mapa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/review_form.py" />
+            <source>Height</source>
+            <translation>Altura</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/review_form.py" />
+            <source>It is a</source>
+            <translation>Es un</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/review_form.py" />
+            <source>It stands there: draw it on the maps that robots get from now on</source>
+            <translation>Está ahí: dibujarlo en los mapas que los robots reciban desde ahora</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/review_form.py" />
+            <source>It waits for your review.</source>
+            <translation>Espera su revisión.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/review_form.py" />
+            <source>Look at it: is it of use?</source>
+            <translation>Mírela: ¿es útil?</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/review_form.py" />
+            <source>Radius</source>
+            <translation>Radio</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/review_form.py" />
+            <source>Re&amp;ject</source>
+            <translation>&amp;Rechazar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/review_form.py" />
+            <source>Sho&amp;w</source>
+            <translation>&amp;Mostrar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/review_form.py" />
+            <source>State: {state}, by {by}. A new review takes the place of that.</source>
+            <translation>Estado: {state}, por {by}. Una revisión nueva la sustituye.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/review_form.py" />
+            <source>State: {state}. A new review takes the place of that.</source>
+            <translation>Estado: {state}. Una revisión nueva la sustituye.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/review_form.py" />
+            <source>not known</source>
+            <translation>no se sabe</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/review_form.py" />
+            <source>optional</source>
+            <translation>opcional</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/options/options_page.py" />
+            <source>Alarms</source>
+            <translation>Alarmas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/options/options_page.py" />
+            <source>Connections</source>
+            <translation>Conexiones</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/options/options_page.py" />
+            <source>Fleet Supervisor &amp;help</source>
+            <translation>&amp;Ayuda de Fleet Supervisor</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/options/options_page.py" />
+            <source>Map and files</source>
+            <translation>Mapa y archivos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/options/preferences_form.py" />
+            <source>&amp;Folder for files that are written</source>
+            <translation>&amp;Carpeta de los archivos que se escriben</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/options/preferences_form.py" />
+            <source>&amp;Size of robots on the map</source>
+            <translation>&amp;Tamaño de los robots en el mapa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/options/preferences_form.py" />
+            <source>1 is as they come</source>
+            <translation>1 es el tamaño original</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/options/preferences_form.py" />
+            <source>At most; from the next connection on. Fewer spare a slow network</source>
+            <translation>Como máximo; desde la próxima conexión. Menos alivian una red lenta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/options/preferences_form.py" />
+            <source>Layer of robots written anew &amp;every</source>
+            <translation>La capa de robots se reescribe &amp;cada</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/options/preferences_form.py" />
+            <source>Positions asked for, &amp;times a second</source>
+            <translation>Posiciones pedidas, &amp;veces por segundo</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/options/preferences_form.py" />
+            <source>The layer Robots (live): attribute table, labels, expressions. The live map goes its own way</source>
+            <translation>La capa Robots (live): tabla de atributos, etiquetas, expresiones. El mapa en vivo va por su cuenta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/options/preferences_form.py" />
+            <source>your documents</source>
+            <translation>sus documentos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/orders.py" />
+            <source>Abort of {robot}</source>
+            <translation>Abortar {robot}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/orders.py" />
+            <source>{draft} was not sent: {fault}</source>
+            <translation>{draft}: no se envió: {fault}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/orders.py" />
+            <source>{draft} were not sent: several targets are driven to one after the other. Press Add to queue.</source>
+            <translation>{draft}: no se envió: a varios objetivos se va uno tras otro. Pulse Añadir a la cola.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/orders.py" />
+            <source>{words} was NOT sent: {error}</source>
+            <translation>{words}: NO se envió: {error}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/orders.py" />
+            <source>{words}: done</source>
+            <translation>{words}: hecho</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/orders.py" />
+            <source>{words}: in force</source>
+            <translation>{words}: en vigor</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/orders.py" />
+            <source>{words}: queued</source>
+            <translation>{words}: en cola</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/orders.py" />
+            <source>{words}: sent to {commands} robots</source>
+            <translation>{words}: enviado a {commands} robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/orders.py" />
+            <source>{words}: the gateway has not answered for {seconds:g} s, so it may not have arrived. It is repeated when the link is back; it is never done twice.</source>
+            <translation>{words}: la pasarela no ha respondido desde hace {seconds:g} s, así que quizá no haya llegado. Se repite cuando vuelve el enlace; nunca se hace dos veces.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/placement.py" />
@@ -2348,6 +2683,36 @@
             <translation>quedan donde están</translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/queues/queue_edits.py" />
+            <source>A task of {robot} first</source>
+            <translation>Una tarea de {robot} primero</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/queue_edits.py" />
+            <source>Moving a task of {robot}</source>
+            <translation>Mover una tarea de {robot}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/queue_edits.py" />
+            <source>Not done: the queue has changed since you saw it. This is how it stands now.</source>
+            <translation>No se hizo: la cola ha cambiado desde que la vio. Ahora está así.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/queue_edits.py" />
+            <source>Pausing the queue of {robot}</source>
+            <translation>Pausar la cola de {robot}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/queue_edits.py" />
+            <source>Removing a task of {robot}</source>
+            <translation>Quitar una tarea de {robot}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/queue_edits.py" />
+            <source>Resuming the queue of {robot}</source>
+            <translation>Reanudar la cola de {robot}</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/queues/queue_panel.py" />
             <source>Do now</source>
             <translation>Hacer ahora</translation>
@@ -2411,6 +2776,21 @@
             <location filename="../../plugin/desk/queues/queue_panel.py" />
             <source>{selected} has no queue. Add a target or a route with Add to queue.</source>
             <translation>{selected} no tiene cola. Añada un objetivo o una ruta con Añadir a la cola.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/task_list.py" />
+            <source>Task</source>
+            <translation>Tarea</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/task_list.py" />
+            <source>added by {by}</source>
+            <translation>añadida por {by}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/task_list.py" />
+            <source>waiting: robot</source>
+            <translation>en espera: robot</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/desk/queues/task_words.py" />
@@ -2481,6 +2861,191 @@
             <translation>{robot}: {count}, EN PAUSA{when}{why}</translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/replay/fetching.py" />
+            <source>Only the first {count} positions were fetched. Choose less time, or fewer robots.</source>
+            <translation>Solo se obtuvieron las primeras {count} posiciones. Elija menos tiempo o menos robots.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/fetching.py" />
+            <source>Putting positions in order</source>
+            <translation>Ordenando las posiciones</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/fetching.py" />
+            <source>Stopped: the rest of the time was not fetched.</source>
+            <translation>Detenido: no se obtuvo el resto del tiempo.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/fetching.py" />
+            <source>The gateway's answer cannot be used: {error}.</source>
+            <translation>La respuesta de la pasarela no se puede usar: {error}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/fetching.py" />
+            <source>The rest of the time was not fetched: {error}</source>
+            <translation>No se obtuvo el resto del tiempo: {error}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/fetching.py" />
+            <source>What came could not be put in order.</source>
+            <translation>Lo que llegó no se pudo ordenar.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/replay_action.py" />
+            <source>Play what robots did, on a map beside the live one</source>
+            <translation>Reproducir lo que hicieron los robots, en un mapa junto al que está en vivo</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/replay_action.py" />
+            <source>Replay</source>
+            <translation>Reproducción</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/replay_dock.py" />
+            <source> · NOT ALL</source>
+            <translation> · NO TODAS</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/replay_dock.py" />
+            <source>Choose a time and press Load.</source>
+            <translation>Elija un tiempo y pulse Cargar.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/replay_dock.py" />
+            <source>How much faster than it was</source>
+            <translation>Cuánto más rápido que como fue</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/replay_dock.py" />
+            <source>Loading …</source>
+            <translation>Cargando …</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/replay_dock.py" />
+            <source>Loading … {positions} positions, up to {moment}</source>
+            <translation>Cargando … {positions} posiciones, hasta {moment}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/replay_dock.py" />
+            <source>No positions are stored of that time.</source>
+            <translation>No hay posiciones guardadas de ese tiempo.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/replay_dock.py" />
+            <source>No robot is selected to be replayed. Select one, or replay all.</source>
+            <translation>No hay ningún robot seleccionado para reproducir. Seleccione uno o reproduzca todos.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/replay_dock.py" />
+            <source>Play, or hold (Space)</source>
+            <translation>Reproducir o detener (Espacio)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/replay_dock.py" />
+            <source>REPLAY · {told}</source>
+            <translation>REPRODUCCIÓN · {told}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/replay_dock.py" />
+            <source>REPLAY, not live · {moment} · {told}</source>
+            <translation>REPRODUCCIÓN, no en vivo · {moment} · {told}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/replay_dock.py" />
+            <source>The replay was not loaded: {error}</source>
+            <translation>La reproducción no se cargó: {error}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/replay_dock.py" />
+            <source>The replay's time ends before it begins. Correct one of the two.</source>
+            <translation>El tiempo de la reproducción acaba antes de empezar. Corrija uno de los dos.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/replay_dock.py" />
+            <source>There is nothing to replay yet. Connect to a gateway first.</source>
+            <translation>Aún no hay nada que reproducir. Conéctese primero a una pasarela.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/replay_dock.py" />
+            <source>positions: {positions}, robots: {robots}</source>
+            <translation>posiciones: {positions}, robots: {robots}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/replay_layer.py" />
+            <source>Drawing what robots drove</source>
+            <translation>Dibujando lo que recorrieron los robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/replay_layer.py" />
+            <source>Not all trajectories are drawn: {error}</source>
+            <translation>No se dibujaron todas las trayectorias: {error}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/replay_layer.py" />
+            <source>The trajectories are not drawn: they could not be made into lines.</source>
+            <translation>Las trayectorias no se dibujaron: no se pudieron convertir en líneas.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/replay_layer.py" />
+            <source>Trajectories (replay)</source>
+            <translation>Trayectorias (reproducción)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/stretch_form.py" />
+            <source>From when on</source>
+            <translation>Desde cuándo</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/stretch_form.py" />
+            <source>Load</source>
+            <translation>Cargar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/stretch_form.py" />
+            <source>Load what the selected robots did, not what all did</source>
+            <translation>Cargar lo que hicieron los robots seleccionados, no lo de todos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/stretch_form.py" />
+            <source>Selected only</source>
+            <translation>Solo los seleccionados</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/stretch_form.py" />
+            <source>Stop</source>
+            <translation>Detener</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/stretch_form.py" />
+            <source>Until when</source>
+            <translation>Hasta cuándo</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/stretch_form.py" />
+            <source>from … to …</source>
+            <translation>de … a …</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/stretch_form.py" />
+            <source>the last 15 minutes</source>
+            <translation>los últimos 15 minutos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/stretch_form.py" />
+            <source>the last 5 minutes</source>
+            <translation>los últimos 5 minutos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/stretch_form.py" />
+            <source>the last 8 hours</source>
+            <translation>las últimas 8 horas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/stretch_form.py" />
+            <source>the last hour</source>
+            <translation>la última hora</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/road_board.py" />
             <source>Closing the road at {x:.1f}, {y:.1f} m</source>
             <translation>Cierre de la vía en {x:.1f}, {y:.1f} m</translation>
@@ -2514,6 +3079,11 @@
             <location filename="../../plugin/desk/road_layers.py" />
             <source>until</source>
             <translation>hasta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/road_route_tool.py" />
+            <source>This leg does not follow the roads: {note}</source>
+            <translation>Este tramo no sigue las vías: {note}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/robots/columns.py" />
@@ -2584,11 +3154,6 @@
             <location filename="../../plugin/desk/robots/columns.py" />
             <source>Speed</source>
             <translation>Velocidad</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/robots/columns.py" />
-            <source>Task</source>
-            <translation>Tarea</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/robots/columns.py" />
@@ -2719,11 +3284,6 @@
             <location filename="../../plugin/desk/robots/position_crs.py" />
             <source>site frame</source>
             <translation>marco del recinto</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/robots/robot_details.py" />
-            <source>Alarms</source>
-            <translation>Alarmas</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/robots/robot_details.py" />
@@ -2876,6 +3436,31 @@
             <translation>{seconds} s</translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/route_tool.py" />
+            <source>The route on the map is for {robot}, but {selected} is selected. Send it (Enter) or cancel it (Esc) first, or select {robot} again.</source>
+            <translation>La ruta del mapa es para {robot}, pero el seleccionado es {selected}. Envíela (Intro) o cancélela (Esc) primero, o vuelva a seleccionar {robot}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/route_tool.py" />
+            <source>This is the first vertex: another is put before one that comes later.</source>
+            <translation>Este es el primer vértice: se pone otro delante de uno que viene después.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/site_drop.py" />
+            <source> {layers} have no role: other layers of the project have it. Plugins &gt; Fleet Supervisor &gt; Layer roles changes that.</source>
+            <translation> {layers} no tienen papel: lo tienen otras capas del proyecto. Complementos &gt; Fleet Supervisor &gt; Papeles de las capas lo cambia.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/site_drop.py" />
+            <source>The site in {folder} is in the project already: {names}.</source>
+            <translation>El recinto de {folder} ya está en el proyecto: {names}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/site_drop.py" />
+            <source>{site}: {count} layers loaded.</source>
+            <translation>{site}: {count} capas cargadas.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/surface_action.py" />
             <source>Road surface</source>
             <translation>Superficie de vía</translation>
@@ -2899,6 +3484,11 @@
             <location filename="../../plugin/desk/surface_tool.py" />
             <source>No road surface</source>
             <translation>Ninguna superficie de vía</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/surface_tool.py" />
+            <source>no CRS</source>
+            <translation>sin SRC</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/surface_tool.py" />
@@ -2992,11 +3582,6 @@
         </message>
         <message>
             <location filename="../../plugin/desk/tour/steps.py" />
-            <source>Stop</source>
-            <translation>Detener</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/tour/steps.py" />
             <source>That was the tour</source>
             <translation>Ese era el recorrido</translation>
         </message>
@@ -3042,8 +3627,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/tour/tour_action.py" />
-            <source>Fleet Supervisor is new here. A tour of five minutes shows it with simulated robots.</source>
-            <translation>Fleet Supervisor es nuevo aquí. Un recorrido de cinco minutos lo muestra con robots simulados.</translation>
+            <source>Fleet Supervisor is new here: a five-minute tour shows it.</source>
+            <translation>Fleet Supervisor es nuevo aquí: un recorrido de cinco minutos lo muestra.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/tour/tour_action.py" />
@@ -3101,9 +3686,208 @@
             <translation>&amp;Cerrar</translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/window.py" />
+            <source>Disconnect</source>
+            <translation>Desconectar</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/window_alarms.py" />
             <source>Alarms ({number})</source>
             <translation>Alarmas ({number})</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/expressions/distance_to_robot.py" />
+            <source>&lt;h3&gt;function distance_to_robot&lt;/h3&gt; &lt;p&gt;Returns how far a robot is from a feature or a geometry, in metres of the site.&lt;/p&gt; &lt;h4&gt;Syntax&lt;/h4&gt; &lt;p&gt;&lt;code&gt;distance_to_robot(robot, [geometry], [crs])&lt;/code&gt;&lt;/p&gt; &lt;h4&gt;Arguments&lt;/h4&gt; &lt;table&gt; &lt;tr&gt;&lt;td&gt;&lt;i&gt;robot&lt;/i&gt;&lt;/td&gt;&lt;td&gt;its name, as in the Fleet panel&lt;/td&gt;&lt;/tr&gt; &lt;tr&gt;&lt;td&gt;&lt;i&gt;geometry&lt;/i&gt;&lt;/td&gt;&lt;td&gt;optional; without it, that of the feature that is looked at&lt;/td&gt;&lt;/tr&gt; &lt;tr&gt;&lt;td&gt;&lt;i&gt;crs&lt;/i&gt;&lt;/td&gt;&lt;td&gt;optional, the CRS of the geometry, such as 'EPSG:4326'; without it, that of the layer whose feature is looked at, else that of the project&lt;/td&gt;&lt;/tr&gt; &lt;/table&gt; &lt;h4&gt;Examples&lt;/h4&gt; &lt;ul&gt; &lt;li&gt;&lt;code&gt;distance_to_robot('r1')&lt;/code&gt; &amp;rarr; 12.3&lt;/li&gt; &lt;li&gt;&lt;code&gt;distance_to_robot('r1', make_point(16.8438, 46.8804), 'EPSG:4326')&lt;/code&gt; &amp;rarr; 104.6&lt;/li&gt; &lt;li&gt;&lt;code&gt;distance_to_robot('r1') &amp;lt; 5&lt;/code&gt; &amp;rarr; true of features near the robot&lt;/li&gt; &lt;/ul&gt; &lt;h4&gt;Notes&lt;/h4&gt; &lt;p&gt;The distance is measured in the plane of the site's CRS; in a polygon it is 0. NULL stands for a robot whose place is not known, and while this QGIS is connected to no gateway. Places are at most half a second old; a layer shows them when it is drawn.&lt;/p&gt;</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/expressions/distance_to_robot.py" />
+            <source>{function}: the geometry has no place in {crs}</source>
+            <translation>{function}: la geometría no tiene lugar en {crs}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/expressions/distance_to_robot.py" />
+            <source>{function}: {geometry!r} is no geometry; give one, or a feature that has one</source>
+            <translation>{function}: {geometry!r} no es una geometría; dé una, o un objeto espacial que la tenga</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/expressions/place_crs.py" />
+            <source>crs {given!r} is no CRS that QGIS knows; write a code such as 'EPSG:32633'</source>
+            <translation>crs {given!r} no es un SRC que QGIS conozca; escriba un código como 'EPSG:32633'</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/expressions/road_surface.py" />
+            <source>&lt;h3&gt;function road_surface&lt;/h3&gt; &lt;p&gt;Returns the class of the road surface at a place, such as 'asphalt', or NULL where there is none.&lt;/p&gt; &lt;h4&gt;Syntax&lt;/h4&gt; &lt;p&gt;&lt;code&gt;road_surface(x, y, [layer], [crs])&lt;/code&gt;&lt;/p&gt; &lt;h4&gt;Arguments&lt;/h4&gt; &lt;table&gt; &lt;tr&gt;&lt;td&gt;&lt;i&gt;x, y&lt;/i&gt;&lt;/td&gt;&lt;td&gt;the place; x is the easting or the longitude, whatever the CRS&lt;/td&gt;&lt;/tr&gt; &lt;tr&gt;&lt;td&gt;&lt;i&gt;layer&lt;/i&gt;&lt;/td&gt;&lt;td&gt;optional, the name or id of a layer of areas; without it, all layers of the project with the role road surface&lt;/td&gt;&lt;/tr&gt; &lt;tr&gt;&lt;td&gt;&lt;i&gt;crs&lt;/i&gt;&lt;/td&gt;&lt;td&gt;optional, the CRS of the place, such as 'EPSG:4326'; without it, that of the layer whose feature is looked at, else that of the project&lt;/td&gt;&lt;/tr&gt; &lt;/table&gt; &lt;h4&gt;Examples&lt;/h4&gt; &lt;ul&gt; &lt;li&gt;&lt;code&gt;road_surface($x, $y)&lt;/code&gt; &amp;rarr; 'asphalt'&lt;/li&gt; &lt;li&gt;&lt;code&gt;road_surface(16.8438, 46.8804, crs:='EPSG:4326')&lt;/code&gt; &amp;rarr; 'slippery'&lt;/li&gt; &lt;li&gt;&lt;code&gt;road_surface($x, $y, 'Road surfaces') IS NULL&lt;/code&gt; &amp;rarr; true off the road&lt;/li&gt; &lt;/ul&gt; &lt;h4&gt;Notes&lt;/h4&gt; &lt;p&gt;A place on an edge is on the surface. Where surfaces lie on one another a drawn one counts before a generated one, then the smaller before the larger.&lt;/p&gt;</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/expressions/road_surface.py" />
+            <source>no layer of the project has the role {role}; set it in Plugins &gt; Fleet Supervisor &gt; Layer roles, or name a layer as the third argument</source>
+            <translation>ninguna capa del proyecto tiene el papel {role}; póngalo en Complementos &gt; Fleet Supervisor &gt; Papeles de las capas, o nombre una capa como tercer argumento</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/expressions/road_surface.py" />
+            <source>no vector layer of the project has the name or id {layer!r}</source>
+            <translation>ninguna capa vectorial del proyecto tiene el nombre o el identificador {layer!r}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/expressions/road_surface.py" />
+            <source>{function}: x is {x!r} and y is {y!r}; give two numbers</source>
+            <translation>{function}: x es {x!r} e y es {y!r}; dé dos números</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/expressions/robot_values.py" />
+            <source>&lt;h3&gt;function robot_age&lt;/h3&gt; &lt;p&gt;Returns the seconds since a robot's last message, by this computer's clock.&lt;/p&gt; &lt;h4&gt;Syntax&lt;/h4&gt; &lt;p&gt;&lt;code&gt;robot_age(robot)&lt;/code&gt;&lt;/p&gt; &lt;h4&gt;Arguments&lt;/h4&gt; &lt;table&gt;&lt;tr&gt;&lt;td&gt;&lt;i&gt;robot&lt;/i&gt;&lt;/td&gt;&lt;td&gt;its name, as in the Fleet panel&lt;/td&gt;&lt;/tr&gt;&lt;/table&gt; &lt;h4&gt;Examples&lt;/h4&gt; &lt;ul&gt; &lt;li&gt;&lt;code&gt;robot_age('r1')&lt;/code&gt; &amp;rarr; 0.4&lt;/li&gt; &lt;li&gt;&lt;code&gt;robot_age('r1') &amp;gt; 10&lt;/code&gt; &amp;rarr; true once it has been silent for more than 10 seconds&lt;/li&gt; &lt;/ul&gt;</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/expressions/robot_values.py" />
+            <source>&lt;h3&gt;function robot_battery&lt;/h3&gt; &lt;p&gt;Returns how full a robot's battery is, 0 to 1.&lt;/p&gt; &lt;h4&gt;Syntax&lt;/h4&gt; &lt;p&gt;&lt;code&gt;robot_battery(robot)&lt;/code&gt;&lt;/p&gt; &lt;h4&gt;Arguments&lt;/h4&gt; &lt;table&gt;&lt;tr&gt;&lt;td&gt;&lt;i&gt;robot&lt;/i&gt;&lt;/td&gt;&lt;td&gt;its name, as in the Fleet panel&lt;/td&gt;&lt;/tr&gt;&lt;/table&gt; &lt;h4&gt;Examples&lt;/h4&gt; &lt;ul&gt; &lt;li&gt;&lt;code&gt;robot_battery('r1')&lt;/code&gt; &amp;rarr; 0.82&lt;/li&gt; &lt;li&gt;&lt;code&gt;round(100 * robot_battery('r1')) || ' %'&lt;/code&gt; &amp;rarr; '82 %'&lt;/li&gt; &lt;/ul&gt;</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/expressions/robot_values.py" />
+            <source>&lt;h3&gt;function robot_state&lt;/h3&gt; &lt;p&gt;Returns how far what is known of a robot can be trusted: 'fresh', 'stale', 'lost' or 'offline'.&lt;/p&gt; &lt;h4&gt;Syntax&lt;/h4&gt; &lt;p&gt;&lt;code&gt;robot_state(robot)&lt;/code&gt;&lt;/p&gt; &lt;h4&gt;Arguments&lt;/h4&gt; &lt;table&gt;&lt;tr&gt;&lt;td&gt;&lt;i&gt;robot&lt;/i&gt;&lt;/td&gt;&lt;td&gt;its name, as in the Fleet panel&lt;/td&gt;&lt;/tr&gt;&lt;/table&gt; &lt;h4&gt;Examples&lt;/h4&gt; &lt;ul&gt; &lt;li&gt;&lt;code&gt;robot_state('r1')&lt;/code&gt; &amp;rarr; 'fresh'&lt;/li&gt; &lt;li&gt;&lt;code&gt;robot_state("robot") IN ('stale', 'lost')&lt;/code&gt; &amp;rarr; true of robots that are silent&lt;/li&gt; &lt;/ul&gt;</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/expressions/robot_values.py" />
+            <source>&lt;h4&gt;Notes&lt;/h4&gt; &lt;p&gt;NULL stands for a robot that the gateway has not told of, and while this QGIS is connected to none. What is not known of a robot is NULL as well. Values are at most half a second old; a layer shows them when it is drawn.&lt;/p&gt;</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/help/help_desk.py" />
+            <source>Fleet Supervisor help</source>
+            <translation>Ayuda de Fleet Supervisor</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/help/help_window.py" />
+            <source># Help
+
+{file} cannot be read: {strerror}. Install the plugin again.</source>
+            <translation># Ayuda
+
+{file} no se puede leer: {strerror}. Vuelva a instalar el complemento.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/help/help_window.py" />
+            <source>Fleet Supervisor: help</source>
+            <translation>Fleet Supervisor: ayuda</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/locator/robot_filter.py" />
+            <source>Robots</source>
+            <translation>Robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/locator/robot_filter.py" />
+            <source>{state}, heard of {age:.0f} s ago</source>
+            <translation>{state}, último mensaje hace {age:.0f} s</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>95 % deviate at most [m]</source>
+            <translation>El 95 % se desvía como máximo [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>&lt;p&gt;Compares where cones stand with where they were to stand, and writes a PDF: how many are within the tolerance, a histogram of the deviations, a map and a table of every cone, worst first.&lt;/p&gt; &lt;p&gt;The cones are a layer of the GeoPackage that &lt;i&gt;robot-bridge placements export cones.gpkg --site site&lt;/i&gt; writes, or its CSV; for a CSV, which has none, give the site's CRS. A cone stands where the robot was when it had reached its target, and from there the site's cone offset: the gateway's knowledge, no survey.&lt;/p&gt; &lt;p&gt;On the map a cross is the plan and a circle the cone, red where it is beyond the tolerance. Deviations are small: the lines from the crosses are longer than they are by the factor that the map names. Give background layers, such as roads, to be drawn beneath.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:asplacedreport -- INPUT="cones.gpkg|layername=placed" TOLERANCE=0.2 OUTPUT=report.pdf&lt;/pre&gt;</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>Background of the map</source>
+            <translation>Fondo del mapa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>Cones as placed and as planned</source>
+            <translation>Conos colocados y planificados</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>Cones within the tolerance</source>
+            <translation>Conos dentro de la tolerancia</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>Largest deviation [m]</source>
+            <translation>Mayor desviación [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>Mean deviation [m]</source>
+            <translation>Desviación media [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>PDF files (*.pdf)</source>
+            <translation>Archivos PDF (*.pdf)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>Pages</source>
+            <translation>Páginas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>Records</source>
+            <translation>Registros</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>Report</source>
+            <translation>Informe</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>Root mean square deviation [m]</source>
+            <translation>Desviación media cuadrática [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>Site CRS (default: the layer's)</source>
+            <translation>SRC del recinto (por defecto: el de la capa)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>The CRS of the placed cones is not known, as of a CSV: give CRS, the site's, such as EPSG:32633.</source>
+            <translation>No se conoce el SRC de los conos colocados, como en un CSV: dé CRS, el del recinto, como EPSG:32633.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>Title</source>
+            <translation>Título</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>Tolerance [m]</source>
+            <translation>Tolerancia [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>Warnings</source>
+            <translation>Avisos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>Writes a PDF of how placed cones stand against their plan: figures, histogram, map and table.</source>
+            <translation>Escribe un PDF de cómo están los conos colocados respecto al plan: cifras, histograma, mapa y tabla.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>{odd} features have no planned or no placed position; they are left out.</source>
+            <translation>{odd} objetos espaciales no tienen posición planificada o colocada; quedan fuera.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>{within} of {count} cones are within {tolerance:g} m; the worst is {most:.3f} m off.</source>
+            <translation>{within} de {count} conos están dentro de {tolerance:g} m; el peor se desvía {most:.3f} m.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/assign_cones.py" />
+            <source>&lt;p&gt;Shares &lt;b&gt;cones&lt;/b&gt; out among &lt;b&gt;robots&lt;/b&gt;. Robots load cones to place, and unload collected ones, at &lt;b&gt;stores&lt;/b&gt;, as often as their capacity asks for. Distances are those of the &lt;b&gt;roads&lt;/b&gt;; without roads they are straight lines, and the log says so.&lt;/p&gt; &lt;p&gt;Fields that layers may have, with the parameters as defaults: cones &lt;i&gt;id, heading, stage, task&lt;/i&gt; (place or collect), &lt;i&gt;demand, service_s&lt;/i&gt;; robots &lt;i&gt;id, capacity, speed, range_m, aboard, collected, ready_s&lt;/i&gt;; stores &lt;i&gt;id, service_s&lt;/i&gt;. Every cone of a lower &lt;b&gt;stage&lt;/b&gt; is done before one of a higher stage is begun.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Objective&lt;/b&gt;: &lt;i&gt;balanced&lt;/i&gt; has the last robot finish as early as possible, &lt;i&gt;distance&lt;/i&gt; drives the fewest metres in all. &lt;b&gt;Method&lt;/b&gt;: &lt;i&gt;pyvrp&lt;/i&gt; works until the time limit is over, &lt;i&gt;preview&lt;/i&gt; is quick; &lt;i&gt;automatic&lt;/i&gt; takes pyvrp where Python has it.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Targets&lt;/b&gt; are the stops of each robot in order with their times, &lt;b&gt;paths&lt;/b&gt; the ways between them, &lt;b&gt;plan&lt;/b&gt; is all of it as JSON. A cone that cannot be served is named, and nothing is written.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:assigncones -- CONES=cones.gpkg ROBOTS=robots.gpkg STORES=stores.gpkg \ ROADS=roads.gpkg CAPACITY=8 TIME_LIMIT=10 TARGETS=targets.gpkg PATHS=paths.gpkg PLAN=plan.json&lt;/pre&gt;</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/processing/assign_cones.py" />
@@ -3182,6 +3966,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/build_road_network.py" />
+            <source>&lt;p&gt;Splits road centrelines where they cross or touch, and makes a layer of edges and one of nodes.&lt;/p&gt; &lt;p&gt;Roads of different &lt;b&gt;levels&lt;/b&gt; meet only where one of them ends in a point of the other: a bridge is reached at its ends and passes over what is between them. &lt;b&gt;Direction&lt;/b&gt;, speed, width, surface and whether a road is closed go over to its edges.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Repair&lt;/b&gt; moves ends that stop within the tolerance of a road onto it, cuts off ends that reach beyond a road by less, and leaves out what is drawn twice; the log names each repair. &lt;i&gt;fleet:checkroadnetwork&lt;/i&gt; shows what is broken without changing anything.&lt;/p&gt; &lt;p&gt;The fields of the edges are those that this algorithm and &lt;i&gt;fleet:route&lt;/i&gt; read by themselves. docs/roads.md says more.&lt;/p&gt;</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_network.py" />
             <source>Build road network</source>
             <translation>Construir red de vías</translation>
         </message>
@@ -3217,13 +4006,13 @@
         </message>
         <message>
             <location filename="../../plugin/processing/build_road_network.py" />
-            <source>Warnings</source>
-            <translation>Avisos</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/build_road_network.py" />
             <source>{edges} edges, {nodes} nodes, {parts} parts, {repairs} repairs</source>
             <translation>{edges} aristas, {nodes} nodos, {parts} partes, {repairs} reparaciones</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_surfaces.py" />
+            <source>&lt;p&gt;Widens road centrelines by half their width to each side: ends are cut square, corners are mitred, within a road and where roads end in one point. What is of one class, such as asphalt, becomes one surface; pieces that do not touch are features of their own.&lt;/p&gt; &lt;p&gt;No ground is in two surfaces. Surfaces &lt;b&gt;drawn by hand&lt;/b&gt; keep theirs and are copied to the result. Among generated ones the class that comes first in &lt;b&gt;precedence&lt;/b&gt; keeps the ground; of classes that are not named there the one with less ground, and what has no class comes last.&lt;/p&gt; &lt;p&gt;A road whose width is not known is as wide as &lt;b&gt;default width&lt;/b&gt; says, and is in the layer of &lt;b&gt;findings&lt;/b&gt;. Ends that stop just short of another road stay apart: mend them with &lt;i&gt;fleet:buildroadnetwork&lt;/i&gt; and give its edges.&lt;/p&gt; &lt;p&gt;Give the result the role road surface to publish it. docs/roads.md says more.&lt;/p&gt;</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/processing/build_road_surfaces.py" />
@@ -3277,6 +4066,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/build_road_surfaces.py" />
+            <source>without a class</source>
+            <translation>sin clase</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_surfaces.py" />
             <source>{old} of the surfaces that are given as drawn say that they were generated (field origin); they are left out and made anew</source>
             <translation>{old} de las superficies dadas como dibujadas dicen que se generaron (campo origin); se omiten y se vuelven a hacer</translation>
         </message>
@@ -3284,6 +4078,11 @@
             <location filename="../../plugin/processing/build_road_surfaces.py" />
             <source>{value}: {own:.1f} m²</source>
             <translation>{value}: {own:.1f} m²</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/check_road_network.py" />
+            <source>&lt;p&gt;Checks the network that road centrelines make, and makes a layer of points that show what is odd, each with the feature to look at. Nothing is changed.&lt;/p&gt; &lt;p&gt;What &lt;i&gt;fleet:buildroadnetwork&lt;/i&gt; repairs: &lt;b&gt;gap&lt;/b&gt;, an end that stops within the tolerance of another road; &lt;b&gt;overshoot&lt;/b&gt;, an end that reaches beyond a road by less than that; &lt;b&gt;duplicate&lt;/b&gt;, a stretch that is drawn twice.&lt;/p&gt; &lt;p&gt;What only people can judge: &lt;b&gt;dead end&lt;/b&gt;; &lt;b&gt;disconnected part&lt;/b&gt;, roads that are connected with one another but not with the longest part; &lt;b&gt;one-way&lt;/b&gt;, roads from which no way leads back because of the directions.&lt;/p&gt;</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/processing/check_road_network.py" />
@@ -3334,6 +4133,11 @@
             <location filename="../../plugin/processing/check_road_network.py" />
             <source>Roads drawn twice</source>
             <translation>Vías dibujadas dos veces</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/check_robot_map.py" />
+            <source>&lt;p&gt;Checks a robot map, text or binary, and makes a layer of lines that show what is odd, each with a kind, a severity, the obstacle to look at, and what to do.&lt;/p&gt; &lt;p&gt;&lt;b&gt;orientation&lt;/b&gt;: outlines, courtyards, segments or risers that run the wrong way round. &lt;b&gt;gap&lt;/b&gt;: rings that do not close, and lines that stop just short of another obstacle. &lt;b&gt;sliver&lt;/b&gt;: rings next to nothing wide, segments without length. &lt;b&gt;duplicate&lt;/b&gt;, &lt;b&gt;overlap&lt;/b&gt;: obstacles that repeat, cross or cover one another or lie inside another. &lt;b&gt;shared wall&lt;/b&gt;: where two outlines touch back to back. &lt;b&gt;pocket&lt;/b&gt;: free space that a robot of the given width cannot reach; courtyards are such pockets. &lt;b&gt;height&lt;/b&gt;: heights of 0 or less, or above 0 where there must be none. &lt;b&gt;outside&lt;/b&gt;: segments beyond the border. &lt;b&gt;id&lt;/b&gt;: ids used twice.&lt;/p&gt; &lt;p&gt;Severities: &lt;i&gt;error&lt;/i&gt; misleads a robot, &lt;i&gt;warning&lt;/i&gt; is probably not meant, &lt;i&gt;info&lt;/i&gt; is worth knowing. The map itself is not changed.&lt;/p&gt;</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/processing/check_robot_map.py" />
@@ -3447,6 +4251,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/cone_layout.py" />
+            <source>&lt;p&gt;Places a layout of traffic cones, either at a &lt;b&gt;point&lt;/b&gt;, turned to a &lt;b&gt;heading&lt;/b&gt; (degrees clockwise from north), or along a &lt;b&gt;line&lt;/b&gt; such as a road's centreline, from &lt;b&gt;start&lt;/b&gt; metres after its beginning. The layer has an id, the order of placing, the heading of travel, the colour and the role of each cone.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Dimensions&lt;/b&gt; change the standard's: &lt;code&gt;vehicle_width=1.7; lane_offset=3&lt;/code&gt;. The log lists those of the layout with their values. A wrong name or value is refused with what there is.&lt;/p&gt; &lt;p&gt;Every cone is &lt;b&gt;checked&lt;/b&gt;: on one of the surfaces (of the allowed classes), away from obstacles and from other cones. What is wrong becomes a layer of findings with the cone's id and the reason; the cones are placed nevertheless.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:conelayout -- LAYOUT=iso3888_1 POINT="640432,5193486.2 [EPSG:32633]" \ HEADING=90 DIMENSIONS="vehicle_width=1.7; exit_length=15" SITE_CRS=EPSG:32633 CONES=cones.gpkg&lt;/pre&gt;</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
             <source>Against the direction of the line</source>
             <translation>En sentido contrario a la línea</translation>
         </message>
@@ -3544,6 +4353,11 @@
             <location filename="../../plugin/processing/cone_layout.py" />
             <source>{how} given: give the place of the layout, or a line that it lies along.</source>
             <translation>{how}: dé el lugar de la disposición, o una línea por la que se extienda.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_help.py" />
+            <source>&lt;p&gt;Writes the obstacles in a window of the site as a map that robots read: oriented segments with free space to their right, grouped by kind. Robots get metres in the &lt;b&gt;site frame&lt;/b&gt;: a projected CRS, an origin in it and a rotation.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Obstacle layers&lt;/b&gt;: lines and polygons, several at once, in any CRS. Curves become chords (2 cm). What the window cuts becomes open chains; no wall is invented on the border.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Window&lt;/b&gt;: a centre with width and height in metres, or an extent. Positions may name their CRS, as in &lt;i&gt;12.5,48.1 [EPSG:4326]&lt;/i&gt;; without one they are in the site CRS.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Site CRS&lt;/b&gt;: in metres, such as the local UTM zone. EPSG:3857 is refused, because its metres are not metres. Default: the project's CRS; without a project the layers' own. A local engineering CRS is used as it is.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Height, foot, label, outdoors&lt;/b&gt;: QGIS expressions; the foot is where a feature begins above the ground, and its height counts from there. What a layer keeps (menu Fleet Supervisor, Layer roles) wins over these. There its role makes flights of risers of a layer (stairs) or surfaces without height (ramp), its filter says which features count, and points of furniture get a shape. Default: the field &lt;i&gt;height&lt;/i&gt; or &lt;i&gt;height_m&lt;/i&gt;, on the ground, the layer's name, true. Where no height is known, the default height is used, said in a warning and marked &lt;i&gt;h=est&lt;/i&gt; in the map.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Map profile&lt;/b&gt;: a file that says by layer name what layers are: &lt;i&gt;openstreetmap&lt;/i&gt;, &lt;i&gt;upc_campus_nord&lt;/i&gt; or the path of one's own. It wins over what the layers keep.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Smaller maps&lt;/b&gt; (advanced, each off unless asked for): only what the robot's plane meets, without walls between or inside buildings, lines joined, fewer corners, no short segments, heights in steps. The log says how many obstacles and segments there were before and after. Walls between buildings, corners and short segments need the Python package shapely 2.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Format&lt;/b&gt;: text; binary (the text compressed, with a check sum), which needs the Python package zstandard; compact (about a third of binary, whole centimetres), which needs cbor2 instead. The file &lt;i&gt;docs/robot-map.md&lt;/i&gt; of the project describes them, and exports from a script.&lt;/p&gt; &lt;p&gt;Broken geometry is repaired where that is safe and left out where it is not. Each time a warning names the layer and the feature; the export goes on.&lt;/p&gt;</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
@@ -3644,6 +4458,11 @@
             <location filename="../../plugin/processing/export_navigation_map.py" />
             <source>above 0, such as 0.05</source>
             <translation>superior a 0, como 0.05</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>empty</source>
+            <translation>vacío</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
@@ -3797,6 +4616,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/export_robot_map_tiles.py" />
+            <source>&lt;p&gt;Writes one robot map for each tile, as &lt;i&gt;Export robot map&lt;/i&gt; does for one window, and an index: a polygon for each tile with its file, border, counts and bytes. The layers are read once.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Grid&lt;/b&gt;: tiles of one size from the left-lower corner of the extent; the last ones reach beyond it. &lt;b&gt;Route&lt;/b&gt;: tiles centred on the lines of a layer, so close that two that follow each other share the overlap. Sizes are in metres along the site's axes.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Advanced&lt;/b&gt;: obstacles are reduced as in &lt;i&gt;Export robot map&lt;/i&gt;, before the tiles are cut. The log says how many obstacles and segments the whole area had before and after.&lt;/p&gt; &lt;p&gt;An obstacle has the same id in every tile that it reaches into. Either every tile and the index are there at the end, or, after a cancel or an error, none of them.&lt;/p&gt;</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map_tiles.py" />
             <source>Export robot map tiles</source>
             <translation>Exportar teselas del mapa de robots</translation>
         </message>
@@ -3874,6 +4698,11 @@
             <location filename="../../plugin/processing/export_robot_map_tiles.py" />
             <source>{rows} tiles, {segments} segments, {size} bytes</source>
             <translation>{rows} teselas, {segments} segmentos, {size} bytes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>&lt;p&gt;Finds the way between two places near roads: each is taken to the nearest point of a road that may be used. Closed roads are not used, one-way roads in their direction only; &lt;b&gt;surfaces&lt;/b&gt; (names with commas between) and a &lt;b&gt;least width&lt;/b&gt; restrict the way further.&lt;/p&gt; &lt;p&gt;Edges that lead through a polygon of the &lt;b&gt;areas that must not be driven through&lt;/b&gt; are closed; what runs along a rim is not.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Route&lt;/b&gt; has a line for each stretch of road, in order. &lt;b&gt;Path&lt;/b&gt; is what a robot drives: points at most so far apart, corners rounded to the turning radius as far as robot and road are wide. Corners that stay tighter are counted and named in the log.&lt;/p&gt; &lt;p&gt;The &lt;b&gt;engine&lt;/b&gt; is RoutingKit or SciPy where Python has them, else QGIS's own; the log and &lt;i&gt;ENGINE_USED&lt;/i&gt; say which was used. All find the same ways.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:route -- ROADS=roads.gpkg START="640430,5193530 [EPSG:32633]" \ GOAL="640600,5193570 [EPSG:32633]" SURFACES=asphalt ROUTE=route.gpkg PATH=path.gpkg&lt;/pre&gt;</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/processing/find_route.py" />
@@ -3984,6 +4813,31 @@
             <location filename="../../plugin/processing/fleet_algorithm.py" />
             <source>Robot maps</source>
             <translation>Mapas de robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/geopackage_by_qgis.py" />
+            <source>The layer {name} of the GeoPackage cannot be written: {error}.</source>
+            <translation>La capa {name} del GeoPackage no se puede escribir: {error}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/histogram_svg.py" />
+            <source>deviation in cm</source>
+            <translation>desviación en cm</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/histogram_svg.py" />
+            <source>last bar: up to {metres:.2f} m</source>
+            <translation>última barra: hasta {metres:.2f} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/histogram_svg.py" />
+            <source>tolerance {cm:.4g} cm</source>
+            <translation>tolerancia {cm:.4g} cm</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>&lt;p&gt;Reads cones from a &lt;b&gt;CSV file&lt;/b&gt; with a head line, in UTF-8, or from a &lt;b&gt;layer&lt;/b&gt;. The columns are named by parameters; only those of x and y are needed, and not even those for a layer of points with a CRS, which is taken as it lies. A file or layer with several layouts gives one of them, by &lt;b&gt;LAYOUT_FIELD&lt;/b&gt; and &lt;b&gt;LAYOUT&lt;/b&gt;.&lt;/p&gt; &lt;p&gt;Metres of a table are turned by &lt;b&gt;rotation&lt;/b&gt; (degrees, counter-clockwise) and then moved to the &lt;b&gt;origin&lt;/b&gt;. A row that cannot be read is named with its column, and nothing is placed.&lt;/p&gt; &lt;p&gt;Every cone is &lt;b&gt;checked&lt;/b&gt; as those of &lt;i&gt;Cone layout&lt;/i&gt; are.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:importconelayout -- FILE=cone_layouts.csv COLOUR_FIELD=colour \ LAYOUT_FIELD=track LAYOUT=eufs_skidpad ORIGIN="640520,5193530 [EPSG:32633]" ROTATION=90 \ SITE_CRS=EPSG:32633 CONES=cones.gpkg&lt;/pre&gt;</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/processing/import_cone_layout.py" />
@@ -4219,6 +5073,11 @@
             <location filename="../../plugin/processing/keepout_areas.py" />
             <source>Areas that must not be driven through</source>
             <translation>Zonas que no se deben atravesar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/load_robot_map.py" />
+            <source>&lt;p&gt;Reads a robot map, text or binary, and makes layers of it.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Obstacles that are areas&lt;/b&gt;: outlines that close, courtyards as holes. &lt;b&gt;Obstacles that are lines&lt;/b&gt;: walls, stairs, and what the border of the map cuts. &lt;b&gt;Segments&lt;/b&gt;: each from a to b, with free space on its right; the style shows that side by ticks and the height by colour. Fields: id, shape, labels, height, indoors or outdoors, extras (&lt;i&gt;ext&lt;/i&gt;, as JSON).&lt;/p&gt; &lt;p&gt;&lt;b&gt;Place&lt;/b&gt;: a map may name its CRS, origin and rotation in its leading lines; parameters win over them. Where neither does, the layers are in local metres, said in a warning.&lt;/p&gt;</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/processing/load_robot_map.py" />
@@ -4546,6 +5405,11 @@
             <translation>{name}: no tiene velocidad superior a 0 m/s, así que no limita; se omite</translation>
         </message>
         <message>
+            <location filename="../../plugin/processing/navigation_help.py" />
+            <source>&lt;p&gt;Writes a robot map as other robots and people read it.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Robot map&lt;/b&gt;: a file of &lt;i&gt;fleet:exportrobotmap&lt;/i&gt; or of the gateway, text or binary.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Formats&lt;/b&gt;, several at once:&lt;/p&gt; &lt;ul&gt; &lt;li&gt;&lt;i&gt;occupancy&lt;/i&gt;: occupancy grid for Nav2 (PGM and YAML). What a wall touches is occupied, so thin walls have no gap; courtyards are free; the inside of obstacles is unknown, or occupied on request. The frame of the grid is the site frame.&lt;/li&gt; &lt;li&gt;&lt;i&gt;keepout&lt;/i&gt;: mask for Nav2's keepout filter, from the keepout layer, with the filter's parameters.&lt;/li&gt; &lt;li&gt;&lt;i&gt;speed&lt;/i&gt;: mask for Nav2's speed filter, from the speed layer and its expression in m/s. A limit is never rounded up; where areas overlap the lower one holds.&lt;/li&gt; &lt;li&gt;&lt;i&gt;geojson&lt;/i&gt;: obstacles and segments in WGS 84 (RFC 7946).&lt;/li&gt; &lt;li&gt;&lt;i&gt;geopackage&lt;/i&gt;: the same in the site's CRS.&lt;/li&gt; &lt;li&gt;&lt;i&gt;svg&lt;/i&gt;, &lt;i&gt;png&lt;/i&gt;: a picture for people.&lt;/li&gt; &lt;/ul&gt; &lt;p&gt;&lt;b&gt;Keepout and speed layers&lt;/b&gt; are polygons in any CRS. Where the map's place is not known, layers are taken to be in its own metres, and a warning says so; &lt;i&gt;SITE_CRS&lt;/i&gt;, &lt;i&gt;ORIGIN&lt;/i&gt; and &lt;i&gt;ROTATION&lt;/i&gt; give it one.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Robots drive over&lt;/b&gt; obstacles that are lower: 0 keeps every kerb. Ramps are always driven on, stairs are obstacles, also from the side.&lt;/p&gt; &lt;p&gt;Existing files are replaced, each in one step, after all of them could be made. docs/navigation-maps.md says what is in each.&lt;/p&gt; &lt;p&gt;From a script, with no display:&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:exportnavigationmap -- \ MAP=campus.txt FORMATS=occupancy FORMATS=svg RESOLUTION=0.05 OUTPUT=campus&lt;/pre&gt;</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
             <location filename="../../plugin/processing/obstacle_outlines.py" />
             <source>Reducing obstacles</source>
             <translation>Reduciendo obstáculos</translation>
@@ -4554,6 +5418,16 @@
             <location filename="../../plugin/processing/obstacle_outlines.py" />
             <source>{obstacles} obstacles with {segments} segments became {obstacles_left} with {segments_left}</source>
             <translation>{obstacles} obstáculos con {segments} segmentos se convirtieron en {obstacles_left} con {segments_left}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/placed_cones.py" />
+            <source>The placed cones have no field {missing}: give a layer of a GeoPackage, or the CSV, that 'robot-bridge placements export' wrote.</source>
+            <translation>Los conos colocados no tienen el campo {missing}: dé una capa de un GeoPackage, o el CSV, que haya escrito 'robot-bridge placements export'.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/placed_cones.py" />
+            <source>There are no placed cones to report on. Check the filter of the layer, and the options of 'robot-bridge placements export'.</source>
+            <translation>No hay conos colocados de los que informar. Compruebe el filtro de la capa y las opciones de 'robot-bridge placements export'.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/plan_rows.py" />
@@ -4579,6 +5453,26 @@
             <location filename="../../plugin/processing/plan_rows.py" />
             <source>Trips</source>
             <translation>Viajes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/position_source.py" />
+            <source>The positions have no field {name} for the {what}: they have {names}. Give the layer 'positions' of 'robot-bridge trajectories export', or say which field it is.</source>
+            <translation>Las posiciones no tienen el campo {name} para: {what}; tienen {names}. Dé la capa 'positions' de 'robot-bridge trajectories export', o diga qué campo es.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/position_source.py" />
+            <source>robot</source>
+            <translation>robot</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/position_source.py" />
+            <source>time</source>
+            <translation>tiempo</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_help.py" />
+            <source>&lt;p&gt;Writes the layers of a site into a folder with &lt;i&gt;site.toml&lt;/i&gt; and &lt;i&gt;site.gpkg&lt;/i&gt;, which &lt;i&gt;robot-bridge serve --site FOLDER&lt;/i&gt; serves.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Layers&lt;/b&gt;: those of the project by their roles (menu Fleet Supervisor, Layer roles), or by a &lt;b&gt;map profile&lt;/b&gt;, or the layers given here. Which features count, heights, where things begin above the ground, labels, road widths and shapes of furniture come from the expressions kept with the roles; heights, labels and widths else from the fields &lt;i&gt;height&lt;/i&gt; or &lt;i&gt;height_m&lt;/i&gt;, &lt;i&gt;surface&lt;/i&gt;, &lt;i&gt;name&lt;/i&gt;, &lt;i&gt;width_m&lt;/i&gt; or &lt;i&gt;width&lt;/i&gt;.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Version&lt;/b&gt;: 1 for a new folder, else one more than the version there. A folder that holds another site is refused unless &lt;b&gt;Replace&lt;/b&gt; is ticked.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Bounds&lt;/b&gt;: the rectangle, along the axes of the site frame, that robots may be sent into. Obstacles are published up to 100 m beyond it, so that a robot at its edge is told what stands there.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Site CRS, origin, rotation&lt;/b&gt;: where the robots' (0, 0) is and how their x axis lies. Default: as the project has it.&lt;/p&gt; &lt;p&gt;An earlier publication is replaced only after the new one is complete; a cancel leaves it as it was. Broken geometry is repaired where that is safe and left out where it is not, each time with a warning that names the layer and the feature. One publication into a folder runs at a time.&lt;/p&gt;</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/processing/publish_plan.py" />
@@ -4756,6 +5650,76 @@
             <translation>{title} (por defecto: como se publicó, al principio {default:g})</translation>
         </message>
         <message>
+            <location filename="../../plugin/processing/report_layout.py" />
+            <source>Mean {mean}, RMS {rms}, 95 % within {p95}, largest {most}.</source>
+            <translation>Media {mean}, RMS {rms}, 95 % dentro de {p95}, máxima {most}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/report_layout.py" />
+            <source>QGIS cannot make the report (layout export {number}): check the free space, and the background layers by leaving them out.</source>
+            <translation>QGIS no puede hacer el informe (exportación de la composición: {number}): compruebe el espacio libre, y las capas de fondo quitándolas.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/report_layout.py" />
+            <source>The report cannot be written to {file}: there is no folder {folder}.</source>
+            <translation>El informe no se puede escribir en {file}: no existe la carpeta {folder}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/report_layout.py" />
+            <source>The report cannot be written to {file}: {error}. Close it if a program shows it, or choose another file.</source>
+            <translation>El informe no se puede escribir en {file}: {error}. Ciérrelo si un programa lo muestra, o elija otro archivo.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/report_layout.py" />
+            <source>robots: {names}</source>
+            <translation>robots: {names}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/report_layout.py" />
+            <source>{first} to {last} UTC</source>
+            <translation>de {first} a {last} UTC</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/report_layout.py" />
+            <source>{within} of {count} cones ({share:.0f} %) stand within {tolerance:g} cm of their plan.</source>
+            <translation>{within} de {count} conos ({share:.0f} %) están a menos de {tolerance:g} cm del plan.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/report_layout.py" />
+            <source>× planned   ● placed (red: beyond the tolerance)   orange: deviation, {factor} times as long</source>
+            <translation>× planificado   ● colocado (rojo: fuera de la tolerancia)   naranja: desviación, {factor} veces más larga</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/report_table.py" />
+            <source>Off cm</source>
+            <translation>Desv. cm</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/report_table.py" />
+            <source>Placed (UTC)</source>
+            <translation>Colocado (UTC)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/report_table.py" />
+            <source>Planned E</source>
+            <translation>Planificado E</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/report_table.py" />
+            <source>Planned N</source>
+            <translation>Planificado N</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/report_table.py" />
+            <source>ΔE cm</source>
+            <translation>ΔE cm</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/report_table.py" />
+            <source>ΔN cm</source>
+            <translation>ΔN cm</translation>
+        </message>
+        <message>
             <location filename="../../plugin/processing/road_source.py" />
             <source>CRS in metres (default: the layer's, or the project's)</source>
             <translation>SRC en metros (por defecto: el de la capa o el del proyecto)</translation>
@@ -4839,6 +5803,16 @@
             <location filename="../../plugin/processing/sinks.py" />
             <source>A layer cannot be written ({reason}): choose another place or format for it, and check the free space.</source>
             <translation>No se puede escribir una capa ({reason}): elija otro lugar o formato, y compruebe el espacio libre.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/sinks.py" />
+            <source>no reason is given</source>
+            <translation>no se da ningún motivo</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/surface_at_point.py" />
+            <source>&lt;p&gt;Copies points and adds &lt;b&gt;surface&lt;/b&gt;, the class of the road surface that each is on, its &lt;b&gt;surface_name&lt;/b&gt;, and &lt;b&gt;surface_origin&lt;/b&gt;: whether the surface was drawn or generated from centrelines. They are empty where there is no surface.&lt;/p&gt; &lt;p&gt;The surfaces are layers of areas with a field &lt;i&gt;surface&lt;/i&gt;, or the class that their role says; without any, the project's layers with the role road surface. Points and layers may be in any CRS.&lt;/p&gt; &lt;p&gt;A point on an edge is on the surface. Where surfaces lie on one another a drawn one counts before a generated one, then the smaller before the larger. The expression &lt;i&gt;road_surface(x, y)&lt;/i&gt; tells the same. docs/roads.md says more.&lt;/p&gt;</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/processing/surface_at_point.py" />
@@ -4954,6 +5928,71 @@
             <location filename="../../plugin/processing/tile_windows.py" />
             <source>The {name} of a tile is {value} m: give at least 1 m, such as 100.</source>
             <translation>El tamaño ({name}) de una tesela es {value} m: dé al menos 1 m, como 100.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/trajectories.py" />
+            <source>&lt;p&gt;Makes of the positions that a gateway stored one line for each drive of each robot: a robot that was not heard of for longer than the gap begins a new line. Or, with &lt;b&gt;a line for each step&lt;/b&gt;, one for each pair of positions, for colours by speed and for QGIS's temporal controller.&lt;/p&gt; &lt;p&gt;The positions are the layer &lt;i&gt;positions&lt;/i&gt; of &lt;i&gt;robot-bridge trajectories export drives.gpkg --site site&lt;/i&gt;, or any points, in any CRS, with a field for the robot and one for the time (date and time, seconds since 1970, or ISO 8601; without an offset UTC).&lt;/p&gt; &lt;p&gt;Fields: &lt;b&gt;begin&lt;/b&gt; and &lt;b&gt;end&lt;/b&gt; (UTC), &lt;b&gt;duration_s&lt;/b&gt;, &lt;b&gt;length_m&lt;/b&gt;, &lt;b&gt;mean_speed&lt;/b&gt; and &lt;b&gt;top_speed&lt;/b&gt; in m/s (as the robot told it, else its fastest step), &lt;b&gt;count&lt;/b&gt; of positions. The measure M of each vertex is its time in seconds since 1970. Lengths are measured in the layer's CRS if that is in true metres, as robots drive them, else on its ellipsoid.&lt;/p&gt; &lt;p&gt;The layer's times are set: open QGIS's temporal controller to play them.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:trajectories -- INPUT="drives.gpkg|layername=positions" OUTPUT=lines.gpkg&lt;/pre&gt;</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/trajectories.py" />
+            <source>A line for each step</source>
+            <translation>Una línea para cada paso</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/trajectories.py" />
+            <source>Field of the robot</source>
+            <translation>Campo del robot</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/trajectories.py" />
+            <source>Field of the speed [m/s]</source>
+            <translation>Campo de la velocidad [m/s]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/trajectories.py" />
+            <source>Field of the time</source>
+            <translation>Campo del tiempo</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/trajectories.py" />
+            <source>Lines</source>
+            <translation>Líneas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/trajectories.py" />
+            <source>Longest gap in a line [s]</source>
+            <translation>Hueco más largo en una línea [s]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/trajectories.py" />
+            <source>Makes lines of stored positions, with their time, length and speed.</source>
+            <translation>Hace líneas de las posiciones guardadas, con su tiempo, longitud y velocidad.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/trajectories.py" />
+            <source>Metres driven, all robots</source>
+            <translation>Metros recorridos, todos los robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/trajectories.py" />
+            <source>Positions</source>
+            <translation>Posiciones</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/trajectories.py" />
+            <source>Trajectories</source>
+            <translation>Trayectorias</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/trajectories.py" />
+            <source>{lines} lines of {positions} positions, {length:.1f} m in all.</source>
+            <translation>{lines} líneas de {positions} posiciones, {length:.1f} m en total.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/trajectories.py" />
+            <source>{odd} features have no place, robot or time; they are left out.</source>
+            <translation>{odd} objetos espaciales no tienen lugar, robot o tiempo; quedan fuera.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/whole_file.py" />
@@ -5171,6 +6210,316 @@
             <translation>superficie de vía</translation>
         </message>
         <message>
+            <location filename="../../plugin/settings/connection_dialog.py" />
+            <source>&amp;Authentication</source>
+            <translation>&amp;Autenticación</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connection_dialog.py" />
+            <source>&amp;Name</source>
+            <translation>&amp;Nombre</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connection_dialog.py" />
+            <source>Connecting …</source>
+            <translation>Conectando …</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connection_dialog.py" />
+            <source>Edit connection</source>
+            <translation>Editar conexión</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connection_dialog.py" />
+            <source>New connection</source>
+            <translation>Conexión nueva</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connection_dialog.py" />
+            <source>T&amp;est</source>
+            <translation>&amp;Probar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connection_dialog.py" />
+            <source>There is a connection {name} already. Give this one another name.</source>
+            <translation>Ya hay una conexión {name}. Dé otro nombre a esta.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connection_dialog.py" />
+            <source>connection test</source>
+            <translation>prueba de conexión</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connection_dialog.py" />
+            <source>kept by QGIS, encrypted; or choose one below</source>
+            <translation>lo guarda QGIS, cifrado; o elija uno abajo</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connection_dialog.py" />
+            <source>such as the site's name</source>
+            <translation>como el nombre del recinto</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connection_dialog.py" />
+            <source>who you are, in every log</source>
+            <translation>quién es usted, en cada registro</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connection_trial.py" />
+            <source>{site} ({crs}) answers, as {who}.</source>
+            <translation>{site} ({crs}) responde, como {who}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connection_trial.py" />
+            <source>{site} ({crs}) answers.</source>
+            <translation>{site} ({crs}) responde.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connections_dialog.py" />
+            <source>Connections to gateways</source>
+            <translation>Conexiones a pasarelas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connections_widget.py" />
+            <source>&amp;Edit…</source>
+            <translation>&amp;Editar…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connections_widget.py" />
+            <source>&amp;Import…</source>
+            <translation>&amp;Importar…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connections_widget.py" />
+            <source>&amp;New…</source>
+            <translation>&amp;Nueva…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connections_widget.py" />
+            <source>&amp;Remove</source>
+            <translation>&amp;Quitar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connections_widget.py" />
+            <source>&amp;Test</source>
+            <translation>&amp;Probar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connections_widget.py" />
+            <source>Connecting to {name} …</source>
+            <translation>Conectando a {name} …</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connections_widget.py" />
+            <source>Connections (*.json)</source>
+            <translation>Conexiones (*.json)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connections_widget.py" />
+            <source>E&amp;xport…</source>
+            <translation>E&amp;xportar…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connections_widget.py" />
+            <source>Export connections</source>
+            <translation>Exportar conexiones</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connections_widget.py" />
+            <source>Gateway</source>
+            <translation>Pasarela</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connections_widget.py" />
+            <source>Import connections</source>
+            <translation>Importar conexiones</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connections_widget.py" />
+            <source>Name</source>
+            <translation>Nombre</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connections_widget.py" />
+            <source>Operator</source>
+            <translation>Operador</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connections_widget.py" />
+            <source>Removed: {names}. Tokens stay in QGIS's authentication.</source>
+            <translation>Quitado: {names}. Los testigos se quedan en la autenticación de QGIS.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connections_widget.py" />
+            <source>{chosen} connections in {file}, without tokens.</source>
+            <translation>{chosen} conexiones en {file}, sin testigos.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connections_widget.py" />
+            <source>{file} cannot be read: {error}</source>
+            <translation>{file} no se puede leer: {error}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connections_widget.py" />
+            <source>{file} cannot be written: {error}</source>
+            <translation>{file} no se puede escribir: {error}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connections_widget.py" />
+            <source>{found} connections from {file}, {replaced} of them replaced.</source>
+            <translation>{found} conexiones de {file}, {replaced} de ellas sustituidas.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/gateway_connection.py" />
+            <source>Choose a file that Export wrote.</source>
+            <translation>Elija un archivo que haya escrito Exportar.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/gateway_connection.py" />
+            <source>The connection has no name. Give it one, such as the site's.</source>
+            <translation>La conexión no tiene nombre. Dele uno, como el del recinto.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/gateway_connection.py" />
+            <source>{source} has no list named connections. {choose}</source>
+            <translation>{source} no tiene ninguna lista llamada connections. {choose}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/gateway_connection.py" />
+            <source>{source} holds no connections to gateways. {choose}</source>
+            <translation>{source} no contiene conexiones a pasarelas. {choose}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/gateway_connection.py" />
+            <source>{source} is not JSON: {error}. {choose}</source>
+            <translation>{source} no es JSON: {error}. {choose}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/gateway_connection.py" />
+            <source>{source} is of version {found}; this plugin reads version {version}. Update the plugin.</source>
+            <translation>{source} es de la versión {found}; este complemento lee la versión {version}. Actualice el complemento.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/gateway_connection.py" />
+            <source>{source}: connection {number} is not a set of texts named {keys}. {choose}</source>
+            <translation>{source}: la conexión {number} no es un conjunto de textos llamados {keys}. {choose}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/gateway_connection.py" />
+            <source>{source}: connection {number}: {error}</source>
+            <translation>{source}: conexión {number}: {error}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/token_store.py" />
+            <source>QGIS did not give the token that it keeps: its master password was not given. Press Connect and enter it, or enter the token under Access.</source>
+            <translation>QGIS no dio el testigo que guarda: no se dio su contraseña maestra. Pulse Conectar e introdúzcala, o introduzca el testigo en Acceso.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/token_store.py" />
+            <source>QGIS did not keep the token: its master password was not given. The token is used now and has to be entered again next time.</source>
+            <translation>QGIS no guardó el testigo: no se dio su contraseña maestra. El testigo se usa ahora y habrá que introducirlo otra vez la próxima vez.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/token_store.py" />
+            <source>The authentication {config} is of the method {method}, which gateways do not know. Choose one of the method {wanted} with the token as its password.</source>
+            <translation>La autenticación {config} es del método {method}, que las pasarelas no conocen. Elija una del método {wanted} con el testigo como contraseña.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/token_store.py" />
+            <source>The authentication {config} that the connection names is not in this QGIS. Edit the connection and choose another, or enter the token.</source>
+            <translation>La autenticación {config} que nombra la conexión no está en este QGIS. Edite la conexión y elija otra, o introduzca el testigo.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/token_store.py" />
+            <source>This QGIS keeps no authentication (its options say why, under Authentication): enter the token under Access.</source>
+            <translation>Este QGIS no guarda autenticación (sus opciones dicen por qué, en Autenticación): introduzca el testigo en Acceso.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/feature_filter.py" />
+            <source>it is left out</source>
+            <translation>queda fuera</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/feature_filter.py" />
+            <source>its filter gives {value!r}, which is neither true nor false; it is left out</source>
+            <translation>su filtro da {value!r}, que no es ni verdadero ni falso; queda fuera</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/feature_values.py" />
+            <source>its base {value!r} is not a number of metres; it is taken to stand on the ground</source>
+            <translation>su base {value!r} no es un número de metros; se toma como si estuviera en el suelo</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/feature_values.py" />
+            <source>its outdoor flag {value!r} is neither true nor false; true is used</source>
+            <translation>su indicador de exterior {value!r} no es ni verdadero ni falso; se usa verdadero</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/feature_values.py" />
+            <source>its {what} {value!r} is not a number of metres of 0 or more; {otherwise}</source>
+            <translation>su {what} {value!r} no es un número de metros de 0 o más; {otherwise}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/feature_values.py" />
+            <source>the default is used</source>
+            <translation>se usa el valor por defecto</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/feature_values.py" />
+            <source>the estimate is used</source>
+            <translation>se usa la estimación</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/ground_reading.py" />
+            <source>Layer {layer}, feature {id}: {note}</source>
+            <translation>Capa {layer}, objeto espacial {id}: {note}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/ground_reading.py" />
+            <source>Layer {layer}: the width of {count} of its roads is not known and taken as {width:g} m (feature {first} is the first)</source>
+            <translation>Capa {layer}: la anchura de {count} de sus vías no se conoce y se toma como {width:g} m (el objeto espacial {first} es el primero)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/ground_reading.py" />
+            <source>has a coordinate that is no number; it is left out</source>
+            <translation>tiene una coordenada que no es un número; queda fuera</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/ground_reading.py" />
+            <source>has a line, which is no area; it is left out</source>
+            <translation>tiene una línea, que no es un área; queda fuera</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/ground_reading.py" />
+            <source>has a polygon, which is no centreline; it is left out</source>
+            <translation>tiene un polígono, que no es un eje de vía; queda fuera</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/layer_rules.py" />
+            <source>Layer {layer}: it has no field {missing}, which the {what} expression {text!r} reads; the default is used for all its features</source>
+            <translation>Capa {layer}: no tiene el campo {missing}, que lee la expresión de {what} {text!r}; se usa el valor por defecto para todos sus objetos espaciales</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/layer_rules.py" />
+            <source>The {what} expression {text!r} for the layer {layer} is not one: {error}. Correct it.</source>
+            <translation>La expresión de {what} {text!r} para la capa {layer} no lo es: {error}. Corríjala.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/layer_rules.py" />
+            <source>The {what} expression {text!r} for the layer {layer} reads the field {missing}, which the layer does not have. Correct it, or write attribute('...') for a field that some layers lack.</source>
+            <translation>La expresión de {what} {text!r} para la capa {layer} lee el campo {missing}, que la capa no tiene. Corríjala, o escriba attribute('...') para un campo que falta en algunas capas.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/layer_rules.py" />
+            <source>its {what} {value!r} is not a number of metres above 0; the default is used</source>
+            <translation>su {what} {value!r} no es un número de metros mayor que 0; se usa el valor por defecto</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/layer_rules.py" />
+            <source>the {what} expression fails: {error}; {otherwise}</source>
+            <translation>la expresión de {what} falla: {error}; {otherwise}</translation>
+        </message>
+        <message>
             <location filename="../../plugin/sites/obstacle_source.py" />
             <source>The layer {name} cannot be opened ({source}): repair its data source or leave it out.</source>
             <translation>La capa {name} no se puede abrir ({source}): repare su origen de datos u omítala.</translation>
@@ -5191,6 +6540,11 @@
             <translation>puntos</translation>
         </message>
         <message>
+            <location filename="../../plugin/sites/parts.py" />
+            <source>has a {kind}, which is no area or line; it is left out</source>
+            <translation>tiene un {kind}, que no es ni área ni línea; queda fuera</translation>
+        </message>
+        <message>
             <location filename="../../plugin/sites/placing.py" />
             <source>The layer {name} has no CRS, so its place on the site is not known: set the layer's CRS (Layer &gt; Set CRS of Layer), or {tick}.</source>
             <translation>La capa {name} no tiene SRC, así que su lugar en el recinto no se conoce: defina el SRC de la capa (Capa &gt; Establecer SRC de la capa), o {tick}.</translation>
@@ -5204,6 +6558,21 @@
             <location filename="../../plugin/sites/placing.py" />
             <source>tick 'Layers without a CRS are already in the site frame's metres' (LOCAL=true)</source>
             <translation>marque «Las capas sin SRC ya están en metros del marco del recinto» (LOCAL=true)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/posts.py" />
+            <source>its rotation {value!r} is not a number of degrees; it is not turned</source>
+            <translation>su rotación {value!r} no es un número de grados; no se gira</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/posts.py" />
+            <source>its width {width:g} m is none of furniture; {used:g} is used</source>
+            <translation>su anchura de {width:g} m no es de mobiliario; se usa {used:g}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/posts.py" />
+            <source>{error}; its width is used</source>
+            <translation>{error}; se usa su anchura</translation>
         </message>
         <message>
             <location filename="../../plugin/sites/profile_file.py" />
@@ -5311,6 +6680,99 @@
             <translation>el proceso {process} en {host}</translation>
         </message>
         <message>
+            <location filename="../../plugin/sites/published_layers.py" />
+            <source>Publish the site again.</source>
+            <translation>Vuelva a publicar el recinto.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/published_layers.py" />
+            <source>{file} has no layer {layers} that can be read. {again}</source>
+            <translation>{file} no tiene ninguna capa {layers} que se pueda leer. {again}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/published_layers.py" />
+            <source>{file} names no site: it has no table [site] with a name. {again}</source>
+            <translation>{file} no nombra ningún recinto: no tiene la tabla [site] con un nombre. {again}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/published_layers.py" />
+            <source>{folder} has a {settings} and no {geopackage}. {again}</source>
+            <translation>{folder} tiene {settings} y no {geopackage}. {again}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/ramps.py" />
+            <source>its corners span no surface that one can drive on; its normal is left out</source>
+            <translation>sus esquinas no forman ninguna superficie por la que se pueda circular; su normal queda fuera</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/sites/reading.py" />
+            <source>Layer {name}: %n heights are not known and estimated as {height:g} m ({features})</source>
+            <translation>
+                <numerusform>Capa {name}: %n altura no se conoce y se estima en {height:g} m ({features})</numerusform>
+                <numerusform>Capa {name}: %n alturas no se conocen y se estiman en {height:g} m ({features})</numerusform>
+            </translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/reading.py" />
+            <source>Layer {name}: its role is {role}, yet it is exported as obstacles</source>
+            <translation>Capa {name}: su papel es {role}, pero se exporta como obstáculos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/reading.py" />
+            <source>Layer {name}: its role {role} wants {wanted}; other features are exported as plain obstacles ({features})</source>
+            <translation>Capa {name}: su papel {role} quiere {wanted}; los demás objetos espaciales se exportan como simples obstáculos ({features})</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/reading.py" />
+            <source>feature {shown}</source>
+            <translation>objeto espacial {shown}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/reading.py" />
+            <source>features {shown}</source>
+            <translation>objetos espaciales {shown}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/reading.py" />
+            <source>features {shown} and {more} more</source>
+            <translation>objetos espaciales {shown} y {more} más</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/reading.py" />
+            <source>lines, one a riser</source>
+            <translation>líneas, una por escalón</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/reading.py" />
+            <source>polygons</source>
+            <translation>polígonos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/road_attributes.py" />
+            <source>its direction {value!r} is none of yes, -1 and no; it is taken as driven both ways</source>
+            <translation>su sentido {value!r} no es yes, -1 ni no; se toma como de doble sentido</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/road_attributes.py" />
+            <source>its level {value!r} is no number; it is taken to be on the ground</source>
+            <translation>su nivel {value!r} no es un número; se toma como si estuviera en el suelo</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/road_attributes.py" />
+            <source>its speed {value!r} is no number above 0; the default is used</source>
+            <translation>su velocidad {value!r} no es un número mayor que 0; se usa el valor por defecto</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/road_attributes.py" />
+            <source>whether it is closed, {value!r}, is neither true nor false; it is taken as closed</source>
+            <translation>si está cerrada, {value!r}, no es ni verdadero ni falso; se toma como cerrada</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/shapes.py" />
+            <source>has a coordinate that is no number or has no place in the site's CRS; it is left out</source>
+            <translation>tiene una coordenada que no es un número o que no tiene lugar en el SRC del recinto; queda fuera</translation>
+        </message>
+        <message>
             <location filename="../../plugin/sites/site_crs.py" />
             <source> (EPSG:326xx north, EPSG:327xx south of the equator)</source>
             <translation> (EPSG:326xx al norte, EPSG:327xx al sur del ecuador)</translation>
@@ -5354,6 +6816,59 @@
             <location filename="../../plugin/sites/site_file.py" />
             <source>{file} cannot be written in {folder}: {error}. Check the folder's rights and the free space.</source>
             <translation>{file} no se puede escribir en {folder}: {error}. Compruebe los permisos de la carpeta y el espacio libre.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/soundness.py" />
+            <source> at ({x:.2f} {y:.2f})</source>
+            <translation> en ({x:.2f} {y:.2f})</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/sites/soundness.py" />
+            <source>%n different points</source>
+            <translation>
+                <numerusform>%n punto distinto</numerusform>
+                <numerusform>%n puntos distintos</numerusform>
+            </translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/soundness.py" />
+            <source>courtyard {k} of part {number}{place} has {points} and encloses nothing; the courtyard is left out</source>
+            <translation>el patio {k} de la parte {number}{place} tiene {points} y no encierra nada; el patio queda fuera</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/soundness.py" />
+            <source>line {number} has fewer than two different points; it is left out</source>
+            <translation>la línea {number} tiene menos de dos puntos distintos; queda fuera</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/soundness.py" />
+            <source>not valid</source>
+            <translation>no es válido</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/soundness.py" />
+            <source>riser {number} is bent; the straight line between its ends is used</source>
+            <translation>el escalón {number} está curvado; se usa la recta entre sus extremos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/soundness.py" />
+            <source>the outer ring of part {number}{place} has {points} and encloses nothing; the part is left out</source>
+            <translation>el anillo exterior de la parte {number}{place} tiene {points} y no encierra nada; la parte queda fuera</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/soundness.py" />
+            <source>the polygon is broken{place}: {what}</source>
+            <translation>el polígono está roto{place}: {what}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/soundness.py" />
+            <source>{fault}; it cannot be repaired and is left out</source>
+            <translation>{fault}; no se puede reparar y queda fuera</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/soundness.py" />
+            <source>{fault}; it was repaired</source>
+            <translation>{fault}; se reparó</translation>
         </message>
         <message>
             <location filename="../../plugin/sites/surface_store.py" />

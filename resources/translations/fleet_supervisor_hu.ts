@@ -20,6 +20,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/access_fields.py" />
+            <source>&amp;Token</source>
+            <translation>&amp;Token</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/access_fields.py" />
             <source>CA &amp;file</source>
             <translation>CA-&amp;fájl</translation>
         </message>
@@ -647,43 +652,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/checks.py" />
-            <source>({points:.2f}, {points2:.2f}) m</source>
-            <translation>({points:.2f}, {points2:.2f}) m</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/checks.py" />
-            <source>({x:.2f}, {y:.2f}) m is</source>
-            <translation>({x:.2f}, {y:.2f}) m</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/checks.py" />
-            <source>The route</source>
-            <translation>Az útvonal</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/checks.py" />
-            <source>{layer} (feature {id})</source>
-            <translation>{layer} ({id}. elem)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/checks.py" />
-            <source>{off} of {points} points are</source>
-            <translation>{points} pontból {off}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/checks.py" />
-            <source>{spot} enters the keepout {name}. Choose a place or way outside it.</source>
-            <translation>{spot} a(z) {name} tiltott területre ér. Válasszon helyet vagy utat rajta kívül.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/checks.py" />
             <source>{where} m is outside the site {name}, which reaches from ({x_min:g}, {y_min:g}) to ({x_max:g}, {y_max:g}) m. Click inside it.</source>
             <translation>{where} m a(z) {name} telephelyen kívül van, amely ettől: ({x_min:g}, {y_min:g}), eddig terjed: ({x_max:g}, {y_max:g}) m. Kattintson belülre.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/checks.py" />
-            <source>{where} not on a road surface.</source>
-            <translation>{where} nincs útfelületen.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/clear_dialog.py" />
@@ -904,6 +874,11 @@
             <location filename="../../plugin/desk/command_log/log_panel.py" />
             <source>{what} of {robot} leads to no place.</source>
             <translation>{what} ({robot}) nem vezet sehová.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/coordinates_dialog.py" />
+            <source>&amp;Coordinates</source>
+            <translation>&amp;Koordináták</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/commands/coordinates_dialog.py" />
@@ -1141,6 +1116,21 @@
         </message>
         <message>
             <location filename="../../plugin/desk/connection_panel.py" />
+            <source>&amp;Access…</source>
+            <translation>&amp;Hozzáférés…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/connection_panel.py" />
+            <source>&amp;Gateway</source>
+            <translation>&amp;Átjáró</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/connection_panel.py" />
+            <source>&amp;Operator</source>
+            <translation>&amp;Kezelő</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/connection_panel.py" />
             <source>Connected</source>
             <translation>Kapcsolódva</translation>
         </message>
@@ -1216,6 +1206,16 @@
         </message>
         <message>
             <location filename="../../plugin/desk/desk.py" />
+            <source>{in_words} was not sent, since only now this is known: {warnings} Ask for it again to send it all the same.</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/desk.py" />
+            <source>{in_words} was not sent: robots were told to stop before it had been checked.</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/desk.py" />
             <source>{in_words} was not sent: {error}</source>
             <translation>{in_words} nem lett elküldve: {error}</translation>
         </message>
@@ -1226,8 +1226,18 @@
         </message>
         <message>
             <location filename="../../plugin/desk/dock.py" />
+            <source>Fleet</source>
+            <translation>Flotta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/dock.py" />
             <source>Queue</source>
             <translation>Várólista</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/draft_panel.py" />
+            <source> It goes out when nothing speaks against it; Esc keeps it back.</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/desk/draft_panel.py" />
@@ -1238,6 +1248,11 @@
             <location filename="../../plugin/desk/draft_panel.py" />
             <source>Select a robot, choose Cone target or Draw route, and click on the map.</source>
             <translation>Jelöljön ki robotot, válassza a Bójacél vagy az Útvonal rajzolása eszközt, és kattintson a térképre.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/draft_panel.py" />
+            <source>{in_words}. Being checked: {share:.0%}.</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/desk/draft_panel.py" />
@@ -1315,9 +1330,19 @@
             <translation>a PROJ alapértelmezett művelete</translation>
         </message>
         <message>
-            <location filename="../../plugin/desk/drafting/obstacle_check.py" />
-            <source>({point:.2f}, {point2:.2f}) m</source>
-            <translation>({point:.2f}, {point2:.2f}) m</translation>
+            <location filename="../../plugin/desk/drafting/keepout_check.py" />
+            <source>The route</source>
+            <translation>Az útvonal</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/keepout_check.py" />
+            <source>{spot} enters the keepout {name}. Choose a place or way outside it.</source>
+            <translation>{spot} a(z) {name} tiltott területre ér. Válasszon helyet vagy utat rajta kívül.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/layer_features.py" />
+            <source>{layer} (feature {id})</source>
+            <translation>{layer} ({id}. elem)</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/drafting/obstacle_check.py" />
@@ -1375,6 +1400,21 @@
             <translation>Az útvonalnak ez a része az utakat követi, és kézzel nem módosítható. Vegye vissza Backspace-szel, vagy rajzolja ezt a részt az Útvonal rajzolása eszközzel.</translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/drafting/surface_check.py" />
+            <source>({x:.2f}, {y:.2f}) m is</source>
+            <translation>({x:.2f}, {y:.2f}) m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/surface_check.py" />
+            <source>{off} of {points} points are</source>
+            <translation>{points} pontból {off}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/surface_check.py" />
+            <source>{where} not on a road surface.</source>
+            <translation>{where} nincs útfelületen.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/drafting/target_check.py" />
             <source>({x:.2f}, {y:.2f}) m is {away:.2f} m from {what} of {robot} at {other_x:.2f}, {other_y:.2f}: keep {clear_m:g} m between targets.</source>
             <translation>({x:.2f}, {y:.2f}) m {away:.2f} m-re van ettől: {what}, {robot}, itt: {other_x:.2f}, {other_y:.2f}; tartson {clear_m:g} m-t a célok között.</translation>
@@ -1398,6 +1438,11 @@
             <location filename="../../plugin/desk/drafting/tasks.py" />
             <source>A start position is no task: Send tells the robot at once.</source>
             <translation>A kiinduló helyzet nem feladat: a Küldés azonnal közli a robottal.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/tracks.py" />
+            <source>({point:.2f}, {point2:.2f}) m</source>
+            <translation>({point:.2f}, {point2:.2f}) m</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/drafts.py" />
@@ -1433,6 +1478,11 @@
             <location filename="../../plugin/desk/drafts.py" />
             <source>a route needs at least two points: click the next one</source>
             <translation>egy útvonalhoz legalább két pont kell: kattintson a következőre</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafts.py" />
+            <source>it has not been checked to its end</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/desk/drafts.py" />
@@ -1570,6 +1620,16 @@
             <translation>{seconds:.0f} s</translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/live/live_view.py" />
+            <source>No robot is selected to be followed. Select one in the table or on the map.</source>
+            <translation>Nincs követendő kijelölt robot. Jelöljön ki egyet a táblázatban vagy a térképen.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/live_view.py" />
+            <source>{robot} has not said yet where it is; the map cannot go there.</source>
+            <translation>{robot} még nem mondta meg, hol van; a térkép nem tud odamenni.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/live/names_painting.py" />
             <source>· offline</source>
             <translation>· offline</translation>
@@ -1588,6 +1648,281 @@
             <location filename="../../plugin/desk/live/robot_features.py" />
             <source>Robots (live)</source>
             <translation>Robotok (élő)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/observation_dock.py" />
+            <source>All are reviewed.</source>
+            <translation>Mind el van bírálva.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/observation_dock.py" />
+            <source>No robot has told of an object or image yet.</source>
+            <translation>Még egy robot sem jelentett tárgyat vagy képet.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/observation_dock.py" />
+            <source>Observation {number} was not reviewed: {why}</source>
+            <translation>A(z) {number}. megfigyelés nem lett elbírálva: {why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/observation_dock.py" />
+            <source>Observation {observation} was NOT reviewed: {error}</source>
+            <translation>A(z) {observation}. megfigyelés NEM lett elbírálva: {error}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/observation_dock.py" />
+            <source>Observations</source>
+            <translation>Megfigyelések</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/observation_dock.py" />
+            <source>Observations ({waiting})</source>
+            <translation>Megfigyelések ({waiting})</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/observation_dock.py" />
+            <source>Show reviewed ones, too</source>
+            <translation>Az elbíráltak is látszanak</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/observation_dock.py" />
+            <source>{waiting} to be reviewed</source>
+            <translation>{waiting} vár elbírálásra</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/observation_feed.py" />
+            <source>What robots saw is not known: {error}</source>
+            <translation>Nem tudni, mit láttak a robotok: {error}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/observation_model.py" />
+            <source>Observation {number} at {x:.2f}, {y:.2f} m; double click goes there</source>
+            <translation>{number}. megfigyelés itt: {x:.2f}, {y:.2f} m; dupla kattintásra odamegy</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/observation_model.py" />
+            <source>accepted</source>
+            <translation>elfogadva</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/observation_model.py" />
+            <source>image</source>
+            <translation>kép</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/observation_model.py" />
+            <source>object</source>
+            <translation>tárgy</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/observation_model.py" />
+            <source>rejected</source>
+            <translation>elutasítva</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/observation_model.py" />
+            <source>to be reviewed</source>
+            <translation>elbírálásra vár</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/observation_model.py" />
+            <source>{state} by {by}</source>
+            <translation>{state}, bírálta: {by}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/observations_action.py" />
+            <source>Objects and images that robots told of, to be accepted for the maps or rejected</source>
+            <translation>Tárgyak és képek, amelyekről a robotok jelentettek: elfogadhatók a térképekre vagy elutasíthatók</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/review_form.py" />
+            <source>&amp;Accept</source>
+            <translation>&amp;Elfogadás</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/review_form.py" />
+            <source>An image of {object}, told by {robot}, at {x:.2f}, {y:.2f} m.</source>
+            <translation>Kép erről: {object}; küldte: {robot}, itt: {x:.2f}, {y:.2f} m.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/review_form.py" />
+            <source>An object: {object}, told by {robot}, at {x:.2f}, {y:.2f} m.</source>
+            <translation>Tárgy: {object}; jelentette: {robot}, itt: {x:.2f}, {y:.2f} m.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/review_form.py" />
+            <source>Draw it on no map</source>
+            <translation>Egy térképre se kerüljön</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/review_form.py" />
+            <source>Go to it on the map</source>
+            <translation>Odamegy a térképen</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/review_form.py" />
+            <source>Height</source>
+            <translation>Magasság</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/review_form.py" />
+            <source>It is a</source>
+            <translation>Ez egy</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/review_form.py" />
+            <source>It stands there: draw it on the maps that robots get from now on</source>
+            <translation>Ott áll: kerüljön rá a térképekre, amelyeket a robotok mostantól kapnak</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/review_form.py" />
+            <source>It waits for your review.</source>
+            <translation>Az Ön bírálatára vár.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/review_form.py" />
+            <source>Look at it: is it of use?</source>
+            <translation>Nézze meg: használható?</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/review_form.py" />
+            <source>Radius</source>
+            <translation>Sugár</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/review_form.py" />
+            <source>Re&amp;ject</source>
+            <translation>El&amp;utasítás</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/review_form.py" />
+            <source>Sho&amp;w</source>
+            <translation>&amp;Mutat</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/review_form.py" />
+            <source>State: {state}, by {by}. A new review takes the place of that.</source>
+            <translation>Állapot: {state}; bírálta: {by}. Egy új bírálat ennek helyébe lép.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/review_form.py" />
+            <source>State: {state}. A new review takes the place of that.</source>
+            <translation>Állapot: {state}. Egy új bírálat ennek helyébe lép.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/review_form.py" />
+            <source>not known</source>
+            <translation>nem ismert</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/review_form.py" />
+            <source>optional</source>
+            <translation>nem kötelező</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/options/options_page.py" />
+            <source>Alarms</source>
+            <translation>Riasztások</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/options/options_page.py" />
+            <source>Connections</source>
+            <translation>Kapcsolatok</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/options/options_page.py" />
+            <source>Fleet Supervisor &amp;help</source>
+            <translation>A Fleet Supervisor &amp;súgója</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/options/options_page.py" />
+            <source>Map and files</source>
+            <translation>Térkép és fájlok</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/options/preferences_form.py" />
+            <source>&amp;Folder for files that are written</source>
+            <translation>A kiírt fájlok &amp;mappája</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/options/preferences_form.py" />
+            <source>&amp;Size of robots on the map</source>
+            <translation>A robotok &amp;mérete a térképen</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/options/preferences_form.py" />
+            <source>1 is as they come</source>
+            <translation>1: az eredeti méret</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/options/preferences_form.py" />
+            <source>At most; from the next connection on. Fewer spare a slow network</source>
+            <translation>Legfeljebb; a következő kapcsolattól érvényes. A kevesebb kíméli a lassú hálózatot</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/options/preferences_form.py" />
+            <source>Layer of robots written anew &amp;every</source>
+            <translation>A robotok rétege &amp;újraíródik ennyi időnként</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/options/preferences_form.py" />
+            <source>Positions asked for, &amp;times a second</source>
+            <translation>Kért helyzetek &amp;száma másodpercenként</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/options/preferences_form.py" />
+            <source>The layer Robots (live): attribute table, labels, expressions. The live map goes its own way</source>
+            <translation>A Robots (live) réteg: attribútumtábla, címkék, kifejezések. Az élő térkép ettől független</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/options/preferences_form.py" />
+            <source>your documents</source>
+            <translation>az Ön dokumentumai</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/orders.py" />
+            <source>Abort of {robot}</source>
+            <translation>{robot} megszakítása</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/orders.py" />
+            <source>{draft} was not sent: {fault}</source>
+            <translation>{draft}: nem lett elküldve: {fault}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/orders.py" />
+            <source>{draft} were not sent: several targets are driven to one after the other. Press Add to queue.</source>
+            <translation>{draft}: nem lett elküldve: több célhoz egymás után kell menni. Nyomja meg a Várólistára gombot.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/orders.py" />
+            <source>{words} was NOT sent: {error}</source>
+            <translation>{words}: NEM lett elküldve: {error}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/orders.py" />
+            <source>{words}: done</source>
+            <translation>{words}: kész</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/orders.py" />
+            <source>{words}: in force</source>
+            <translation>{words}: érvényben van</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/orders.py" />
+            <source>{words}: queued</source>
+            <translation>{words}: sorba állítva</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/orders.py" />
+            <source>{words}: sent to {commands} robots</source>
+            <translation>{words}: elküldve {commands} robotnak</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/orders.py" />
+            <source>{words}: the gateway has not answered for {seconds:g} s, so it may not have arrived. It is repeated when the link is back; it is never done twice.</source>
+            <translation>{words}: az átjáró {seconds:g} s óta nem válaszolt, így lehet, hogy nem érkezett meg. Ha a kapcsolat helyreáll, megismétlődik; kétszer sosem hajtódik végre.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/placement.py" />
@@ -2347,6 +2682,36 @@
             <translation>maradjanak, ahol vannak</translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/queues/queue_edits.py" />
+            <source>A task of {robot} first</source>
+            <translation>{robot} egyik feladatának előrehozása</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/queue_edits.py" />
+            <source>Moving a task of {robot}</source>
+            <translation>{robot} egyik feladatának áthelyezése</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/queue_edits.py" />
+            <source>Not done: the queue has changed since you saw it. This is how it stands now.</source>
+            <translation>Nem történt meg: a várólista megváltozott, mióta látta. Most így áll.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/queue_edits.py" />
+            <source>Pausing the queue of {robot}</source>
+            <translation>{robot} várólistájának szüneteltetése</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/queue_edits.py" />
+            <source>Removing a task of {robot}</source>
+            <translation>{robot} egyik feladatának eltávolítása</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/queue_edits.py" />
+            <source>Resuming the queue of {robot}</source>
+            <translation>{robot} várólistájának folytatása</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/queues/queue_panel.py" />
             <source>Do now</source>
             <translation>Most</translation>
@@ -2410,6 +2775,21 @@
             <location filename="../../plugin/desk/queues/queue_panel.py" />
             <source>{selected} has no queue. Add a target or a route with Add to queue.</source>
             <translation>{selected} robotnak nincs várólistája. Adjon hozzá célt vagy útvonalat a Várólistára gombbal.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/task_list.py" />
+            <source>Task</source>
+            <translation>Feladat</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/task_list.py" />
+            <source>added by {by}</source>
+            <translation>hozzáadta: {by}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/task_list.py" />
+            <source>waiting: robot</source>
+            <translation>vár: robot</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/desk/queues/task_words.py" />
@@ -2479,6 +2859,191 @@
             <translation>{robot}: {count}, SZÜNETEL{when}{why}</translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/replay/fetching.py" />
+            <source>Only the first {count} positions were fetched. Choose less time, or fewer robots.</source>
+            <translation>Csak az első {count} helyzet lett lekérve. Válasszon rövidebb időt vagy kevesebb robotot.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/fetching.py" />
+            <source>Putting positions in order</source>
+            <translation>Helyzetek rendezése</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/fetching.py" />
+            <source>Stopped: the rest of the time was not fetched.</source>
+            <translation>Leállítva: a többi idő nem lett lekérve.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/fetching.py" />
+            <source>The gateway's answer cannot be used: {error}.</source>
+            <translation>Az átjáró válasza nem használható: {error}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/fetching.py" />
+            <source>The rest of the time was not fetched: {error}</source>
+            <translation>A többi idő nem lett lekérve: {error}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/fetching.py" />
+            <source>What came could not be put in order.</source>
+            <translation>Ami megérkezett, azt nem lehetett sorba rendezni.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/replay_action.py" />
+            <source>Play what robots did, on a map beside the live one</source>
+            <translation>Lejátssza, mit tettek a robotok, az élő térkép mellett egy másikon</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/replay_action.py" />
+            <source>Replay</source>
+            <translation>Visszajátszás</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/replay_dock.py" />
+            <source> · NOT ALL</source>
+            <translation> · NEM MIND</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/replay_dock.py" />
+            <source>Choose a time and press Load.</source>
+            <translation>Válasszon időt, és nyomja meg a Betöltés gombot.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/replay_dock.py" />
+            <source>How much faster than it was</source>
+            <translation>Hányszor gyorsabban, mint történt</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/replay_dock.py" />
+            <source>Loading …</source>
+            <translation>Betöltés …</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/replay_dock.py" />
+            <source>Loading … {positions} positions, up to {moment}</source>
+            <translation>Betöltés … {positions} helyzet, eddig: {moment}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/replay_dock.py" />
+            <source>No positions are stored of that time.</source>
+            <translation>Abból az időből nincsenek tárolt helyzetek.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/replay_dock.py" />
+            <source>No robot is selected to be replayed. Select one, or replay all.</source>
+            <translation>Nincs visszajátszandó kijelölt robot. Jelöljön ki egyet, vagy játssza vissza mindet.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/replay_dock.py" />
+            <source>Play, or hold (Space)</source>
+            <translation>Lejátszás vagy megállítás (Szóköz)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/replay_dock.py" />
+            <source>REPLAY · {told}</source>
+            <translation>VISSZAJÁTSZÁS · {told}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/replay_dock.py" />
+            <source>REPLAY, not live · {moment} · {told}</source>
+            <translation>VISSZAJÁTSZÁS, nem élő · {moment} · {told}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/replay_dock.py" />
+            <source>The replay was not loaded: {error}</source>
+            <translation>A visszajátszás nem töltődött be: {error}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/replay_dock.py" />
+            <source>The replay's time ends before it begins. Correct one of the two.</source>
+            <translation>A visszajátszás ideje véget ér, mielőtt elkezdődne. Javítsa ki a kettő egyikét.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/replay_dock.py" />
+            <source>There is nothing to replay yet. Connect to a gateway first.</source>
+            <translation>Még nincs mit visszajátszani. Előbb kapcsolódjon egy átjáróhoz.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/replay_dock.py" />
+            <source>positions: {positions}, robots: {robots}</source>
+            <translation>helyzetek: {positions}, robotok: {robots}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/replay_layer.py" />
+            <source>Drawing what robots drove</source>
+            <translation>A robotok útjának megrajzolása</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/replay_layer.py" />
+            <source>Not all trajectories are drawn: {error}</source>
+            <translation>Nincs minden trajektória megrajzolva: {error}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/replay_layer.py" />
+            <source>The trajectories are not drawn: they could not be made into lines.</source>
+            <translation>A trajektóriák nincsenek megrajzolva: nem lehetett vonalakká alakítani őket.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/replay_layer.py" />
+            <source>Trajectories (replay)</source>
+            <translation>Trajektóriák (visszajátszás)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/stretch_form.py" />
+            <source>From when on</source>
+            <translation>Mikortól</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/stretch_form.py" />
+            <source>Load</source>
+            <translation>Betöltés</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/stretch_form.py" />
+            <source>Load what the selected robots did, not what all did</source>
+            <translation>A kijelölt robotok mozgását tölti be, nem mindegyikét</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/stretch_form.py" />
+            <source>Selected only</source>
+            <translation>Csak a kijelöltek</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/stretch_form.py" />
+            <source>Stop</source>
+            <translation>Megállítás</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/stretch_form.py" />
+            <source>Until when</source>
+            <translation>Meddig</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/stretch_form.py" />
+            <source>from … to …</source>
+            <translation>ettől … eddig …</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/stretch_form.py" />
+            <source>the last 15 minutes</source>
+            <translation>az utolsó 15 perc</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/stretch_form.py" />
+            <source>the last 5 minutes</source>
+            <translation>az utolsó 5 perc</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/stretch_form.py" />
+            <source>the last 8 hours</source>
+            <translation>az utolsó 8 óra</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/stretch_form.py" />
+            <source>the last hour</source>
+            <translation>az utolsó óra</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/road_board.py" />
             <source>Closing the road at {x:.1f}, {y:.1f} m</source>
             <translation>Út lezárása itt: {x:.1f}, {y:.1f} m</translation>
@@ -2512,6 +3077,11 @@
             <location filename="../../plugin/desk/road_layers.py" />
             <source>until</source>
             <translation>eddig:</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/road_route_tool.py" />
+            <source>This leg does not follow the roads: {note}</source>
+            <translation>Ez a szakasz nem követi az utakat: {note}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/robots/columns.py" />
@@ -2582,11 +3152,6 @@
             <location filename="../../plugin/desk/robots/columns.py" />
             <source>Speed</source>
             <translation>Sebesség</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/robots/columns.py" />
-            <source>Task</source>
-            <translation>Feladat</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/robots/columns.py" />
@@ -2717,11 +3282,6 @@
             <location filename="../../plugin/desk/robots/position_crs.py" />
             <source>site frame</source>
             <translation>telephelyi keret</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/robots/robot_details.py" />
-            <source>Alarms</source>
-            <translation>Riasztások</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/robots/robot_details.py" />
@@ -2874,6 +3434,31 @@
             <translation>{seconds} s</translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/route_tool.py" />
+            <source>The route on the map is for {robot}, but {selected} is selected. Send it (Enter) or cancel it (Esc) first, or select {robot} again.</source>
+            <translation>A térképen lévő útvonal ehhez tartozik: {robot}, de {selected} van kijelölve. Előbb küldje el (Enter) vagy vesse el (Esc), vagy jelölje ki újra ezt: {robot}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/route_tool.py" />
+            <source>This is the first vertex: another is put before one that comes later.</source>
+            <translation>Ez az első töréspont: másikat csak egy későbbi elé lehet tenni.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/site_drop.py" />
+            <source> {layers} have no role: other layers of the project have it. Plugins &gt; Fleet Supervisor &gt; Layer roles changes that.</source>
+            <translation> Ezeknek nincs szerepük: {layers}; a projekt más rétegeié. A Modulok &gt; Fleet Supervisor &gt; Rétegszerepek menüben módosítható.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/site_drop.py" />
+            <source>The site in {folder} is in the project already: {names}.</source>
+            <translation>A(z) {folder} mappában lévő telephely már a projektben van: {names}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/site_drop.py" />
+            <source>{site}: {count} layers loaded.</source>
+            <translation>{site}: {count} réteg betöltve.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/surface_action.py" />
             <source>Road surface</source>
             <translation>Útfelület</translation>
@@ -2897,6 +3482,11 @@
             <location filename="../../plugin/desk/surface_tool.py" />
             <source>No road surface</source>
             <translation>Nincs útfelület</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/surface_tool.py" />
+            <source>no CRS</source>
+            <translation>nincs vetület</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/surface_tool.py" />
@@ -2990,11 +3580,6 @@
         </message>
         <message>
             <location filename="../../plugin/desk/tour/steps.py" />
-            <source>Stop</source>
-            <translation>Megállítás</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/tour/steps.py" />
             <source>That was the tour</source>
             <translation>Ez volt a bemutató</translation>
         </message>
@@ -3040,8 +3625,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/tour/tour_action.py" />
-            <source>Fleet Supervisor is new here. A tour of five minutes shows it with simulated robots.</source>
-            <translation>A Fleet Supervisor új itt. Egy ötperces bemutató szimulált robotokkal mutatja be.</translation>
+            <source>Fleet Supervisor is new here: a five-minute tour shows it.</source>
+            <translation>A Fleet Supervisor itt új: egy ötperces bemutató megmutatja.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/tour/tour_action.py" />
@@ -3099,9 +3684,208 @@
             <translation>&amp;Bezárás</translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/window.py" />
+            <source>Disconnect</source>
+            <translation>Bontás</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/window_alarms.py" />
             <source>Alarms ({number})</source>
             <translation>Riasztások ({number})</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/expressions/distance_to_robot.py" />
+            <source>&lt;h3&gt;function distance_to_robot&lt;/h3&gt; &lt;p&gt;Returns how far a robot is from a feature or a geometry, in metres of the site.&lt;/p&gt; &lt;h4&gt;Syntax&lt;/h4&gt; &lt;p&gt;&lt;code&gt;distance_to_robot(robot, [geometry], [crs])&lt;/code&gt;&lt;/p&gt; &lt;h4&gt;Arguments&lt;/h4&gt; &lt;table&gt; &lt;tr&gt;&lt;td&gt;&lt;i&gt;robot&lt;/i&gt;&lt;/td&gt;&lt;td&gt;its name, as in the Fleet panel&lt;/td&gt;&lt;/tr&gt; &lt;tr&gt;&lt;td&gt;&lt;i&gt;geometry&lt;/i&gt;&lt;/td&gt;&lt;td&gt;optional; without it, that of the feature that is looked at&lt;/td&gt;&lt;/tr&gt; &lt;tr&gt;&lt;td&gt;&lt;i&gt;crs&lt;/i&gt;&lt;/td&gt;&lt;td&gt;optional, the CRS of the geometry, such as 'EPSG:4326'; without it, that of the layer whose feature is looked at, else that of the project&lt;/td&gt;&lt;/tr&gt; &lt;/table&gt; &lt;h4&gt;Examples&lt;/h4&gt; &lt;ul&gt; &lt;li&gt;&lt;code&gt;distance_to_robot('r1')&lt;/code&gt; &amp;rarr; 12.3&lt;/li&gt; &lt;li&gt;&lt;code&gt;distance_to_robot('r1', make_point(16.8438, 46.8804), 'EPSG:4326')&lt;/code&gt; &amp;rarr; 104.6&lt;/li&gt; &lt;li&gt;&lt;code&gt;distance_to_robot('r1') &amp;lt; 5&lt;/code&gt; &amp;rarr; true of features near the robot&lt;/li&gt; &lt;/ul&gt; &lt;h4&gt;Notes&lt;/h4&gt; &lt;p&gt;The distance is measured in the plane of the site's CRS; in a polygon it is 0. NULL stands for a robot whose place is not known, and while this QGIS is connected to no gateway. Places are at most half a second old; a layer shows them when it is drawn.&lt;/p&gt;</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/expressions/distance_to_robot.py" />
+            <source>{function}: the geometry has no place in {crs}</source>
+            <translation>{function}: a geometriának nincs helye itt: {crs}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/expressions/distance_to_robot.py" />
+            <source>{function}: {geometry!r} is no geometry; give one, or a feature that has one</source>
+            <translation>{function}: {geometry!r} nem geometria; adjon meg egyet, vagy olyan elemet, amelynek van</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/expressions/place_crs.py" />
+            <source>crs {given!r} is no CRS that QGIS knows; write a code such as 'EPSG:32633'</source>
+            <translation>{given!r} nem olyan vetület, amelyet a QGIS ismer; írjon egy kódot, például 'EPSG:32633'</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/expressions/road_surface.py" />
+            <source>&lt;h3&gt;function road_surface&lt;/h3&gt; &lt;p&gt;Returns the class of the road surface at a place, such as 'asphalt', or NULL where there is none.&lt;/p&gt; &lt;h4&gt;Syntax&lt;/h4&gt; &lt;p&gt;&lt;code&gt;road_surface(x, y, [layer], [crs])&lt;/code&gt;&lt;/p&gt; &lt;h4&gt;Arguments&lt;/h4&gt; &lt;table&gt; &lt;tr&gt;&lt;td&gt;&lt;i&gt;x, y&lt;/i&gt;&lt;/td&gt;&lt;td&gt;the place; x is the easting or the longitude, whatever the CRS&lt;/td&gt;&lt;/tr&gt; &lt;tr&gt;&lt;td&gt;&lt;i&gt;layer&lt;/i&gt;&lt;/td&gt;&lt;td&gt;optional, the name or id of a layer of areas; without it, all layers of the project with the role road surface&lt;/td&gt;&lt;/tr&gt; &lt;tr&gt;&lt;td&gt;&lt;i&gt;crs&lt;/i&gt;&lt;/td&gt;&lt;td&gt;optional, the CRS of the place, such as 'EPSG:4326'; without it, that of the layer whose feature is looked at, else that of the project&lt;/td&gt;&lt;/tr&gt; &lt;/table&gt; &lt;h4&gt;Examples&lt;/h4&gt; &lt;ul&gt; &lt;li&gt;&lt;code&gt;road_surface($x, $y)&lt;/code&gt; &amp;rarr; 'asphalt'&lt;/li&gt; &lt;li&gt;&lt;code&gt;road_surface(16.8438, 46.8804, crs:='EPSG:4326')&lt;/code&gt; &amp;rarr; 'slippery'&lt;/li&gt; &lt;li&gt;&lt;code&gt;road_surface($x, $y, 'Road surfaces') IS NULL&lt;/code&gt; &amp;rarr; true off the road&lt;/li&gt; &lt;/ul&gt; &lt;h4&gt;Notes&lt;/h4&gt; &lt;p&gt;A place on an edge is on the surface. Where surfaces lie on one another a drawn one counts before a generated one, then the smaller before the larger.&lt;/p&gt;</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/expressions/road_surface.py" />
+            <source>no layer of the project has the role {role}; set it in Plugins &gt; Fleet Supervisor &gt; Layer roles, or name a layer as the third argument</source>
+            <translation>a projekt egyik rétegének sincs ilyen szerepe: {role}; állítsa be itt: Modulok &gt; Fleet Supervisor &gt; Rétegszerepek, vagy nevezzen meg egy réteget harmadik argumentumként</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/expressions/road_surface.py" />
+            <source>no vector layer of the project has the name or id {layer!r}</source>
+            <translation>a projektben nincs ilyen nevű vagy azonosítójú vektorréteg: {layer!r}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/expressions/road_surface.py" />
+            <source>{function}: x is {x!r} and y is {y!r}; give two numbers</source>
+            <translation>{function}: x értéke {x!r}, y értéke {y!r}; adjon meg két számot</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/expressions/robot_values.py" />
+            <source>&lt;h3&gt;function robot_age&lt;/h3&gt; &lt;p&gt;Returns the seconds since a robot's last message, by this computer's clock.&lt;/p&gt; &lt;h4&gt;Syntax&lt;/h4&gt; &lt;p&gt;&lt;code&gt;robot_age(robot)&lt;/code&gt;&lt;/p&gt; &lt;h4&gt;Arguments&lt;/h4&gt; &lt;table&gt;&lt;tr&gt;&lt;td&gt;&lt;i&gt;robot&lt;/i&gt;&lt;/td&gt;&lt;td&gt;its name, as in the Fleet panel&lt;/td&gt;&lt;/tr&gt;&lt;/table&gt; &lt;h4&gt;Examples&lt;/h4&gt; &lt;ul&gt; &lt;li&gt;&lt;code&gt;robot_age('r1')&lt;/code&gt; &amp;rarr; 0.4&lt;/li&gt; &lt;li&gt;&lt;code&gt;robot_age('r1') &amp;gt; 10&lt;/code&gt; &amp;rarr; true once it has been silent for more than 10 seconds&lt;/li&gt; &lt;/ul&gt;</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/expressions/robot_values.py" />
+            <source>&lt;h3&gt;function robot_battery&lt;/h3&gt; &lt;p&gt;Returns how full a robot's battery is, 0 to 1.&lt;/p&gt; &lt;h4&gt;Syntax&lt;/h4&gt; &lt;p&gt;&lt;code&gt;robot_battery(robot)&lt;/code&gt;&lt;/p&gt; &lt;h4&gt;Arguments&lt;/h4&gt; &lt;table&gt;&lt;tr&gt;&lt;td&gt;&lt;i&gt;robot&lt;/i&gt;&lt;/td&gt;&lt;td&gt;its name, as in the Fleet panel&lt;/td&gt;&lt;/tr&gt;&lt;/table&gt; &lt;h4&gt;Examples&lt;/h4&gt; &lt;ul&gt; &lt;li&gt;&lt;code&gt;robot_battery('r1')&lt;/code&gt; &amp;rarr; 0.82&lt;/li&gt; &lt;li&gt;&lt;code&gt;round(100 * robot_battery('r1')) || ' %'&lt;/code&gt; &amp;rarr; '82 %'&lt;/li&gt; &lt;/ul&gt;</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/expressions/robot_values.py" />
+            <source>&lt;h3&gt;function robot_state&lt;/h3&gt; &lt;p&gt;Returns how far what is known of a robot can be trusted: 'fresh', 'stale', 'lost' or 'offline'.&lt;/p&gt; &lt;h4&gt;Syntax&lt;/h4&gt; &lt;p&gt;&lt;code&gt;robot_state(robot)&lt;/code&gt;&lt;/p&gt; &lt;h4&gt;Arguments&lt;/h4&gt; &lt;table&gt;&lt;tr&gt;&lt;td&gt;&lt;i&gt;robot&lt;/i&gt;&lt;/td&gt;&lt;td&gt;its name, as in the Fleet panel&lt;/td&gt;&lt;/tr&gt;&lt;/table&gt; &lt;h4&gt;Examples&lt;/h4&gt; &lt;ul&gt; &lt;li&gt;&lt;code&gt;robot_state('r1')&lt;/code&gt; &amp;rarr; 'fresh'&lt;/li&gt; &lt;li&gt;&lt;code&gt;robot_state("robot") IN ('stale', 'lost')&lt;/code&gt; &amp;rarr; true of robots that are silent&lt;/li&gt; &lt;/ul&gt;</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/expressions/robot_values.py" />
+            <source>&lt;h4&gt;Notes&lt;/h4&gt; &lt;p&gt;NULL stands for a robot that the gateway has not told of, and while this QGIS is connected to none. What is not known of a robot is NULL as well. Values are at most half a second old; a layer shows them when it is drawn.&lt;/p&gt;</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/help/help_desk.py" />
+            <source>Fleet Supervisor help</source>
+            <translation>A Fleet Supervisor súgója</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/help/help_window.py" />
+            <source># Help
+
+{file} cannot be read: {strerror}. Install the plugin again.</source>
+            <translation># Súgó
+
+{file} nem olvasható: {strerror}. Telepítse újra a modult.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/help/help_window.py" />
+            <source>Fleet Supervisor: help</source>
+            <translation>Fleet Supervisor: súgó</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/locator/robot_filter.py" />
+            <source>Robots</source>
+            <translation>Robotok</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/locator/robot_filter.py" />
+            <source>{state}, heard of {age:.0f} s ago</source>
+            <translation>{state}, utolsó hír {age:.0f} s óta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>95 % deviate at most [m]</source>
+            <translation>95 % eltérése legfeljebb [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>&lt;p&gt;Compares where cones stand with where they were to stand, and writes a PDF: how many are within the tolerance, a histogram of the deviations, a map and a table of every cone, worst first.&lt;/p&gt; &lt;p&gt;The cones are a layer of the GeoPackage that &lt;i&gt;robot-bridge placements export cones.gpkg --site site&lt;/i&gt; writes, or its CSV; for a CSV, which has none, give the site's CRS. A cone stands where the robot was when it had reached its target, and from there the site's cone offset: the gateway's knowledge, no survey.&lt;/p&gt; &lt;p&gt;On the map a cross is the plan and a circle the cone, red where it is beyond the tolerance. Deviations are small: the lines from the crosses are longer than they are by the factor that the map names. Give background layers, such as roads, to be drawn beneath.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:asplacedreport -- INPUT="cones.gpkg|layername=placed" TOLERANCE=0.2 OUTPUT=report.pdf&lt;/pre&gt;</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>Background of the map</source>
+            <translation>A térkép háttere</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>Cones as placed and as planned</source>
+            <translation>Bóják kihelyezve és tervezve</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>Cones within the tolerance</source>
+            <translation>A tűrésen belüli bóják</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>Largest deviation [m]</source>
+            <translation>Legnagyobb eltérés [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>Mean deviation [m]</source>
+            <translation>Átlagos eltérés [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>PDF files (*.pdf)</source>
+            <translation>PDF-fájlok (*.pdf)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>Pages</source>
+            <translation>Oldalak</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>Records</source>
+            <translation>Feljegyzések</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>Report</source>
+            <translation>Jelentés</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>Root mean square deviation [m]</source>
+            <translation>Négyzetes középeltérés [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>Site CRS (default: the layer's)</source>
+            <translation>A telephely vetülete (alapértelmezés: a rétegé)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>The CRS of the placed cones is not known, as of a CSV: give CRS, the site's, such as EPSG:32633.</source>
+            <translation>A kihelyezett bóják vetülete nem ismert, mint a CSV esetén: adja meg a CRS paramétert, a telephelyét, például EPSG:32633.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>Title</source>
+            <translation>Cím</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>Tolerance [m]</source>
+            <translation>Tűrés [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>Warnings</source>
+            <translation>Figyelmeztetések</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>Writes a PDF of how placed cones stand against their plan: figures, histogram, map and table.</source>
+            <translation>PDF-et ír arról, hogyan állnak a kihelyezett bóják a tervhez képest: számok, hisztogram, térkép és táblázat.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>{odd} features have no planned or no placed position; they are left out.</source>
+            <translation>{odd} elemnek nincs tervezett vagy kihelyezett helyzete; ezek kimaradnak.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>{within} of {count} cones are within {tolerance:g} m; the worst is {most:.3f} m off.</source>
+            <translation>{count} bójából {within} van {tolerance:g} m-en belül; a legrosszabb {most:.3f} m-rel tér el.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/assign_cones.py" />
+            <source>&lt;p&gt;Shares &lt;b&gt;cones&lt;/b&gt; out among &lt;b&gt;robots&lt;/b&gt;. Robots load cones to place, and unload collected ones, at &lt;b&gt;stores&lt;/b&gt;, as often as their capacity asks for. Distances are those of the &lt;b&gt;roads&lt;/b&gt;; without roads they are straight lines, and the log says so.&lt;/p&gt; &lt;p&gt;Fields that layers may have, with the parameters as defaults: cones &lt;i&gt;id, heading, stage, task&lt;/i&gt; (place or collect), &lt;i&gt;demand, service_s&lt;/i&gt;; robots &lt;i&gt;id, capacity, speed, range_m, aboard, collected, ready_s&lt;/i&gt;; stores &lt;i&gt;id, service_s&lt;/i&gt;. Every cone of a lower &lt;b&gt;stage&lt;/b&gt; is done before one of a higher stage is begun.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Objective&lt;/b&gt;: &lt;i&gt;balanced&lt;/i&gt; has the last robot finish as early as possible, &lt;i&gt;distance&lt;/i&gt; drives the fewest metres in all. &lt;b&gt;Method&lt;/b&gt;: &lt;i&gt;pyvrp&lt;/i&gt; works until the time limit is over, &lt;i&gt;preview&lt;/i&gt; is quick; &lt;i&gt;automatic&lt;/i&gt; takes pyvrp where Python has it.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Targets&lt;/b&gt; are the stops of each robot in order with their times, &lt;b&gt;paths&lt;/b&gt; the ways between them, &lt;b&gt;plan&lt;/b&gt; is all of it as JSON. A cone that cannot be served is named, and nothing is written.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:assigncones -- CONES=cones.gpkg ROBOTS=robots.gpkg STORES=stores.gpkg \ ROADS=roads.gpkg CAPACITY=8 TIME_LIMIT=10 TARGETS=targets.gpkg PATHS=paths.gpkg PLAN=plan.json&lt;/pre&gt;</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/processing/assign_cones.py" />
@@ -3180,6 +3964,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/build_road_network.py" />
+            <source>&lt;p&gt;Splits road centrelines where they cross or touch, and makes a layer of edges and one of nodes.&lt;/p&gt; &lt;p&gt;Roads of different &lt;b&gt;levels&lt;/b&gt; meet only where one of them ends in a point of the other: a bridge is reached at its ends and passes over what is between them. &lt;b&gt;Direction&lt;/b&gt;, speed, width, surface and whether a road is closed go over to its edges.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Repair&lt;/b&gt; moves ends that stop within the tolerance of a road onto it, cuts off ends that reach beyond a road by less, and leaves out what is drawn twice; the log names each repair. &lt;i&gt;fleet:checkroadnetwork&lt;/i&gt; shows what is broken without changing anything.&lt;/p&gt; &lt;p&gt;The fields of the edges are those that this algorithm and &lt;i&gt;fleet:route&lt;/i&gt; read by themselves. docs/roads.md says more.&lt;/p&gt;</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_network.py" />
             <source>Build road network</source>
             <translation>Úthálózat készítése</translation>
         </message>
@@ -3215,13 +4004,13 @@
         </message>
         <message>
             <location filename="../../plugin/processing/build_road_network.py" />
-            <source>Warnings</source>
-            <translation>Figyelmeztetések</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/build_road_network.py" />
             <source>{edges} edges, {nodes} nodes, {parts} parts, {repairs} repairs</source>
             <translation>{edges} él, {nodes} csomópont, {parts} rész, {repairs} javítás</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_surfaces.py" />
+            <source>&lt;p&gt;Widens road centrelines by half their width to each side: ends are cut square, corners are mitred, within a road and where roads end in one point. What is of one class, such as asphalt, becomes one surface; pieces that do not touch are features of their own.&lt;/p&gt; &lt;p&gt;No ground is in two surfaces. Surfaces &lt;b&gt;drawn by hand&lt;/b&gt; keep theirs and are copied to the result. Among generated ones the class that comes first in &lt;b&gt;precedence&lt;/b&gt; keeps the ground; of classes that are not named there the one with less ground, and what has no class comes last.&lt;/p&gt; &lt;p&gt;A road whose width is not known is as wide as &lt;b&gt;default width&lt;/b&gt; says, and is in the layer of &lt;b&gt;findings&lt;/b&gt;. Ends that stop just short of another road stay apart: mend them with &lt;i&gt;fleet:buildroadnetwork&lt;/i&gt; and give its edges.&lt;/p&gt; &lt;p&gt;Give the result the role road surface to publish it. docs/roads.md says more.&lt;/p&gt;</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/processing/build_road_surfaces.py" />
@@ -3275,6 +4064,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/build_road_surfaces.py" />
+            <source>without a class</source>
+            <translation>osztály nélkül</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/build_road_surfaces.py" />
             <source>{old} of the surfaces that are given as drawn say that they were generated (field origin); they are left out and made anew</source>
             <translation>{old} rajzoltként megadott felület azt mondja magáról, hogy előállított (origin mező); ezek kimaradnak és újra elkészülnek</translation>
         </message>
@@ -3282,6 +4076,11 @@
             <location filename="../../plugin/processing/build_road_surfaces.py" />
             <source>{value}: {own:.1f} m²</source>
             <translation>{value}: {own:.1f} m²</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/check_road_network.py" />
+            <source>&lt;p&gt;Checks the network that road centrelines make, and makes a layer of points that show what is odd, each with the feature to look at. Nothing is changed.&lt;/p&gt; &lt;p&gt;What &lt;i&gt;fleet:buildroadnetwork&lt;/i&gt; repairs: &lt;b&gt;gap&lt;/b&gt;, an end that stops within the tolerance of another road; &lt;b&gt;overshoot&lt;/b&gt;, an end that reaches beyond a road by less than that; &lt;b&gt;duplicate&lt;/b&gt;, a stretch that is drawn twice.&lt;/p&gt; &lt;p&gt;What only people can judge: &lt;b&gt;dead end&lt;/b&gt;; &lt;b&gt;disconnected part&lt;/b&gt;, roads that are connected with one another but not with the longest part; &lt;b&gt;one-way&lt;/b&gt;, roads from which no way leads back because of the directions.&lt;/p&gt;</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/processing/check_road_network.py" />
@@ -3332,6 +4131,11 @@
             <location filename="../../plugin/processing/check_road_network.py" />
             <source>Roads drawn twice</source>
             <translation>Kétszer rajzolt utak</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/check_robot_map.py" />
+            <source>&lt;p&gt;Checks a robot map, text or binary, and makes a layer of lines that show what is odd, each with a kind, a severity, the obstacle to look at, and what to do.&lt;/p&gt; &lt;p&gt;&lt;b&gt;orientation&lt;/b&gt;: outlines, courtyards, segments or risers that run the wrong way round. &lt;b&gt;gap&lt;/b&gt;: rings that do not close, and lines that stop just short of another obstacle. &lt;b&gt;sliver&lt;/b&gt;: rings next to nothing wide, segments without length. &lt;b&gt;duplicate&lt;/b&gt;, &lt;b&gt;overlap&lt;/b&gt;: obstacles that repeat, cross or cover one another or lie inside another. &lt;b&gt;shared wall&lt;/b&gt;: where two outlines touch back to back. &lt;b&gt;pocket&lt;/b&gt;: free space that a robot of the given width cannot reach; courtyards are such pockets. &lt;b&gt;height&lt;/b&gt;: heights of 0 or less, or above 0 where there must be none. &lt;b&gt;outside&lt;/b&gt;: segments beyond the border. &lt;b&gt;id&lt;/b&gt;: ids used twice.&lt;/p&gt; &lt;p&gt;Severities: &lt;i&gt;error&lt;/i&gt; misleads a robot, &lt;i&gt;warning&lt;/i&gt; is probably not meant, &lt;i&gt;info&lt;/i&gt; is worth knowing. The map itself is not changed.&lt;/p&gt;</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/processing/check_robot_map.py" />
@@ -3445,6 +4249,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/cone_layout.py" />
+            <source>&lt;p&gt;Places a layout of traffic cones, either at a &lt;b&gt;point&lt;/b&gt;, turned to a &lt;b&gt;heading&lt;/b&gt; (degrees clockwise from north), or along a &lt;b&gt;line&lt;/b&gt; such as a road's centreline, from &lt;b&gt;start&lt;/b&gt; metres after its beginning. The layer has an id, the order of placing, the heading of travel, the colour and the role of each cone.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Dimensions&lt;/b&gt; change the standard's: &lt;code&gt;vehicle_width=1.7; lane_offset=3&lt;/code&gt;. The log lists those of the layout with their values. A wrong name or value is refused with what there is.&lt;/p&gt; &lt;p&gt;Every cone is &lt;b&gt;checked&lt;/b&gt;: on one of the surfaces (of the allowed classes), away from obstacles and from other cones. What is wrong becomes a layer of findings with the cone's id and the reason; the cones are placed nevertheless.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:conelayout -- LAYOUT=iso3888_1 POINT="640432,5193486.2 [EPSG:32633]" \ HEADING=90 DIMENSIONS="vehicle_width=1.7; exit_length=15" SITE_CRS=EPSG:32633 CONES=cones.gpkg&lt;/pre&gt;</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
             <source>Against the direction of the line</source>
             <translation>A vonal irányával szemben</translation>
         </message>
@@ -3542,6 +4351,11 @@
             <location filename="../../plugin/processing/cone_layout.py" />
             <source>{how} given: give the place of the layout, or a line that it lies along.</source>
             <translation>{how}: adja meg az elrendezés helyét, vagy egy vonalat, amely mentén fekszik.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_help.py" />
+            <source>&lt;p&gt;Writes the obstacles in a window of the site as a map that robots read: oriented segments with free space to their right, grouped by kind. Robots get metres in the &lt;b&gt;site frame&lt;/b&gt;: a projected CRS, an origin in it and a rotation.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Obstacle layers&lt;/b&gt;: lines and polygons, several at once, in any CRS. Curves become chords (2 cm). What the window cuts becomes open chains; no wall is invented on the border.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Window&lt;/b&gt;: a centre with width and height in metres, or an extent. Positions may name their CRS, as in &lt;i&gt;12.5,48.1 [EPSG:4326]&lt;/i&gt;; without one they are in the site CRS.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Site CRS&lt;/b&gt;: in metres, such as the local UTM zone. EPSG:3857 is refused, because its metres are not metres. Default: the project's CRS; without a project the layers' own. A local engineering CRS is used as it is.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Height, foot, label, outdoors&lt;/b&gt;: QGIS expressions; the foot is where a feature begins above the ground, and its height counts from there. What a layer keeps (menu Fleet Supervisor, Layer roles) wins over these. There its role makes flights of risers of a layer (stairs) or surfaces without height (ramp), its filter says which features count, and points of furniture get a shape. Default: the field &lt;i&gt;height&lt;/i&gt; or &lt;i&gt;height_m&lt;/i&gt;, on the ground, the layer's name, true. Where no height is known, the default height is used, said in a warning and marked &lt;i&gt;h=est&lt;/i&gt; in the map.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Map profile&lt;/b&gt;: a file that says by layer name what layers are: &lt;i&gt;openstreetmap&lt;/i&gt;, &lt;i&gt;upc_campus_nord&lt;/i&gt; or the path of one's own. It wins over what the layers keep.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Smaller maps&lt;/b&gt; (advanced, each off unless asked for): only what the robot's plane meets, without walls between or inside buildings, lines joined, fewer corners, no short segments, heights in steps. The log says how many obstacles and segments there were before and after. Walls between buildings, corners and short segments need the Python package shapely 2.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Format&lt;/b&gt;: text; binary (the text compressed, with a check sum), which needs the Python package zstandard; compact (about a third of binary, whole centimetres), which needs cbor2 instead. The file &lt;i&gt;docs/robot-map.md&lt;/i&gt; of the project describes them, and exports from a script.&lt;/p&gt; &lt;p&gt;Broken geometry is repaired where that is safe and left out where it is not. Each time a warning names the layer and the feature; the export goes on.&lt;/p&gt;</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
@@ -3642,6 +4456,11 @@
             <location filename="../../plugin/processing/export_navigation_map.py" />
             <source>above 0, such as 0.05</source>
             <translation>0-nál nagyobb, például 0.05</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>empty</source>
+            <translation>üres</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
@@ -3795,6 +4614,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/export_robot_map_tiles.py" />
+            <source>&lt;p&gt;Writes one robot map for each tile, as &lt;i&gt;Export robot map&lt;/i&gt; does for one window, and an index: a polygon for each tile with its file, border, counts and bytes. The layers are read once.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Grid&lt;/b&gt;: tiles of one size from the left-lower corner of the extent; the last ones reach beyond it. &lt;b&gt;Route&lt;/b&gt;: tiles centred on the lines of a layer, so close that two that follow each other share the overlap. Sizes are in metres along the site's axes.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Advanced&lt;/b&gt;: obstacles are reduced as in &lt;i&gt;Export robot map&lt;/i&gt;, before the tiles are cut. The log says how many obstacles and segments the whole area had before and after.&lt;/p&gt; &lt;p&gt;An obstacle has the same id in every tile that it reaches into. Either every tile and the index are there at the end, or, after a cancel or an error, none of them.&lt;/p&gt;</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map_tiles.py" />
             <source>Export robot map tiles</source>
             <translation>Robottérkép-csempék exportálása</translation>
         </message>
@@ -3872,6 +4696,11 @@
             <location filename="../../plugin/processing/export_robot_map_tiles.py" />
             <source>{rows} tiles, {segments} segments, {size} bytes</source>
             <translation>{rows} csempe, {segments} szakasz, {size} bájt</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>&lt;p&gt;Finds the way between two places near roads: each is taken to the nearest point of a road that may be used. Closed roads are not used, one-way roads in their direction only; &lt;b&gt;surfaces&lt;/b&gt; (names with commas between) and a &lt;b&gt;least width&lt;/b&gt; restrict the way further.&lt;/p&gt; &lt;p&gt;Edges that lead through a polygon of the &lt;b&gt;areas that must not be driven through&lt;/b&gt; are closed; what runs along a rim is not.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Route&lt;/b&gt; has a line for each stretch of road, in order. &lt;b&gt;Path&lt;/b&gt; is what a robot drives: points at most so far apart, corners rounded to the turning radius as far as robot and road are wide. Corners that stay tighter are counted and named in the log.&lt;/p&gt; &lt;p&gt;The &lt;b&gt;engine&lt;/b&gt; is RoutingKit or SciPy where Python has them, else QGIS's own; the log and &lt;i&gt;ENGINE_USED&lt;/i&gt; say which was used. All find the same ways.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:route -- ROADS=roads.gpkg START="640430,5193530 [EPSG:32633]" \ GOAL="640600,5193570 [EPSG:32633]" SURFACES=asphalt ROUTE=route.gpkg PATH=path.gpkg&lt;/pre&gt;</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/processing/find_route.py" />
@@ -3982,6 +4811,31 @@
             <location filename="../../plugin/processing/fleet_algorithm.py" />
             <source>Robot maps</source>
             <translation>Robottérképek</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/geopackage_by_qgis.py" />
+            <source>The layer {name} of the GeoPackage cannot be written: {error}.</source>
+            <translation>A GeoPackage {name} rétege nem írható: {error}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/histogram_svg.py" />
+            <source>deviation in cm</source>
+            <translation>eltérés cm-ben</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/histogram_svg.py" />
+            <source>last bar: up to {metres:.2f} m</source>
+            <translation>utolsó oszlop: legfeljebb {metres:.2f} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/histogram_svg.py" />
+            <source>tolerance {cm:.4g} cm</source>
+            <translation>tűrés {cm:.4g} cm</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/import_cone_layout.py" />
+            <source>&lt;p&gt;Reads cones from a &lt;b&gt;CSV file&lt;/b&gt; with a head line, in UTF-8, or from a &lt;b&gt;layer&lt;/b&gt;. The columns are named by parameters; only those of x and y are needed, and not even those for a layer of points with a CRS, which is taken as it lies. A file or layer with several layouts gives one of them, by &lt;b&gt;LAYOUT_FIELD&lt;/b&gt; and &lt;b&gt;LAYOUT&lt;/b&gt;.&lt;/p&gt; &lt;p&gt;Metres of a table are turned by &lt;b&gt;rotation&lt;/b&gt; (degrees, counter-clockwise) and then moved to the &lt;b&gt;origin&lt;/b&gt;. A row that cannot be read is named with its column, and nothing is placed.&lt;/p&gt; &lt;p&gt;Every cone is &lt;b&gt;checked&lt;/b&gt; as those of &lt;i&gt;Cone layout&lt;/i&gt; are.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:importconelayout -- FILE=cone_layouts.csv COLOUR_FIELD=colour \ LAYOUT_FIELD=track LAYOUT=eufs_skidpad ORIGIN="640520,5193530 [EPSG:32633]" ROTATION=90 \ SITE_CRS=EPSG:32633 CONES=cones.gpkg&lt;/pre&gt;</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/processing/import_cone_layout.py" />
@@ -4217,6 +5071,11 @@
             <location filename="../../plugin/processing/keepout_areas.py" />
             <source>Areas that must not be driven through</source>
             <translation>Területek, amelyeken nem szabad áthajtani</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/load_robot_map.py" />
+            <source>&lt;p&gt;Reads a robot map, text or binary, and makes layers of it.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Obstacles that are areas&lt;/b&gt;: outlines that close, courtyards as holes. &lt;b&gt;Obstacles that are lines&lt;/b&gt;: walls, stairs, and what the border of the map cuts. &lt;b&gt;Segments&lt;/b&gt;: each from a to b, with free space on its right; the style shows that side by ticks and the height by colour. Fields: id, shape, labels, height, indoors or outdoors, extras (&lt;i&gt;ext&lt;/i&gt;, as JSON).&lt;/p&gt; &lt;p&gt;&lt;b&gt;Place&lt;/b&gt;: a map may name its CRS, origin and rotation in its leading lines; parameters win over them. Where neither does, the layers are in local metres, said in a warning.&lt;/p&gt;</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/processing/load_robot_map.py" />
@@ -4544,6 +5403,11 @@
             <translation>{name}: nincs 0 m/s feletti sebessége, így nem korlátoz; kimarad</translation>
         </message>
         <message>
+            <location filename="../../plugin/processing/navigation_help.py" />
+            <source>&lt;p&gt;Writes a robot map as other robots and people read it.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Robot map&lt;/b&gt;: a file of &lt;i&gt;fleet:exportrobotmap&lt;/i&gt; or of the gateway, text or binary.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Formats&lt;/b&gt;, several at once:&lt;/p&gt; &lt;ul&gt; &lt;li&gt;&lt;i&gt;occupancy&lt;/i&gt;: occupancy grid for Nav2 (PGM and YAML). What a wall touches is occupied, so thin walls have no gap; courtyards are free; the inside of obstacles is unknown, or occupied on request. The frame of the grid is the site frame.&lt;/li&gt; &lt;li&gt;&lt;i&gt;keepout&lt;/i&gt;: mask for Nav2's keepout filter, from the keepout layer, with the filter's parameters.&lt;/li&gt; &lt;li&gt;&lt;i&gt;speed&lt;/i&gt;: mask for Nav2's speed filter, from the speed layer and its expression in m/s. A limit is never rounded up; where areas overlap the lower one holds.&lt;/li&gt; &lt;li&gt;&lt;i&gt;geojson&lt;/i&gt;: obstacles and segments in WGS 84 (RFC 7946).&lt;/li&gt; &lt;li&gt;&lt;i&gt;geopackage&lt;/i&gt;: the same in the site's CRS.&lt;/li&gt; &lt;li&gt;&lt;i&gt;svg&lt;/i&gt;, &lt;i&gt;png&lt;/i&gt;: a picture for people.&lt;/li&gt; &lt;/ul&gt; &lt;p&gt;&lt;b&gt;Keepout and speed layers&lt;/b&gt; are polygons in any CRS. Where the map's place is not known, layers are taken to be in its own metres, and a warning says so; &lt;i&gt;SITE_CRS&lt;/i&gt;, &lt;i&gt;ORIGIN&lt;/i&gt; and &lt;i&gt;ROTATION&lt;/i&gt; give it one.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Robots drive over&lt;/b&gt; obstacles that are lower: 0 keeps every kerb. Ramps are always driven on, stairs are obstacles, also from the side.&lt;/p&gt; &lt;p&gt;Existing files are replaced, each in one step, after all of them could be made. docs/navigation-maps.md says what is in each.&lt;/p&gt; &lt;p&gt;From a script, with no display:&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:exportnavigationmap -- \ MAP=campus.txt FORMATS=occupancy FORMATS=svg RESOLUTION=0.05 OUTPUT=campus&lt;/pre&gt;</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
             <location filename="../../plugin/processing/obstacle_outlines.py" />
             <source>Reducing obstacles</source>
             <translation>Akadályok egyszerűsítése</translation>
@@ -4552,6 +5416,16 @@
             <location filename="../../plugin/processing/obstacle_outlines.py" />
             <source>{obstacles} obstacles with {segments} segments became {obstacles_left} with {segments_left}</source>
             <translation>{obstacles} akadályból {segments} szakasszal {obstacles_left} lett {segments_left} szakasszal</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/placed_cones.py" />
+            <source>The placed cones have no field {missing}: give a layer of a GeoPackage, or the CSV, that 'robot-bridge placements export' wrote.</source>
+            <translation>A kihelyezett bójáknak nincs ilyen mezőjük: {missing}; adjon meg egy GeoPackage-réteget vagy a CSV-t, amelyet a 'robot-bridge placements export' írt.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/placed_cones.py" />
+            <source>There are no placed cones to report on. Check the filter of the layer, and the options of 'robot-bridge placements export'.</source>
+            <translation>Nincsenek kihelyezett bóják, amelyekről jelenteni lehetne. Ellenőrizze a réteg szűrőjét és a 'robot-bridge placements export' beállításait.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/plan_rows.py" />
@@ -4577,6 +5451,26 @@
             <location filename="../../plugin/processing/plan_rows.py" />
             <source>Trips</source>
             <translation>Körök</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/position_source.py" />
+            <source>The positions have no field {name} for the {what}: they have {names}. Give the layer 'positions' of 'robot-bridge trajectories export', or say which field it is.</source>
+            <translation>A helyzeteknek nincs {name} mezőjük ehhez: {what}; ezek vannak: {names}. Adja meg a 'robot-bridge trajectories export' 'positions' rétegét, vagy mondja meg, melyik mező az.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/position_source.py" />
+            <source>robot</source>
+            <translation>robot</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/position_source.py" />
+            <source>time</source>
+            <translation>idő</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/publish_help.py" />
+            <source>&lt;p&gt;Writes the layers of a site into a folder with &lt;i&gt;site.toml&lt;/i&gt; and &lt;i&gt;site.gpkg&lt;/i&gt;, which &lt;i&gt;robot-bridge serve --site FOLDER&lt;/i&gt; serves.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Layers&lt;/b&gt;: those of the project by their roles (menu Fleet Supervisor, Layer roles), or by a &lt;b&gt;map profile&lt;/b&gt;, or the layers given here. Which features count, heights, where things begin above the ground, labels, road widths and shapes of furniture come from the expressions kept with the roles; heights, labels and widths else from the fields &lt;i&gt;height&lt;/i&gt; or &lt;i&gt;height_m&lt;/i&gt;, &lt;i&gt;surface&lt;/i&gt;, &lt;i&gt;name&lt;/i&gt;, &lt;i&gt;width_m&lt;/i&gt; or &lt;i&gt;width&lt;/i&gt;.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Version&lt;/b&gt;: 1 for a new folder, else one more than the version there. A folder that holds another site is refused unless &lt;b&gt;Replace&lt;/b&gt; is ticked.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Bounds&lt;/b&gt;: the rectangle, along the axes of the site frame, that robots may be sent into. Obstacles are published up to 100 m beyond it, so that a robot at its edge is told what stands there.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Site CRS, origin, rotation&lt;/b&gt;: where the robots' (0, 0) is and how their x axis lies. Default: as the project has it.&lt;/p&gt; &lt;p&gt;An earlier publication is replaced only after the new one is complete; a cancel leaves it as it was. Broken geometry is repaired where that is safe and left out where it is not, each time with a warning that names the layer and the feature. One publication into a folder runs at a time.&lt;/p&gt;</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/processing/publish_plan.py" />
@@ -4754,6 +5648,76 @@
             <translation>{title} (alapértelmezés: ahogy közzétették, először {default:g})</translation>
         </message>
         <message>
+            <location filename="../../plugin/processing/report_layout.py" />
+            <source>Mean {mean}, RMS {rms}, 95 % within {p95}, largest {most}.</source>
+            <translation>Átlag {mean}, négyzetes közép {rms}, 95 % ezen belül: {p95}, legnagyobb {most}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/report_layout.py" />
+            <source>QGIS cannot make the report (layout export {number}): check the free space, and the background layers by leaving them out.</source>
+            <translation>A QGIS nem tudja elkészíteni a jelentést (elrendezés exportálása: {number}): ellenőrizze a szabad helyet, és a háttérrétegeket elhagyásukkal.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/report_layout.py" />
+            <source>The report cannot be written to {file}: there is no folder {folder}.</source>
+            <translation>A jelentés nem írható ide: {file}; nincs ilyen mappa: {folder}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/report_layout.py" />
+            <source>The report cannot be written to {file}: {error}. Close it if a program shows it, or choose another file.</source>
+            <translation>A jelentés nem írható ide: {file}: {error}. Zárja be, ha egy program mutatja, vagy válasszon másik fájlt.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/report_layout.py" />
+            <source>robots: {names}</source>
+            <translation>robotok: {names}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/report_layout.py" />
+            <source>{first} to {last} UTC</source>
+            <translation>{first} – {last} UTC</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/report_layout.py" />
+            <source>{within} of {count} cones ({share:.0f} %) stand within {tolerance:g} cm of their plan.</source>
+            <translation>{count} bójából {within} ({share:.0f} %) áll {tolerance:g} cm-en belül a tervhez képest.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/report_layout.py" />
+            <source>× planned   ● placed (red: beyond the tolerance)   orange: deviation, {factor} times as long</source>
+            <translation>× tervezett   ● kihelyezett (piros: a tűrésen túl)   narancs: eltérés, {factor}-szoros hosszban</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/report_table.py" />
+            <source>Off cm</source>
+            <translation>Elt. cm</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/report_table.py" />
+            <source>Placed (UTC)</source>
+            <translation>Kihelyezve (UTC)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/report_table.py" />
+            <source>Planned E</source>
+            <translation>Tervezett K</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/report_table.py" />
+            <source>Planned N</source>
+            <translation>Tervezett É</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/report_table.py" />
+            <source>ΔE cm</source>
+            <translation>ΔK cm</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/report_table.py" />
+            <source>ΔN cm</source>
+            <translation>ΔÉ cm</translation>
+        </message>
+        <message>
             <location filename="../../plugin/processing/road_source.py" />
             <source>CRS in metres (default: the layer's, or the project's)</source>
             <translation>Méteres vetület (alapértelmezés: a rétegé vagy a projekté)</translation>
@@ -4837,6 +5801,16 @@
             <location filename="../../plugin/processing/sinks.py" />
             <source>A layer cannot be written ({reason}): choose another place or format for it, and check the free space.</source>
             <translation>Egy réteg nem írható ki ({reason}): válasszon neki másik helyet vagy formátumot, és ellenőrizze a szabad helyet.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/sinks.py" />
+            <source>no reason is given</source>
+            <translation>nincs megadva ok</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/surface_at_point.py" />
+            <source>&lt;p&gt;Copies points and adds &lt;b&gt;surface&lt;/b&gt;, the class of the road surface that each is on, its &lt;b&gt;surface_name&lt;/b&gt;, and &lt;b&gt;surface_origin&lt;/b&gt;: whether the surface was drawn or generated from centrelines. They are empty where there is no surface.&lt;/p&gt; &lt;p&gt;The surfaces are layers of areas with a field &lt;i&gt;surface&lt;/i&gt;, or the class that their role says; without any, the project's layers with the role road surface. Points and layers may be in any CRS.&lt;/p&gt; &lt;p&gt;A point on an edge is on the surface. Where surfaces lie on one another a drawn one counts before a generated one, then the smaller before the larger. The expression &lt;i&gt;road_surface(x, y)&lt;/i&gt; tells the same. docs/roads.md says more.&lt;/p&gt;</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/processing/surface_at_point.py" />
@@ -4952,6 +5926,71 @@
             <location filename="../../plugin/processing/tile_windows.py" />
             <source>The {name} of a tile is {value} m: give at least 1 m, such as 100.</source>
             <translation>Egy csempe mérete ({name}) {value} m: adjon meg legalább 1 m-t, például 100-at.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/trajectories.py" />
+            <source>&lt;p&gt;Makes of the positions that a gateway stored one line for each drive of each robot: a robot that was not heard of for longer than the gap begins a new line. Or, with &lt;b&gt;a line for each step&lt;/b&gt;, one for each pair of positions, for colours by speed and for QGIS's temporal controller.&lt;/p&gt; &lt;p&gt;The positions are the layer &lt;i&gt;positions&lt;/i&gt; of &lt;i&gt;robot-bridge trajectories export drives.gpkg --site site&lt;/i&gt;, or any points, in any CRS, with a field for the robot and one for the time (date and time, seconds since 1970, or ISO 8601; without an offset UTC).&lt;/p&gt; &lt;p&gt;Fields: &lt;b&gt;begin&lt;/b&gt; and &lt;b&gt;end&lt;/b&gt; (UTC), &lt;b&gt;duration_s&lt;/b&gt;, &lt;b&gt;length_m&lt;/b&gt;, &lt;b&gt;mean_speed&lt;/b&gt; and &lt;b&gt;top_speed&lt;/b&gt; in m/s (as the robot told it, else its fastest step), &lt;b&gt;count&lt;/b&gt; of positions. The measure M of each vertex is its time in seconds since 1970. Lengths are measured in the layer's CRS if that is in true metres, as robots drive them, else on its ellipsoid.&lt;/p&gt; &lt;p&gt;The layer's times are set: open QGIS's temporal controller to play them.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:trajectories -- INPUT="drives.gpkg|layername=positions" OUTPUT=lines.gpkg&lt;/pre&gt;</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/trajectories.py" />
+            <source>A line for each step</source>
+            <translation>Lépésenként egy vonal</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/trajectories.py" />
+            <source>Field of the robot</source>
+            <translation>A robot mezője</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/trajectories.py" />
+            <source>Field of the speed [m/s]</source>
+            <translation>A sebesség mezője [m/s]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/trajectories.py" />
+            <source>Field of the time</source>
+            <translation>Az idő mezője</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/trajectories.py" />
+            <source>Lines</source>
+            <translation>Vonalak</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/trajectories.py" />
+            <source>Longest gap in a line [s]</source>
+            <translation>Leghosszabb szünet egy vonalban [s]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/trajectories.py" />
+            <source>Makes lines of stored positions, with their time, length and speed.</source>
+            <translation>A tárolt helyzetekből vonalakat készít, idejükkel, hosszukkal és sebességükkel.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/trajectories.py" />
+            <source>Metres driven, all robots</source>
+            <translation>Megtett méterek, minden robot</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/trajectories.py" />
+            <source>Positions</source>
+            <translation>Helyzetek</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/trajectories.py" />
+            <source>Trajectories</source>
+            <translation>Trajektóriák</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/trajectories.py" />
+            <source>{lines} lines of {positions} positions, {length:.1f} m in all.</source>
+            <translation>{lines} vonal {positions} helyzetből, összesen {length:.1f} m.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/trajectories.py" />
+            <source>{odd} features have no place, robot or time; they are left out.</source>
+            <translation>{odd} elemnek nincs helye, robotja vagy ideje; ezek kimaradnak.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/whole_file.py" />
@@ -5169,6 +6208,316 @@
             <translation>útfelület</translation>
         </message>
         <message>
+            <location filename="../../plugin/settings/connection_dialog.py" />
+            <source>&amp;Authentication</source>
+            <translation>&amp;Hitelesítés</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connection_dialog.py" />
+            <source>&amp;Name</source>
+            <translation>&amp;Név</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connection_dialog.py" />
+            <source>Connecting …</source>
+            <translation>Kapcsolódás …</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connection_dialog.py" />
+            <source>Edit connection</source>
+            <translation>Kapcsolat szerkesztése</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connection_dialog.py" />
+            <source>New connection</source>
+            <translation>Új kapcsolat</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connection_dialog.py" />
+            <source>T&amp;est</source>
+            <translation>P&amp;róba</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connection_dialog.py" />
+            <source>There is a connection {name} already. Give this one another name.</source>
+            <translation>Már van {name} nevű kapcsolat. Adjon másik nevet ennek.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connection_dialog.py" />
+            <source>connection test</source>
+            <translation>kapcsolati próba</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connection_dialog.py" />
+            <source>kept by QGIS, encrypted; or choose one below</source>
+            <translation>a QGIS őrzi, titkosítva; vagy válasszon lent</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connection_dialog.py" />
+            <source>such as the site's name</source>
+            <translation>például a telephely neve</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connection_dialog.py" />
+            <source>who you are, in every log</source>
+            <translation>kicsoda Ön, minden naplóban</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connection_trial.py" />
+            <source>{site} ({crs}) answers, as {who}.</source>
+            <translation>{site} ({crs}) válaszol, mint {who}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connection_trial.py" />
+            <source>{site} ({crs}) answers.</source>
+            <translation>{site} ({crs}) válaszol.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connections_dialog.py" />
+            <source>Connections to gateways</source>
+            <translation>Kapcsolatok az átjárókhoz</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connections_widget.py" />
+            <source>&amp;Edit…</source>
+            <translation>&amp;Szerkesztés…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connections_widget.py" />
+            <source>&amp;Import…</source>
+            <translation>&amp;Importálás…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connections_widget.py" />
+            <source>&amp;New…</source>
+            <translation>Ú&amp;j…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connections_widget.py" />
+            <source>&amp;Remove</source>
+            <translation>&amp;Eltávolítás</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connections_widget.py" />
+            <source>&amp;Test</source>
+            <translation>&amp;Próba</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connections_widget.py" />
+            <source>Connecting to {name} …</source>
+            <translation>Kapcsolódás ehhez: {name} …</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connections_widget.py" />
+            <source>Connections (*.json)</source>
+            <translation>Kapcsolatok (*.json)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connections_widget.py" />
+            <source>E&amp;xport…</source>
+            <translation>E&amp;xportálás…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connections_widget.py" />
+            <source>Export connections</source>
+            <translation>Kapcsolatok exportálása</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connections_widget.py" />
+            <source>Gateway</source>
+            <translation>Átjáró</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connections_widget.py" />
+            <source>Import connections</source>
+            <translation>Kapcsolatok importálása</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connections_widget.py" />
+            <source>Name</source>
+            <translation>Név</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connections_widget.py" />
+            <source>Operator</source>
+            <translation>Kezelő</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connections_widget.py" />
+            <source>Removed: {names}. Tokens stay in QGIS's authentication.</source>
+            <translation>Eltávolítva: {names}. A tokenek a QGIS hitelesítésében maradnak.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connections_widget.py" />
+            <source>{chosen} connections in {file}, without tokens.</source>
+            <translation>{chosen} kapcsolat itt: {file}, tokenek nélkül.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connections_widget.py" />
+            <source>{file} cannot be read: {error}</source>
+            <translation>{file} nem olvasható: {error}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connections_widget.py" />
+            <source>{file} cannot be written: {error}</source>
+            <translation>{file} nem írható: {error}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connections_widget.py" />
+            <source>{found} connections from {file}, {replaced} of them replaced.</source>
+            <translation>{found} kapcsolat innen: {file}, ebből {replaced} lecserélve.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/gateway_connection.py" />
+            <source>Choose a file that Export wrote.</source>
+            <translation>Válasszon az Exportálás által írt fájlt.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/gateway_connection.py" />
+            <source>The connection has no name. Give it one, such as the site's.</source>
+            <translation>A kapcsolatnak nincs neve. Adjon neki egyet, például a telephelyét.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/gateway_connection.py" />
+            <source>{source} has no list named connections. {choose}</source>
+            <translation>{source} nem tartalmaz connections nevű listát. {choose}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/gateway_connection.py" />
+            <source>{source} holds no connections to gateways. {choose}</source>
+            <translation>{source} nem tartalmaz átjárókhoz vezető kapcsolatokat. {choose}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/gateway_connection.py" />
+            <source>{source} is not JSON: {error}. {choose}</source>
+            <translation>{source} nem JSON: {error}. {choose}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/gateway_connection.py" />
+            <source>{source} is of version {found}; this plugin reads version {version}. Update the plugin.</source>
+            <translation>{source} verziója {found}; ez a modul a {version}. verziót olvassa. Frissítse a modult.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/gateway_connection.py" />
+            <source>{source}: connection {number} is not a set of texts named {keys}. {choose}</source>
+            <translation>{source}: a(z) {number}. kapcsolat nem ilyen nevű szövegekből áll: {keys}. {choose}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/gateway_connection.py" />
+            <source>{source}: connection {number}: {error}</source>
+            <translation>{source}: {number}. kapcsolat: {error}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/token_store.py" />
+            <source>QGIS did not give the token that it keeps: its master password was not given. Press Connect and enter it, or enter the token under Access.</source>
+            <translation>A QGIS nem adta ki az őrzött tokent: nem adták meg a mesterjelszavát. Nyomja meg a Kapcsolódás gombot és adja meg, vagy írja be a tokent a Hozzáférés alatt.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/token_store.py" />
+            <source>QGIS did not keep the token: its master password was not given. The token is used now and has to be entered again next time.</source>
+            <translation>A QGIS nem őrizte meg a tokent: nem adták meg a mesterjelszavát. A token most érvényes, de legközelebb újra meg kell adni.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/token_store.py" />
+            <source>The authentication {config} is of the method {method}, which gateways do not know. Choose one of the method {wanted} with the token as its password.</source>
+            <translation>A(z) {config} hitelesítés {method} módszerű, amelyet az átjárók nem ismernek. Válasszon {wanted} módszerűt, jelszóként a tokennel.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/token_store.py" />
+            <source>The authentication {config} that the connection names is not in this QGIS. Edit the connection and choose another, or enter the token.</source>
+            <translation>A kapcsolatban megnevezett {config} hitelesítés nincs ebben a QGIS-ben. Szerkessze a kapcsolatot és válasszon másikat, vagy írja be a tokent.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/token_store.py" />
+            <source>This QGIS keeps no authentication (its options say why, under Authentication): enter the token under Access.</source>
+            <translation>Ez a QGIS nem őriz hitelesítést (hogy miért, a beállításai mondják meg a Hitelesítés lapon): írja be a tokent a Hozzáférés alatt.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/feature_filter.py" />
+            <source>it is left out</source>
+            <translation>kimarad</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/feature_filter.py" />
+            <source>its filter gives {value!r}, which is neither true nor false; it is left out</source>
+            <translation>a szűrője ezt adja: {value!r}, ami se nem igaz, se nem hamis; kimarad</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/feature_values.py" />
+            <source>its base {value!r} is not a number of metres; it is taken to stand on the ground</source>
+            <translation>az alja {value!r}, ez nem méterszám; úgy vesszük, hogy a talajon áll</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/feature_values.py" />
+            <source>its outdoor flag {value!r} is neither true nor false; true is used</source>
+            <translation>a kültéri jelzője {value!r}, ami se nem igaz, se nem hamis; igaznak vesszük</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/feature_values.py" />
+            <source>its {what} {value!r} is not a number of metres of 0 or more; {otherwise}</source>
+            <translation>{what} értéke {value!r}, ez nem 0 vagy több méter; {otherwise}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/feature_values.py" />
+            <source>the default is used</source>
+            <translation>az alapérték érvényes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/feature_values.py" />
+            <source>the estimate is used</source>
+            <translation>a becslés érvényes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/ground_reading.py" />
+            <source>Layer {layer}, feature {id}: {note}</source>
+            <translation>{layer} réteg, {id}. elem: {note}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/ground_reading.py" />
+            <source>Layer {layer}: the width of {count} of its roads is not known and taken as {width:g} m (feature {first} is the first)</source>
+            <translation>{layer} réteg: {count} útjának szélessége nem ismert, {width:g} m-nek vesszük (az első a(z) {first}. elem)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/ground_reading.py" />
+            <source>has a coordinate that is no number; it is left out</source>
+            <translation>egyik koordinátája nem szám; kimarad</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/ground_reading.py" />
+            <source>has a line, which is no area; it is left out</source>
+            <translation>van benne vonal, ami nem terület; kimarad</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/ground_reading.py" />
+            <source>has a polygon, which is no centreline; it is left out</source>
+            <translation>van benne poligon, ami nem úttengely; kimarad</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/layer_rules.py" />
+            <source>Layer {layer}: it has no field {missing}, which the {what} expression {text!r} reads; the default is used for all its features</source>
+            <translation>{layer} réteg: nincs {missing} mezője, amelyet a(z) {what} kifejezés ({text!r}) olvas; minden eleménél az alapérték érvényes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/layer_rules.py" />
+            <source>The {what} expression {text!r} for the layer {layer} is not one: {error}. Correct it.</source>
+            <translation>A(z) {what} kifejezés ({text!r}) a(z) {layer} rétegnél nem az: {error}. Javítsa ki.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/layer_rules.py" />
+            <source>The {what} expression {text!r} for the layer {layer} reads the field {missing}, which the layer does not have. Correct it, or write attribute('...') for a field that some layers lack.</source>
+            <translation>A(z) {what} kifejezés ({text!r}) a(z) {layer} rétegnél a(z) {missing} mezőt olvassa, amely a rétegnek nincs. Javítsa ki, vagy írja így: attribute('...'), ha a mező egyes rétegekből hiányzik.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/layer_rules.py" />
+            <source>its {what} {value!r} is not a number of metres above 0; the default is used</source>
+            <translation>{what} értéke {value!r}, ez nem 0-nál több méter; az alapérték érvényes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/layer_rules.py" />
+            <source>the {what} expression fails: {error}; {otherwise}</source>
+            <translation>a(z) {what} kifejezés hibát ad: {error}; {otherwise}</translation>
+        </message>
+        <message>
             <location filename="../../plugin/sites/obstacle_source.py" />
             <source>The layer {name} cannot be opened ({source}): repair its data source or leave it out.</source>
             <translation>A(z) {name} réteg nem nyitható meg ({source}): javítsa ki az adatforrását, vagy hagyja ki.</translation>
@@ -5189,6 +6538,11 @@
             <translation>pontok</translation>
         </message>
         <message>
+            <location filename="../../plugin/sites/parts.py" />
+            <source>has a {kind}, which is no area or line; it is left out</source>
+            <translation>van benne {kind}, ami se nem terület, se nem vonal; kimarad</translation>
+        </message>
+        <message>
             <location filename="../../plugin/sites/placing.py" />
             <source>The layer {name} has no CRS, so its place on the site is not known: set the layer's CRS (Layer &gt; Set CRS of Layer), or {tick}.</source>
             <translation>A(z) {name} rétegnek nincs vetülete, így helye a telephelyen nem ismert: állítsa be a réteg vetületét (Réteg &gt; Réteg vetületének beállítása), vagy {tick}.</translation>
@@ -5202,6 +6556,21 @@
             <location filename="../../plugin/sites/placing.py" />
             <source>tick 'Layers without a CRS are already in the site frame's metres' (LOCAL=true)</source>
             <translation>kapcsolja be: „A vetület nélküli rétegek már a telephelyi keret métereiben vannak” (LOCAL=true)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/posts.py" />
+            <source>its rotation {value!r} is not a number of degrees; it is not turned</source>
+            <translation>az elforgatása {value!r}, ez nem fokszám; nem forgatjuk el</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/posts.py" />
+            <source>its width {width:g} m is none of furniture; {used:g} is used</source>
+            <translation>{width:g} m szélesség nem berendezésé; {used:g} érvényes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/posts.py" />
+            <source>{error}; its width is used</source>
+            <translation>{error}; a szélessége érvényes</translation>
         </message>
         <message>
             <location filename="../../plugin/sites/profile_file.py" />
@@ -5309,6 +6678,98 @@
             <translation>{process} folyamat itt: {host}</translation>
         </message>
         <message>
+            <location filename="../../plugin/sites/published_layers.py" />
+            <source>Publish the site again.</source>
+            <translation>Tegye közzé újra a telephelyet.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/published_layers.py" />
+            <source>{file} has no layer {layers} that can be read. {again}</source>
+            <translation>{file} fájlban nincs olvasható {layers} réteg. {again}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/published_layers.py" />
+            <source>{file} names no site: it has no table [site] with a name. {again}</source>
+            <translation>{file} nem nevez meg telephelyet: nincs benne [site] tábla névvel. {again}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/published_layers.py" />
+            <source>{folder} has a {settings} and no {geopackage}. {again}</source>
+            <translation>{folder}: van benne {settings}, de nincs {geopackage}. {again}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/ramps.py" />
+            <source>its corners span no surface that one can drive on; its normal is left out</source>
+            <translation>a sarkai nem feszítenek ki járható felületet; a normálisa kimarad</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/sites/reading.py" />
+            <source>Layer {name}: %n heights are not known and estimated as {height:g} m ({features})</source>
+            <translation>
+                <numerusform>{name} réteg: %n magasság nem ismert, becslésük {height:g} m ({features})</numerusform>
+            </translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/reading.py" />
+            <source>Layer {name}: its role is {role}, yet it is exported as obstacles</source>
+            <translation>{name} réteg: a szerepe {role}, mégis akadályként exportálódik</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/reading.py" />
+            <source>Layer {name}: its role {role} wants {wanted}; other features are exported as plain obstacles ({features})</source>
+            <translation>{name} réteg: {role} szerepéhez ez kell: {wanted}; a többi elem egyszerű akadályként exportálódik ({features})</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/reading.py" />
+            <source>feature {shown}</source>
+            <translation>{shown}. elem</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/reading.py" />
+            <source>features {shown}</source>
+            <translation>{shown}. elem</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/reading.py" />
+            <source>features {shown} and {more} more</source>
+            <translation>{shown}. elem és még {more}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/reading.py" />
+            <source>lines, one a riser</source>
+            <translation>vonal, lépcsőfokonként egy</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/reading.py" />
+            <source>polygons</source>
+            <translation>poligon</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/road_attributes.py" />
+            <source>its direction {value!r} is none of yes, -1 and no; it is taken as driven both ways</source>
+            <translation>az iránya {value!r}: se nem yes, se nem -1, se nem no; mindkét irányban járhatónak vesszük</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/road_attributes.py" />
+            <source>its level {value!r} is no number; it is taken to be on the ground</source>
+            <translation>a szintje {value!r}, ez nem szám; a talajon lévőnek vesszük</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/road_attributes.py" />
+            <source>its speed {value!r} is no number above 0; the default is used</source>
+            <translation>a sebessége {value!r}, ez nem 0-nál nagyobb szám; az alapérték érvényes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/road_attributes.py" />
+            <source>whether it is closed, {value!r}, is neither true nor false; it is taken as closed</source>
+            <translation>hogy le van-e zárva: {value!r}, ami se nem igaz, se nem hamis; lezártnak vesszük</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/shapes.py" />
+            <source>has a coordinate that is no number or has no place in the site's CRS; it is left out</source>
+            <translation>egyik koordinátája nem szám, vagy nincs helye a telephely vetületében; kimarad</translation>
+        </message>
+        <message>
             <location filename="../../plugin/sites/site_crs.py" />
             <source> (EPSG:326xx north, EPSG:327xx south of the equator)</source>
             <translation> (az Egyenlítőtől északra EPSG:326xx, délre EPSG:327xx)</translation>
@@ -5352,6 +6813,58 @@
             <location filename="../../plugin/sites/site_file.py" />
             <source>{file} cannot be written in {folder}: {error}. Check the folder's rights and the free space.</source>
             <translation>{file} nem írható ide: {folder}: {error}. Ellenőrizze a mappa jogait és a szabad helyet.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/soundness.py" />
+            <source> at ({x:.2f} {y:.2f})</source>
+            <translation> itt: ({x:.2f} {y:.2f})</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/sites/soundness.py" />
+            <source>%n different points</source>
+            <translation>
+                <numerusform>%n különböző pont</numerusform>
+            </translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/soundness.py" />
+            <source>courtyard {k} of part {number}{place} has {points} and encloses nothing; the courtyard is left out</source>
+            <translation>a(z) {number}. rész {k}. udvarában{place} {points} van, és nem zár körül semmit; az udvar kimarad</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/soundness.py" />
+            <source>line {number} has fewer than two different points; it is left out</source>
+            <translation>a(z) {number}. vonalnak kettőnél kevesebb különböző pontja van; kimarad</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/soundness.py" />
+            <source>not valid</source>
+            <translation>nem érvényes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/soundness.py" />
+            <source>riser {number} is bent; the straight line between its ends is used</source>
+            <translation>a(z) {number}. lépcsőfok hajlott; a két vége közötti egyenes érvényes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/soundness.py" />
+            <source>the outer ring of part {number}{place} has {points} and encloses nothing; the part is left out</source>
+            <translation>a(z) {number}. rész külső gyűrűjében{place} {points} van, és nem zár körül semmit; a rész kimarad</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/soundness.py" />
+            <source>the polygon is broken{place}: {what}</source>
+            <translation>a poligon hibás{place}: {what}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/soundness.py" />
+            <source>{fault}; it cannot be repaired and is left out</source>
+            <translation>{fault}; nem javítható, kimarad</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/soundness.py" />
+            <source>{fault}; it was repaired</source>
+            <translation>{fault}; ki lett javítva</translation>
         </message>
         <message>
             <location filename="../../plugin/sites/surface_store.py" />
