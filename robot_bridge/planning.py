@@ -10,10 +10,12 @@ from collections.abc import Sequence
 from typing import NamedTuple, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .messages import SetPath, SetPosEnd
 from .polyline import Polyline
 
+Floats = NDArray[np.float64]
 Point = tuple[float, float]
 """x, y in metres, site frame."""
 
@@ -61,10 +63,15 @@ def way_left(task: SetPosEnd | SetPath, start: Point, driven: float, planner: Pl
     if isinstance(task, SetPosEnd):
         planned = planner.path(start, (task.x, task.y))
         return WayLeft(SetPath(list(planned.points), task.theta), planned.note)
-    line = Polyline(task.points)
+    left = line_left(Polyline(task.points), start, driven)
+    return WayLeft(SetPath([(x, y) for x, y in left.tolist()], task.theta))
+
+
+def line_left(line: Polyline, start: Point, driven: float) -> Floats:
+    """Return what lies ahead of the first ``driven`` metres of ``line``, from ``start`` on: (n, 2), n > 1."""
     here = _joins(line, start, driven)
-    corners = [point for point, at in zip(task.points, line.stations, strict=True) if at > here + _SAME]
-    return WayLeft(SetPath(_without_repetition([start, line.at(here), *(corners or [line.end])]), task.theta))
+    corners = line.beyond(here + _SAME)
+    return _without_repetition(np.vstack([start, line.at(here), corners if len(corners) else line.end]))
 
 
 def _joins(line: Polyline, start: Point, driven: float) -> float:
@@ -77,10 +84,15 @@ def _joins(line: Polyline, start: Point, driven: float) -> float:
     return float(stations[int(np.argmin(distances))])
 
 
-def _without_repetition(points: Sequence[Point]) -> list[Point]:
-    """Return ``points`` without those that stand on the one before; at least two are kept."""
-    kept = [points[0]]
-    for point in points[1:]:
-        if max(abs(point[0] - kept[-1][0]), abs(point[1] - kept[-1][1])) > _SAME:
-            kept.append(point)
-    return kept if len(kept) > 1 else [points[0], points[-1]]
+def _without_repetition(points: Floats) -> Floats:
+    """Return ``points`` without those that stand on the one kept before; at least two are kept."""
+    kept, checked = np.ones(len(points), dtype=bool), 0
+    near = np.abs(np.diff(points, axis=0)) <= _SAME
+    for number in np.flatnonzero(near[:, 0] & near[:, 1]).tolist():
+        if number < checked:
+            continue
+        checked = number + 1
+        while checked < len(points) and np.abs(points[checked] - points[number]).max() <= _SAME:
+            kept[checked] = False
+            checked += 1
+    return points[kept] if kept.sum() > 1 else points[[0, -1]]

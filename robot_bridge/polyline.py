@@ -36,11 +36,16 @@ class Polyline:
 
     def feet(self, x: float, y: float) -> tuple[NDArray[Any], NDArray[Any]]:
         """Return, of the nearest point to (x, y) on each of the n - 1 steps, the station and the distance."""
-        along = ((np.array([x, y]) - self._start) * self._step).sum(axis=1) / self._length**2
-        along = np.clip(along, 0.0, 1.0)
+        to_x, to_y = x - self._start[:, 0], y - self._start[:, 1]
+        along = (to_x * self._step[:, 0] + to_y * self._step[:, 1]) / self._length**2
+        along = np.minimum(np.maximum(along, 0.0), 1.0)
         foot = self._start + along[:, None] * self._step
         off = np.hypot(foot[:, 0] - x, foot[:, 1] - y)
         return self._stations[:-1] + along * self._length, off
+
+    def beyond(self, station: float) -> NDArray[np.float64]:
+        """Return the points that come after ``station``, (m, 2)."""
+        return self._points[np.searchsorted(self._stations, station, side="right") :]
 
     def at(self, station: float) -> tuple[float, float]:
         """Return the point at ``station``; before the beginning the first, beyond the end the last."""

@@ -62,7 +62,7 @@ class PathArrival:
     def __init__(
         self, path: SetPath, tolerance: float, *, driven: float | None = 0.0, under_way: bool = False
     ) -> None:
-        self._line = Polyline(path.points)
+        self.line = Polyline(path.points)
         self._tolerance = tolerance
         self._theta = path.theta
         self._seek = under_way
@@ -72,12 +72,12 @@ class PathArrival:
 
     def deviation(self, pose: SendPos) -> float | None:
         """Return metres between robot and end of path once it has arrived, else None."""
-        end_x, end_y = self._line.end
+        end_x, end_y = self.line.end
         distance = math.hypot(pose.x - end_x, pose.y - end_y)
         stands_there = distance <= self._tolerance and standing(pose)
         if stands_there or self._moved(pose):
             self._follow(pose)
-        if not stands_there or self.driven < self._line.length - self._tolerance:
+        if not stands_there or self.driven < self.line.length - self._tolerance:
             return None
         turned = self._theta is not None and _turn(pose.theta, self._theta) > HEADING_TOLERANCE
         return None if turned else distance
@@ -88,7 +88,7 @@ class PathArrival:
         return last is None or math.hypot(pose.x - last.x, pose.y - last.y) >= STRIDE
 
     def _follow(self, pose: SendPos) -> None:
-        station, off = self._line.feet(pose.x, pose.y)
+        station, off = self.line.feet(pose.x, pose.y)
         if self._seek and (off <= CORRIDOR).any():
             self._seek, self._last = False, pose
             self.driven = max(self.driven, self._found(station, off))

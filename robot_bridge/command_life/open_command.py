@@ -6,6 +6,7 @@ import dataclasses
 from dataclasses import dataclass
 
 from ..messages import Abort, Command, CommandReport, CommandState, CommandStep, SetPath, SetPosEnd, to_json
+from ..polyline import Polyline
 from .arrival import Arrival, PathArrival, judge
 from .states import advance, note
 
@@ -69,6 +70,11 @@ class OpenCommand:
     def driven(self) -> float | None:
         """Metres of its path that the robot has driven, None for what is no path."""
         return self.arrival.driven if isinstance(self.arrival, PathArrival) else None
+
+    @property
+    def line(self) -> Polyline | None:
+        """Its path once the robot has taken that on, None before and for what is no path."""
+        return self.arrival.line if isinstance(self.arrival, PathArrival) else None
 
     def expired(self, now: float, after: float) -> bool:
         """Tell whether nobody has fetched it in time; ``after`` seconds where it says nothing itself.

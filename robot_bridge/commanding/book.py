@@ -17,6 +17,7 @@ from ..command_life.open_commands import OpenCommands
 from ..command_life.states import is_open, may_become
 from ..errors import DataRefusedError, RefusedError, StoreError, UncertainError
 from ..messages import Command, CommandReport, CommandState, OpAck, SendPos, SetPath, SetPosEnd
+from ..polyline import Polyline
 from ..store import commands
 from ..store.commands import StoredCommand
 from ..store.database import Database
@@ -94,6 +95,11 @@ class CommandBook:
             if isinstance(command.message, (SetPosEnd, SetPath)):
                 return command.message, command.driven or 0.0
         return None
+
+    def line(self, robot: str) -> Polyline | None:
+        """Return the path that the robot has taken on as a line, None where it has none."""
+        moving = [c for c in self._open.of(robot) if c.is_motion]
+        return moving[-1].line if moving else None
 
     def is_carrying_out(self, robot: str, command: str) -> bool:
         """Tell whether the command is the robot's task, and nobody has asked for its end."""

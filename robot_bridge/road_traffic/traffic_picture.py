@@ -8,12 +8,12 @@ from typing import NamedTuple
 import numpy as np
 
 from ..messages import ConflictReport, HoldReport, SetPath
-from ..planning import Point
+from ..planning import Floats, Point
 from ..sites.settings import RouteSettings
 from ..store.closures import HoldRow
 from ..traffic.conflicts import Conflict
 from ..traffic.movement import Movement, driving, standing
-from .ways import Underway, Way
+from .ways import Underway
 
 
 class Seen(NamedTuple):
@@ -27,22 +27,22 @@ class Seen(NamedTuple):
 
     def movements(self) -> dict[str, Movement]:
         """Return how every robot moves that has said where it is, if all goes on as it is planned."""
-        ways = {one.robot: one.way() for one in self.underway}
+        ways = {one.robot: one.points() for one in self.underway}
         return {name: self._movement(name, ways.get(name)) for name in self.places}
 
-    def _movement(self, robot: str, way: Way | None) -> Movement:
+    def _movement(self, robot: str, way: Floats | None) -> Movement:
         place, speed = self.places[robot]
         radius = self.settings.radius_m
         hold = self.holds.get(robot)
         if hold is None:
             if way is None:
                 return standing(robot, place, self.now, radius)
-            return driving(robot, way.points, speed, self.now, radius)
-        to_hold = [place] if way is None else way.points
-        rest = SetPath(**hold.rest).points
-        joined = [*to_hold, *rest]
+            return driving(robot, way, speed, self.now, radius)
+        to_hold = np.array([place]) if way is None else way
+        rest = np.array(SetPath(**hold.rest).points)
+        joined = np.concatenate([to_hold, rest])
         moving = driving(robot, joined, speed, self.now, radius)
-        there = sum(math.dist(a, b) for a, b in zip(to_hold, [*to_hold[1:], rest[0]], strict=True))
+        there = float(np.hypot(*np.diff(joined[: len(to_hold) + 1], axis=0).T).sum())
         return moving.waiting(there, max(hold.until - moving.time_at(there), 0.0))
 
 

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
+
+import numpy as np
 
 from ..commanding.book import CommandBook
 from ..messages import SetPath, SetPosEnd
-from ..planning import Point, StraightPlanner, way_left
+from ..planning import Floats, Point, line_left
 from ..polyline import Polyline
 from ..robots import Robots
 
@@ -25,25 +29,51 @@ class Way(NamedTuple):
     known: bool
 
 
+@dataclass(frozen=True)
+class ToldWay:
+    """The way to a target that a robot was told."""
+
+    path: SetPath
+
+    @cached_property
+    def line(self) -> Polyline:
+        """The way as a line, made once: of kilometres that takes longer than all that is asked of it."""
+        return Polyline(self.path.points)
+
+
 class Underway(NamedTuple):
-    """A robot's task, where it is, the metres it has driven of a path, and the way that it was told last."""
+    """A robot's task, where it is, the metres it has driven of a path, and the way that it was told last.
+
+    ``line`` is the task's path once the robot has taken that on.
+    """
 
     robot: str
     command: str
     task: SetPosEnd | SetPath
     place: Point
     driven: float
-    told: SetPath | None
+    told: ToldWay | None
+    line: Polyline | None = None
+
+    @property
+    def known(self) -> bool:
+        """Whether the gateway knows the way; else the robot finds it itself."""
+        return isinstance(self.task, SetPath) or self.told is not None
 
     def way(self) -> Way:
         """Return what is left; takes as long as the path has points, and may be called in any thread."""
+        points = [(x, y) for x, y in self.points().tolist()]
+        return Way(self.robot, self.command, self.task, points, self.known)
+
+    def points(self) -> Floats:
+        """Return the points of what is left, (n, 2), as quickly as can be."""
         if isinstance(self.task, SetPath):
-            return Way(self.robot, self.command, self.task, _left(self.task, self.place, self.driven), True)
+            return line_left(self.line or Polyline(self.task.points), self.place, self.driven)
         if self.told is not None:
             # Nothing counts the metres of it that are driven, so that the robot is looked for on all of it.
-            foot = _foot(self.told, self.place)
-            return Way(self.robot, self.command, self.task, _left(self.told, self.place, foot), True)
-        return Way(self.robot, self.command, self.task, [self.place, (self.task.x, self.task.y)], False)
+            station, off = self.told.line.feet(*self.place)
+            return line_left(self.told.line, self.place, float(station[int(off.argmin())]))
+        return np.array([self.place, (self.task.x, self.task.y)])
 
 
 class Ways:
@@ -52,12 +82,12 @@ class Ways:
     def __init__(self, robots: Robots, book: CommandBook) -> None:
         self._robots = robots
         self._book = book
-        self._told: dict[str, tuple[SetPosEnd, SetPath]] = {}
+        self._told: dict[str, tuple[SetPosEnd, ToldWay]] = {}
 
     def told(self, robot: str, task: SetPosEnd | SetPath, way: SetPath) -> None:
         """Note the way to ``task`` that a robot was told."""
         if isinstance(task, SetPosEnd):
-            self._told[robot] = task, way
+            self._told[robot] = task, ToldWay(way)
 
     def of(self, robot: str) -> Underway | None:
         """Return what a robot is doing, None for one that has no task or has not said where it is."""
@@ -67,19 +97,11 @@ class Ways:
             return None
         task, driven = given
         told = self._told.get(robot)
-        path = told[1] if told is not None and told[0] == task else None
-        return Underway(robot, command, task, (pose.x, pose.y), driven, path)
+        known_way = told[1] if told is not None and told[0] == task else None
+        line = self._book.line(robot)
+        return Underway(robot, command, task, (pose.x, pose.y), driven, known_way, line)
 
     def all(self) -> list[Underway]:
         """Return what all robots are doing that have a task."""
         underway = (self.of(robot) for robot in self._robots.names())
         return [one for one in underway if one is not None]
-
-
-def _left(path: SetPath, place: Point, driven: float) -> list[Point]:
-    return list(way_left(path, place, driven, StraightPlanner()).message.points)
-
-
-def _foot(path: SetPath, place: Point) -> float:
-    station, off = Polyline(path.points).feet(*place)
-    return float(station[int(off.argmin())])

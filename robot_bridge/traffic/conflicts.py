@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .movement import Floats, Movement
+from .nearness import Windows, near_pairs
 
 HEAD_ON, CROSSING, FOLLOWING, STANDING = "head-on", "crossing", "following", "standing"
 
@@ -49,8 +50,9 @@ def find_conflicts(movements: Sequence[Movement], margin: float, now: float) -> 
     Two robots that stand are none, however near they are.
     """
     found: list[Conflict] = []
-    for a, b in _near_pairs(movements, margin):
-        found += conflicts_of(movements[a], movements[b], margin, now)
+    for near in near_pairs(movements, margin, now):
+        pair = movements[near.one], movements[near.two]
+        found += _conflicts_between(*pair, margin, now, near.begins, near.ends)
     return sorted(found, key=lambda one: (one.begins, one.robot, one.other))
 
 
@@ -58,22 +60,69 @@ def conflicts_with(
     movement: Movement, others: Iterable[Movement], margin: float, now: float
 ) -> list[Conflict]:
     """Return the conflicts of one movement with ``others``, soonest first."""
-    found = [conflict for other in others for conflict in conflicts_of(movement, other, margin, now)]
-    return sorted(found, key=lambda one: one.begins)
+    return Surroundings(list(others), margin, now).conflicts(movement)
 
 
 def conflicts_of(one: Movement, two: Movement, margin: float, now: float) -> list[Conflict]:
     """Return the conflicts of two movements from ``now`` on, soonest first."""
+    return _conflicts_between(one, two, margin, now, now, math.inf)
+
+
+class Surroundings:
+    """The movements of ``others``, that one movement after the other is held against from ``now`` on."""
+
+    def __init__(self, others: Sequence[Movement], margin: float, now: float) -> None:
+        self._others = others
+        self._margin, self._now = margin, now
+        self._windows = Windows(others, now)
+        boxes = [self._windows.boxes(other, other.radius + margin) for other in others]
+        self._boxes: Floats = np.array(boxes) if boxes else np.empty((0, 1, 4))
+
+    @property
+    def ends(self) -> float:
+        """When everybody has come to their end, -inf where nobody is around."""
+        return max((other.ends for other in self._others), default=-math.inf)
+
+    def conflicts(self, movement: Movement) -> list[Conflict]:
+        """Return the conflicts of ``movement`` with the others, soonest first."""
+        box, boxes = self._windows.boxes(movement, movement.radius), self._boxes
+        touch = (boxes[:, :, :2] <= box[:, 2:]).all(axis=2) & (boxes[:, :, 2:] >= box[:, :2]).all(axis=2)
+        found: list[Conflict] = []
+        for number in np.flatnonzero(touch.any(axis=1)).tolist():
+            windows = np.flatnonzero(touch[number])
+            span = self._windows.span(int(windows[0]), int(windows[-1]))
+            found += _conflicts_between(movement, self._others[number], self._margin, self._now, *span)
+        return sorted(found, key=lambda one: one.begins)
+
+
+def _conflicts_between(
+    one: Movement, two: Movement, margin: float, now: float, begins: float, ends: float
+) -> list[Conflict]:
+    """Return the conflicts from ``now`` on; none of them reaches beyond ``begins`` and ``ends``."""
     if one.stands and two.stands:
         return []
     if one.stands:
         one, two = two, one
     limit = one.radius + two.radius + margin - _ROOM
-    times = np.unique(np.concatenate([one.times, two.times, [now]]))
-    times = times[times >= now]
+    times = _times(one, two, now, begins, ends)
     apart = one.at(times) - two.at(times)
     spans = _spans(times, apart, limit)
-    return [_conflict(one, two, begins, ends) for begins, ends in _joined(spans)]
+    return [_conflict(one, two, *span) for span in _joined(spans)]
+
+
+def _times(one: Movement, two: Movement, now: float, begins: float, ends: float) -> Floats:
+    """Return the times, (n,) seconds, between which both drive straight, so that they cover the span."""
+    low, high = now, math.inf
+    parts = [np.array([now])]
+    for movement in (one, two):
+        part = movement.times_around(begins, ends)
+        # Where one of them is not known of any more, what the other does says nothing.
+        low = max(low, part[0]) if part[0] <= begins else low
+        high = min(high, part[-1]) if part[-1] >= ends else high
+        parts.append(part)
+    times = np.unique(np.concatenate(parts))
+    within: Floats = times[(times >= low) & (times <= high)]
+    return within
 
 
 def _spans(times: Floats, apart: Floats, limit: float) -> list[tuple[float, float]]:
@@ -112,7 +161,7 @@ def _joined(spans: list[tuple[float, float]]) -> list[tuple[float, float]]:
 
 def _conflict(one: Movement, two: Movement, begins: float, ends: float) -> Conflict:
     last = max(one.ends, two.ends, begins)
-    inner = np.unique(np.concatenate([one.times, two.times]))
+    inner = np.unique(np.concatenate([movement.times_around(begins, ends) for movement in (one, two)]))
     times = np.concatenate([[begins], inner[(inner > begins) & (inner < ends)], [min(ends, last)]])
     nearest_at = _nearest(times, one.at(times) - two.at(times))
     where = one.at([nearest_at])[0], two.at([nearest_at])[0]
@@ -165,17 +214,3 @@ def _heading(movement: Movement, begins: float, until: float) -> NDArray[np.floa
             unit: NDArray[np.float64] = step / metres
             return unit
     return None
-
-
-def _near_pairs(movements: Sequence[Movement], margin: float) -> list[tuple[int, int]]:
-    """Return the pairs whose boxes, grown by radius and margin, meet."""
-    if len(movements) < 2:
-        return []
-    grown = np.array([movement.radius + margin for movement in movements])[:, None]
-    low = np.array([movement.points.min(axis=0) for movement in movements]) - grown
-    high = np.array([movement.points.max(axis=0) for movement in movements]) + grown
-    pairs = []
-    for k in range(len(movements) - 1):
-        near = (low[k + 1 :] <= high[k]).all(axis=1) & (high[k + 1 :] >= low[k]).all(axis=1)
-        pairs += [(k, k + 1 + other) for other in np.flatnonzero(near).tolist()]
-    return pairs

@@ -10,7 +10,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from .conflicts import conflicts_with
+from .conflicts import Surroundings
 from .movement import Movement
 
 LONGEST_WAIT = 900.0
@@ -46,14 +46,15 @@ def give_way(
     The robot drives as near to the conflict as it can wait there without being in anyone's way. Nothing has
     to be waited for where there is no conflict.
     """
-    found = conflicts_with(movement, others, margin, now)
+    around = Surroundings(others, margin, now)
+    found = around.conflicts(movement)
     if not found:
         return Wait(movement, 0.0, 0.0)
     first = min(found, key=lambda one: one.begins)
     met = first.stations[0] if first.robot == movement.robot else first.stations[1]
     best: Wait | None = None
     for station in _places(met):
-        wait = _wait_at(movement, station, others, margin, now, longest)
+        wait = _wait_at(movement, station, around, longest)
         if wait is not None and (best is None or wait.movement.ends < best.movement.ends - 1.0):
             best = wait
     return best
@@ -65,21 +66,14 @@ def _places(met: float) -> list[float]:
     return [*(place for place in places if place > 1e-6), 0.0]
 
 
-def _wait_at(
-    movement: Movement,
-    station: float,
-    others: Sequence[Movement],
-    margin: float,
-    now: float,
-    longest: float,
-) -> Wait | None:
+def _wait_at(movement: Movement, station: float, around: Surroundings, longest: float) -> Wait | None:
     """Return the wait at ``station`` metres, as short as can be within a tenth of a second or so."""
     short, seconds = 0.0, 0.0
     arrives = movement.time_at(station)
     # Once everybody stands nothing changes any more.
-    longest = min(longest, max(other.ends for other in others) - arrives + 2 * _STEP)
+    longest = min(longest, around.ends - arrives + 2 * _STEP)
     while True:
-        found = conflicts_with(movement.waiting(station, seconds), others, margin, now)
+        found = around.conflicts(movement.waiting(station, seconds))
         if not found:
             break
         if any(math.isinf(one.ends) or one.begins < arrives + seconds for one in found):
@@ -91,7 +85,7 @@ def _wait_at(
             return None
     for _ in range(_HALVINGS):
         middle = (short + seconds) / 2
-        if conflicts_with(movement.waiting(station, middle), others, margin, now):
+        if around.conflicts(movement.waiting(station, middle)):
             short = middle
         else:
             seconds = middle

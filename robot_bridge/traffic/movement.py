@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -24,7 +25,7 @@ class Movement:
     times: Floats
     radius: float
 
-    @property
+    @cached_property
     def stands(self) -> bool:
         """Whether it goes nowhere."""
         return not bool((np.abs(self.points - self.points[0]) > 1e-9).any())
@@ -38,17 +39,27 @@ class Movement:
         """Return where it is at ``times``, (m,) seconds, as (m, 2)."""
         return np.column_stack([np.interp(times, self.times, self.points[:, k]) for k in (0, 1)])
 
+    def times_around(self, begins: float, ends: float) -> Floats:
+        """Return its times in a span, with the last before it and the first after it where there are any."""
+        first = np.searchsorted(self.times, begins, side="right") - 1
+        last = np.searchsorted(self.times, ends, side="left") + 1
+        return self.times[max(first, 0) : last]
+
     def station_at(self, time: float) -> float:
         """Return the metres that it has driven at ``time``."""
-        return float(np.interp(time, self.times, _stations(self.points)))
+        return float(np.interp(time, self.times, self._stations))
 
     def time_at(self, station: float) -> float:
         """Return when it comes to ``station`` metres along its way."""
-        return float(np.interp(station, _stations(self.points), self.times))
+        return float(np.interp(station, self._stations, self.times))
+
+    @cached_property
+    def _stations(self) -> Floats:
+        return _stations(self.points)
 
     def waiting(self, station: float, seconds: float) -> Movement:
         """Return the movement that stands ``seconds`` at ``station`` metres along its way."""
-        along = _stations(self.points)
+        along = self._stations
         station = float(np.clip(station, 0.0, along[-1]))
         at = float(np.interp(station, along, self.times))
         place = np.array([[np.interp(station, along, self.points[:, k]) for k in (0, 1)]])

@@ -172,7 +172,7 @@ def test_a_robot_that_creeps_to_the_end_of_its_path_has_reached_it():
 def test_a_robot_that_stands_on_its_path_costs_no_search_of_it(monkeypatch):
     arrival = PathArrival(SetPath(LOOP), TOLERANCE)
     arrival.deviation(pose(5.0, 0.0))
-    monkeypatch.setattr(arrival._line, "feet", None)
+    monkeypatch.setattr(arrival.line, "feet", None)
     for k in range(100):
         assert arrival.deviation(pose(5.0 + 0.001 * k, 0.01)) is None
 

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from robot_bridge.traffic.conflicts import conflicts_of, find_conflicts
+from robot_bridge.traffic.conflicts import conflicts_of, conflicts_with, find_conflicts
 from robot_bridge.traffic.giving_way import give_way
 from robot_bridge.traffic.movement import Movement, driving, standing
 
@@ -51,6 +51,55 @@ def test_conflicts_are_those_of_a_simulation(seed):
             middle = (one.at([conflict.nearest_at]) + two.at([conflict.nearest_at]))[0] / 2
             assert conflict.place == pytest.approx(tuple(middle))
             assert conflict.stations[0] == pytest.approx(one.station_at(conflict.begins))
+
+
+def random_fleet(seed: int) -> tuple[list[Movement], float]:
+    """Robots that drive, wait, stand, begin late and end early, and a time to look from on."""
+    random = np.random.default_rng(seed)
+    begins = float(random.choice([0.0, 100.0, 1.7e9]))
+    fleet = []
+    for number in range(random.integers(1, 12)):
+        if random.random() < 0.15:
+            place = tuple(random.uniform(0, 60, 2))
+            fleet.append(standing(f"r{number}", place, begins, random.uniform(0.2, 1)))
+            continue
+        points = random.uniform(0, 60, (random.integers(2, 40), 2)).round(2)
+        if random.random() < 0.3:
+            points = np.repeat(points, 2, axis=0)
+        start = begins + random.uniform(-20, 20)
+        way = driving(f"r{number}", points, random.uniform(0.5, 3), start, random.uniform(0.2, 1))
+        waits = random.random() < 0.4
+        fleet.append(way.waiting(random.uniform(0, 80), random.uniform(0, 30)) if waits else way)
+    return fleet, begins + float(random.choice([0.0, 15.0, 500.0]))
+
+
+@pytest.mark.parametrize("block", range(6))
+def test_what_is_found_quickly_is_exactly_what_every_pair_on_its_own_has(block):
+    found = 0
+    for seed in range(50 * block, 50 * block + 50):
+        fleet, now = random_fleet(seed)
+        pairs = [(a, b) for k, a in enumerate(fleet) for b in fleet[k + 1 :]]
+        each = [one for a, b in pairs for one in conflicts_of(a, b, 0.5, now)]
+        quick = find_conflicts(fleet, 0.5, now)
+        assert sorted(quick, key=repr) == sorted(each, key=repr), seed
+        assert [one.begins for one in quick] == sorted(one.begins for one in quick)
+        mine = [one for other in fleet[1:] for one in conflicts_of(fleet[0], other, 0.5, now)]
+        assert sorted(conflicts_with(fleet[0], fleet[1:], 0.5, now), key=repr) == sorted(mine, key=repr)
+        found += len(each)
+    assert found > 500
+
+
+def test_robots_that_pass_one_place_at_other_times_are_not_looked_at_closely(monkeypatch):
+    asked = set()
+    times = Movement.times_around
+    monkeypatch.setattr(
+        Movement, "times_around", lambda self, *span: asked.add(self.robot) or times(self, *span)
+    )
+    east = driving("east", [(0, 0), (400, 0)], 1.0, 0.0, 0.5)
+    fleet = [driving(f"north{k}", [(40 * k, -300), (40 * k, 100)], 1.0, 0.0, 0.5) for k in range(5)]
+    met = driving("met", [(300, -300), (300, 100)], 1.0, 0.0, 0.5)
+    (found,) = find_conflicts([east, *fleet, met], 0.5, 0.0)
+    assert {found.robot, found.other} == asked == {"east", "met"}
 
 
 def test_two_on_one_lane_meet_head_on_halfway():
