@@ -30,6 +30,7 @@ from .queues.queue_edits import QueueEdits
 from .queues.queue_panel import QueuePanel
 from .robots.robot_details import RobotDetails
 from .robots.robot_panel import RobotPanel
+from .tall_content import TallContent
 
 STOP_STYLE = (
     "QPushButton { background: #C62828; color: white; font-weight: bold; border: 1px solid #8E0000;"
@@ -74,7 +75,8 @@ class FleetDock(QgsDockWidget):
         split.addWidget(self._lower())
         split.setStretchFactor(0, 3)
         split.setStretchFactor(1, 2)
-        rows.addWidget(split, 1)
+        # The banner and the buttons that stop robots are outside of it: they are seen on every screen.
+        rows.addWidget(TallContent(split), 1)
         stops = QHBoxLayout()
         stops.addWidget(_stop_button(actions.abort_all, STOP_STYLE))
         stops.addWidget(_stop_button(actions.emergency, EMERGENCY_STYLE))

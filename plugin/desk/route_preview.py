@@ -127,5 +127,5 @@ def in_words(route: RouteReport) -> str:
     ]
     text = ", ".join([tr("{metres:.1f} m", metres=route.metres), time, *parts])
     if route.tight:
-        text += tr("; {tight} corners tighter than the robot turns", tight=len(route.tight))
+        text += tr("; corners tighter than the robot turns: {tight}", tight=len(route.tight))
     return f"{text}; {route.note}" if route.note else text

@@ -3177,8 +3177,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/robots/columns.py" />
-            <source>on its route</source>
-            <translation>a la seva ruta</translation>
+            <source>on route</source>
+            <translation>en ruta</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/robots/columns.py" />
@@ -3197,13 +3197,13 @@
         </message>
         <message>
             <location filename="../../plugin/desk/robots/columns.py" />
-            <source>to its cone</source>
-            <translation>cap al con</translation>
+            <source>to cone</source>
+            <translation>al con</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/robots/columns.py" />
-            <source>to its target</source>
-            <translation>cap a l'objectiu</translation>
+            <source>to target</source>
+            <translation>a l'objectiu</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/robots/detail_rows.py" />
@@ -3402,8 +3402,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/route_preview.py" />
-            <source>; {tight} corners tighter than the robot turns</source>
-            <translation>; {tight} cantonades més tancades que el gir del robot</translation>
+            <source>; corners tighter than the robot turns: {tight}</source>
+            <translation>; cantonades més tancades que el gir del robot: {tight}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/route_preview.py" />

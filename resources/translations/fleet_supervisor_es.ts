@@ -3177,8 +3177,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/robots/columns.py" />
-            <source>on its route</source>
-            <translation>en su ruta</translation>
+            <source>on route</source>
+            <translation>en ruta</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/robots/columns.py" />
@@ -3197,13 +3197,13 @@
         </message>
         <message>
             <location filename="../../plugin/desk/robots/columns.py" />
-            <source>to its cone</source>
-            <translation>hacia el cono</translation>
+            <source>to cone</source>
+            <translation>al cono</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/robots/columns.py" />
-            <source>to its target</source>
-            <translation>hacia el objetivo</translation>
+            <source>to target</source>
+            <translation>al objetivo</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/robots/detail_rows.py" />
@@ -3402,8 +3402,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/route_preview.py" />
-            <source>; {tight} corners tighter than the robot turns</source>
-            <translation>; {tight} esquinas más cerradas que el giro del robot</translation>
+            <source>; corners tighter than the robot turns: {tight}</source>
+            <translation>; esquinas más cerradas que el giro del robot: {tight}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/route_preview.py" />

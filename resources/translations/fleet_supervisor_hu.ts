@@ -3175,8 +3175,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/robots/columns.py" />
-            <source>on its route</source>
-            <translation>az útvonalán</translation>
+            <source>on route</source>
+            <translation>úton</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/robots/columns.py" />
@@ -3195,12 +3195,12 @@
         </message>
         <message>
             <location filename="../../plugin/desk/robots/columns.py" />
-            <source>to its cone</source>
+            <source>to cone</source>
             <translation>a bójához</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/robots/columns.py" />
-            <source>to its target</source>
+            <source>to target</source>
             <translation>a céljához</translation>
         </message>
         <message>
@@ -3400,8 +3400,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/route_preview.py" />
-            <source>; {tight} corners tighter than the robot turns</source>
-            <translation>; {tight} sarok élesebb, mint ahogy a robot fordul</translation>
+            <source>; corners tighter than the robot turns: {tight}</source>
+            <translation>; a robot fordulásánál élesebb sarkok: {tight}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/route_preview.py" />

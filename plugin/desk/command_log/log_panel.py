@@ -10,7 +10,6 @@ from qgis.PyQt.QtWidgets import (
     QHBoxLayout,
     QHeaderView,
     QLabel,
-    QSizePolicy,
     QToolButton,
     QTreeView,
     QVBoxLayout,
@@ -57,7 +56,7 @@ class CommandLog(QWidget):
         self._which.addItems([WHICH[which] for which in Which])
         self._summary = QLabel(tr("None open"))
         self._summary.setObjectName("fleet_log_summary")
-        self._summary.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
+        self._summary.setWordWrap(True)
         self._lay_out()
         self._robots.currentIndexChanged.connect(self.refresh)
         self._which.currentIndexChanged.connect(self.refresh)
@@ -137,13 +136,16 @@ class CommandLog(QWidget):
         head.setSpacing(4)
         head.addWidget(self._robots, 1)
         head.addWidget(self._which, 1)
+        beneath = QHBoxLayout()
+        beneath.setSpacing(4)
+        beneath.addWidget(self._summary, 1)
         for button in (go, older, export):
-            head.addWidget(button)
+            beneath.addWidget(button)
         rows = QVBoxLayout(self)
         rows.setContentsMargins(0, 2, 0, 0)
         rows.setSpacing(3)
         rows.addLayout(head)
-        rows.addWidget(self._summary)
+        rows.addLayout(beneath)
         rows.addWidget(self.view, 1)
 
     def _list_robots(self, robots: set[str]) -> None:

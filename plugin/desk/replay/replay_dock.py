@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from qgis.core import QgsApplication
 from qgis.gui import QgsDockWidget
 from qgis.PyQt.QtWidgets import QComboBox, QHBoxLayout, QLabel, QToolButton, QVBoxLayout, QWidget
 
@@ -17,6 +18,8 @@ from .stretch_form import StretchForm
 from .time_line import TimeLine
 
 BANNER = "background: #7B1FA2; color: white; font-weight: bold; padding: 3px 8px;"
+
+PLAY, PAUSE = "/temporal_navigation/forward.svg", "/temporal_navigation/pause.svg"
 
 
 class ReplayDock(QgsDockWidget):
@@ -40,9 +43,8 @@ class ReplayDock(QgsDockWidget):
         self.line = TimeLine()
         self.play = QToolButton()
         self.play.setObjectName("fleet_replay_play")
-        self.play.setText("▶")
+        self._show_playing(False)
         self.play.setToolTip(tr("Play, or hold (Space)"))
-        self.play.setShortcut("Space")
         self.speed = QComboBox()
         self.speed.setObjectName("fleet_replay_speed")
         self.speed.setToolTip(tr("How much faster than it was"))
@@ -93,13 +95,21 @@ class ReplayDock(QgsDockWidget):
         self.layer.failed.connect(self._desk.complained)
         self.line.wanted.connect(self.clockwork.seek)
         self.clockwork.moved.connect(self._show)
-        self.clockwork.playing_changed.connect(lambda on: self.play.setText("⏸" if on else "▶"))
-        self.play.clicked.connect(lambda: self.clockwork.play(not self.clockwork.is_playing))
+        self.line.play_wanted.connect(self._play_or_hold)
+        self.clockwork.playing_changed.connect(self._show_playing)
+        self.play.clicked.connect(self._play_or_hold)
         self.speed.currentIndexChanged.connect(lambda k: self.clockwork.set_speed(SPEEDS[k]))
         self._desk.commands_changed.connect(self._show_marks)
         self._desk.site_changed.connect(self._site_changed)
         self._robots: list[str] = []
         self._site = self._desk.site.id if self._desk.site else None
+
+    def _play_or_hold(self, *_: object) -> None:
+        self.clockwork.play(not self.clockwork.is_playing)
+
+    def _show_playing(self, on: bool) -> None:
+        # QGIS's own pictures: not every font has signs for playing and holding.
+        self.play.setIcon(QgsApplication.getThemeIcon(PAUSE if on else PLAY))
 
     def _progressed(self) -> None:
         self._say(

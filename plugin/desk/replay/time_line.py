@@ -37,6 +37,8 @@ class TimeLine(QWidget):
     """
 
     wanted = pyqtSignal(float)
+    play_wanted = pyqtSignal()
+    """Space was pressed: that time goes on, or is held."""
 
     def __init__(self, parent: QWidget | None = None):
         super().__init__(parent)
@@ -131,6 +133,8 @@ class TimeLine(QWidget):
         }
         if event.key() in places:
             self._want(places[event.key()])
+        elif event.key() == Qt.Key.Key_Space and not event.isAutoRepeat():
+            self.play_wanted.emit()
         else:
             super().keyPressEvent(event)
 

@@ -70,8 +70,8 @@ def task_in_words(task: CommandReport | None, told: dict) -> str:
         return str(told.get("status") or (tr("stopped") if told.get("stopped") else ""))
     if task.state is CommandState.ACKNOWLEDGED:
         if task.op == SetPath.__name__:
-            return tr("on its route")
-        return tr("to its cone") if task.params.get("cone") else tr("to its target")
+            return tr("on route")
+        return tr("to cone") if task.params.get("cone") else tr("to target")
     target = tr("cone") if task.params.get("cone") else tr("target")
     name = {SetPosEnd.__name__: target, SetPath.__name__: tr("route")}.get(task.op, task.op)
     return f"{name} {task.state.value}"

@@ -62,7 +62,7 @@ class TourAction(QObject):
             self.panel.closed.connect(self.end)
         self.panel.show_step(0)
         self._show_practice()
-        self.panel.place()
+        self.panel.place(self._iface.mapCanvas())
         self.panel.show()
         self._point()
 
@@ -92,7 +92,7 @@ class TourAction(QObject):
         if settings.value(OFFERED, False, type=bool):
             return
         settings.setValue(OFFERED, True)
-        text = tr("Fleet Supervisor is new here. A tour of five minutes shows it with simulated robots.")
+        text = tr("Fleet Supervisor is new here: a five-minute tour shows it.")
         bar = self._iface.messageBar()
         self._offer = bar.createMessage(text)
         button = QPushButton(tr("Start the tour"))

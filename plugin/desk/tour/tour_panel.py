@@ -10,8 +10,8 @@ from ...language import tr
 from .steps import STEPS, Step
 
 WIDTH = 400
-FROM_CORNER = 36
-"""Pixels from the window's lower left corner: above the status bar."""
+FROM_LEFT, FROM_TOP = 12, 48
+"""Pixels from the upper left corner of what it lies over: beneath one item of the message bar."""
 
 
 class TourPanel(QFrame):
@@ -77,10 +77,10 @@ class TourPanel(QFrame):
         self._offer.setEnabled(not busy)
         self._fit()
 
-    def place(self) -> None:
-        """Lie at the window's lower left corner."""
+    def place(self, over: QWidget) -> None:
+        """Lie over a part of the window, at its upper left: the sample site's robots are further down."""
         self._fit()
-        self.move(FROM_CORNER, self.parentWidget().height() - self.height() - FROM_CORNER)
+        self.move(over.mapTo(self.parentWidget(), QPoint(FROM_LEFT, FROM_TOP)))
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
         self._grip = event.pos()
@@ -100,9 +100,9 @@ class TourPanel(QFrame):
         self._fit()
 
     def _fit(self) -> None:
-        foot = self.geometry().bottom()
-        self.setFixedHeight(max(self.layout().heightForWidth(WIDTH), self.minimumSizeHint().height()))
-        self.move(self.x(), foot - self.height() + 1)
+        line = 2 * self.frameWidth()
+        wanted = self.layout().heightForWidth(WIDTH - line) + line
+        self.setFixedHeight(max(wanted, self.minimumSizeHint().height()))
 
     def _want(self) -> None:
         self.wanted.emit(self.step.offer)

@@ -5,10 +5,11 @@ from __future__ import annotations
 import pytest
 from fleet_supervisor.plugin.desk.clear_dialog import ClearDialog
 from fleet_supervisor.plugin.desk.emergency_banner import in_words
+from fleet_supervisor.plugin.desk.tall_content import TallContent
 from fleet_supervisor.robot_bridge.messages import EmergencyReport, SetPosEnd
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
-from qgis.PyQt.QtWidgets import QLabel, QLineEdit, QPushButton, QToolButton
+from qgis.PyQt.QtWidgets import QAbstractButton, QLabel, QLineEdit, QPushButton, QToolButton
 
 LEFT = Qt.MouseButton.LeftButton
 
@@ -36,6 +37,20 @@ def stopped(at_desk, wait):
     press_stop(at_desk)
     wait(lambda: "in force" in banner(at_desk), what="the banner")
     return at_desk
+
+
+def test_on_a_low_screen_the_window_does_not_grow_and_what_stops_robots_stays_in_view(stopped, iface, wait):
+    body = stopped.dock.widget()
+    body.findChild(QToolButton, "fleet_access_button").setChecked(True)
+    iface.resize(1280, 520)
+    wait(lambda: iface.height() == 520, what="the window being as low as it was made")
+    for name in ("fleet_emergency_stop_button", "fleet_abort_all_button", "fleet_clear_emergency_button"):
+        button = body.findChild(QAbstractButton, name)
+        assert button.visibleRegion().boundingRect() == button.rect(), name
+    middle = body.findChild(TallContent)
+    assert middle.verticalScrollBar().maximum() > 0
+    widest = middle.widget().minimumSizeHint().width()
+    wait(lambda: middle.viewport().width() >= widest, what="room beside the scroll bar")
 
 
 def test_one_click_and_no_question_stops_everything_and_the_banner_says_what_was_confirmed(

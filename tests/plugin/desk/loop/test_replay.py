@@ -126,6 +126,12 @@ def test_keys_on_the_time_line(driven, dock, operator):
     assert dock.clockwork.moment == dock.clockwork.since
     QTest.keyClick(dock.line, Qt.Key.Key_End)
     assert dock.clockwork.moment == pytest.approx(dock.clockwork.until, abs=0.3)
+    QTest.keyClick(dock.line, Qt.Key.Key_Space)
+    assert dock.clockwork.is_playing
+    QTest.keyClick(dock.line, Qt.Key.Key_Space)
+    assert not dock.clockwork.is_playing
+    # Elsewhere Space is what it is everywhere: it presses the button that has the keyboard.
+    assert dock.play.shortcut().isEmpty()
 
 
 def test_commands_are_marks_on_the_time_line(driven, dock, operator):

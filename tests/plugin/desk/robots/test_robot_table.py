@@ -92,7 +92,7 @@ def test_how_far_a_robot_is_off_its_path_then_off_its_target(table, at_desk, gat
     gateway._queue("command-1", "r1", "SetPath", path)
     gateway.step("command-1", CommandState.ACKNOWLEDGED, "r1")
     wait(lambda: column(table, "Off")[1] == "2.00 m")
-    assert column(table, "Task")[1] == "on its route"
+    assert column(table, "Task")[1] == "on route"
     gateway.step("command-1", CommandState.REACHED, "r1", deviation=0.07)
     wait(lambda: column(table, "Off")[1] == "0.07 m")
 
