@@ -36,13 +36,17 @@ class AccessFields(QWidget):
         self._ca.setFilter(tr("Certificates (*.pem *.crt *.cer);;All files (*)"))
         self._ca.setDialogTitle(tr("The site's ca.pem"))
         self._ca.setFilePath(QgsSettings().value(CA_KEY, "") or "")
-        self._ca.lineEdit().setPlaceholderText(tr("the site's ca.pem; empty for public authorities"))
+        hint = tr("the site's ca.pem; empty for public authorities")
+        self._ca.lineEdit().setPlaceholderText(hint)
+        self._ca.lineEdit().setToolTip(hint)
         self._lay_out()
 
     def show_kept(self, url: str) -> None:
         """Show whether QGIS keeps a token for the gateway at ``url``."""
         kept = self._store.has(url)
-        self._token.setPlaceholderText(BY_CONNECTION if self._auth else KEPT if kept else NONE_KEPT)
+        hint = BY_CONNECTION if self._auth else KEPT if kept else NONE_KEPT
+        self._token.setPlaceholderText(hint)
+        self._token.setToolTip(hint)
         self._keep.setChecked(kept or (self._keep.isChecked() and bool(self._token.text())))
 
     def use(self, auth: str, ca_file: str | None = None) -> None:

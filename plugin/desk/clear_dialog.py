@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from qgis.PyQt.QtCore import Qt, pyqtSignal
-from qgis.PyQt.QtWidgets import QDialog, QDialogButtonBox, QLabel, QLineEdit, QVBoxLayout, QWidget
+from qgis.PyQt.QtWidgets import QDialog, QDialogButtonBox, QLineEdit, QVBoxLayout, QWidget
 
 from ...robot_bridge.messages import EmergencyReport
 from ..language import tr
 from .emergency_banner import in_words
+from .wrapped_text import wrapped_text
+
+WIDTH = 440
 
 
 class ClearDialog(QDialog):
@@ -23,7 +26,9 @@ class ClearDialog(QDialog):
         self._stop = report.stop or ""
         self._reason = QLineEdit()
         self._reason.setObjectName("fleet_clear_reason")
-        self._reason.setPlaceholderText(tr("Why robots may drive again, for the log"))
+        hint = tr("Why robots may drive again, for the log")
+        self._reason.setPlaceholderText(hint)
+        self._reason.setToolTip(hint)
         self._reason.setMaxLength(500)
         buttons = QDialogButtonBox()
         clear = buttons.addButton(tr("Clear emergency stop"), QDialogButtonBox.ButtonRole.AcceptRole)
@@ -43,10 +48,7 @@ class ClearDialog(QDialog):
                 "aborted."
             ),
         ):
-            label = QLabel(text)
-            label.setWordWrap(True)
-            label.setTextFormat(Qt.TextFormat.PlainText)
-            rows.addWidget(label)
+            rows.addWidget(wrapped_text(text, WIDTH))
         rows.addWidget(self._reason)
         rows.addWidget(buttons)
-        self.setMinimumWidth(440)
+        self.setMinimumWidth(WIDTH)

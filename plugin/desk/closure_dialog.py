@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from qgis.PyQt.QtCore import Qt, pyqtSignal
-from qgis.PyQt.QtWidgets import QComboBox, QDialog, QDialogButtonBox, QFormLayout, QLabel, QLineEdit, QWidget
+from qgis.PyQt.QtWidgets import QComboBox, QDialog, QDialogButtonBox, QFormLayout, QLineEdit, QWidget
 
 from ..language import tr
+from .wrapped_text import wrapped_text
 
 TIMES = (
     (tr("until it is opened"), None),
@@ -15,6 +16,7 @@ TIMES = (
     (tr("for 1 day"), 86_400.0),
 )
 LONGEST_REASON = 200
+WIDTH = 440
 
 
 class ClosureDialog(QDialog):
@@ -26,15 +28,16 @@ class ClosureDialog(QDialog):
         super().__init__(parent)
         self.setObjectName("fleet_closure_dialog")
         self.setWindowTitle(tr("Close road"))
+        self.setMinimumWidth(WIDTH)
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        text = QLabel(
+        text = wrapped_text(
             tr(
                 "The road is closed for every robot from this junction to the next. Robots whose way leads "
                 "along it get another way; one that has no other way is stopped, unless the site's settings "
                 "say otherwise."
-            )
+            ),
+            WIDTH,
         )
-        text.setWordWrap(True)
         self._reason = QLineEdit()
         self._reason.setObjectName("fleet_closure_reason")
         self._reason.setMaxLength(LONGEST_REASON)

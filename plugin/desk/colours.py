@@ -30,6 +30,13 @@ ROUTE = QColor("#FFE14D")
 CONE = QColor("#F26A1B")
 SELECTED = QColor("#FFE14D")
 REFUSED = QColor("#E53935")
+WRONG = QColor("#C62828")
+"""Letters that say what is wrong."""
+DOUBTFUL = QColor("#8A5A00")
+"""Letters that say what may be wrong."""
+WRONG_STYLE = "color: #B71C1C; background: #FDECEA;"
+DOUBTFUL_STYLE = "color: #6B4300; background: #FFF1D0;"
+"""Labels that bring their own background: some themes of QGIS are of a grey on which no red is legible."""
 DARK = 128
 """Lightness of a background below which letters have to be paler."""
 

@@ -7,6 +7,7 @@ from qgis.PyQt.QtWidgets import QHBoxLayout, QLabel, QSizePolicy, QToolButton, Q
 
 from ...robot_bridge.messages import ConflictReport, HoldReport
 from ..language import tr
+from .colours import DOUBTFUL_STYLE
 from .desk import Desk
 from .road_board import time_of_day
 
@@ -92,5 +93,5 @@ def _label(text: str, name: str) -> QLabel:
     label.setTextFormat(Qt.TextFormat.PlainText)
     label.setWordWrap(True)
     label.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Preferred)
-    label.setStyleSheet("color: #8a5a00;" if name == "fleet_conflict" else "")
+    label.setStyleSheet(DOUBTFUL_STYLE if name == "fleet_conflict" else "")
     return label

@@ -21,6 +21,8 @@ class TallContent(QScrollArea):
     def minimumSizeHint(self) -> QSize:
         bar = self.verticalScrollBar()
         beside = bar.sizeHint().width() if bar.isVisibleTo(self) else 0
+        # Themes of QGIS draw a frame here all the same.
+        beside += 2 * self.frameWidth()
         return QSize(self.widget().minimumSizeHint().width() + beside, super().minimumSizeHint().height())
 
     def sizeHint(self) -> QSize:

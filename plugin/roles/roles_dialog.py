@@ -23,6 +23,7 @@ from qgis.PyQt.QtWidgets import (
     QWidget,
 )
 
+from ..desk.column_heads import fit_heads
 from ..errors import FleetError
 from ..language import tr
 from ..sites.profile_file import SUFFIXES, read_profile, shipped_profiles
@@ -157,6 +158,7 @@ class RolesDialog(QDialog):
         header = table.horizontalHeader()
         for column, width in WIDTHS.items():
             table.setColumnWidth(column, width)
+        fit_heads(header)
         header.setSectionResizeMode(RESULT, QHeaderView.ResizeMode.Stretch)
         return table
 

@@ -10,8 +10,20 @@ from qgis.PyQt.QtCore import QAbstractTableModel, QModelIndex, Qt, pyqtSignal
 from qgis.PyQt.QtGui import QColor
 
 from ...robot_bridge.robotmap.templates import NAMED
+from ..desk.colours import DOUBTFUL, WRONG, for_letters
 from ..language import tr
-from ..sites.roles import FURNITURE, OBSTACLE_ROLES, ORTHOPHOTO, ROAD_CENTRELINE, LayerSetup
+from ..sites.roles import (
+    FURNITURE,
+    KEEPOUT,
+    OBSTACLE,
+    OBSTACLE_ROLES,
+    ORTHOPHOTO,
+    RAMP,
+    ROAD_CENTRELINE,
+    ROAD_SURFACE,
+    STAIRS,
+    LayerSetup,
+)
 from .measure import Measure
 from .picture import COLOURS
 from .rows import RoleRow
@@ -65,9 +77,19 @@ EXPLANATIONS = {
     ROTATION: tr("Expression for the degrees clockwise that the template is turned; empty: 0"),
     RESULT: tr("What is published of the layer"),
 }
-ROLE_NAMES = {"": "–", ROAD_CENTRELINE: tr("road centreline"), "road_surface": tr("road surface")}
+ROLE_NAMES = {
+    "": "–",
+    OBSTACLE: tr("obstacle"),
+    STAIRS: tr("stairs"),
+    RAMP: tr("ramp"),
+    FURNITURE: tr("furniture"),
+    ROAD_CENTRELINE: tr("road centreline"),
+    ROAD_SURFACE: tr("road surface"),
+    KEEPOUT: tr("keepout"),
+    ORTHOPHOTO: tr("orthophoto"),
+}
 
-_GREY, _RED, _AMBER = QColor("#8a949e"), QColor("#c1121f"), QColor("#9a5b00")
+_GREY = QColor("#8a949e")
 
 
 def role_name(role: str) -> str:
@@ -189,5 +211,5 @@ class RoleTableModel(QAbstractTableModel):
     def _colour(self, row: RoleRow, column: int) -> Any:
         found = self._results.get(row.layer_id)
         if column == RESULT and found is not None and (found.refused or found.warnings):
-            return _RED if found.refused else _AMBER
+            return for_letters(WRONG if found.refused else DOUBTFUL)
         return _GREY if not row.setup.role else None

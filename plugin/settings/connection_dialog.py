@@ -56,7 +56,9 @@ class ConnectionDialog(QDialog):
         self._ca.setObjectName("fleet_connection_ca")
         self._ca.setFilter(tr("Certificates (*.pem *.crt *.cer);;All files (*)"))
         self._ca.setFilePath(connection.ca_file)
-        self._ca.lineEdit().setPlaceholderText(tr("the site's ca.pem; empty for public authorities"))
+        hint = tr("the site's ca.pem; empty for public authorities")
+        self._ca.lineEdit().setPlaceholderText(hint)
+        self._ca.lineEdit().setToolTip(hint)
         self._verdict = VerdictLabel()
         self._trial = ConnectionTrial(self)
         self._trial.told.connect(self._verdict.tell)
@@ -148,4 +150,5 @@ def _line(name: str, text: str, hint: str) -> QLineEdit:
     line = QLineEdit(text)
     line.setObjectName(name)
     line.setPlaceholderText(hint)
+    line.setToolTip(hint)
     return line

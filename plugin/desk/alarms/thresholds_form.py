@@ -70,7 +70,9 @@ class ThresholdsForm(QWidget):
         grid.addWidget(box, row, 0)
         fields = [field for field in FIELDS if field.kind is kind]
         if not fields:
-            grid.addWidget(QLabel(SITE_SETS), row, 1, 1, 2)
+            told = QLabel(SITE_SETS)
+            told.setWordWrap(True)
+            grid.addWidget(told, row, 1, 1, 2)
         for number, field in enumerate(fields):
             grid.addWidget(QLabel(field.label), row + number, 1)
             grid.addWidget(self._spin_box(field, box), row + number, 2)

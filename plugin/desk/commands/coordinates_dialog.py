@@ -18,6 +18,7 @@ from qgis.PyQt.QtWidgets import (
 
 from ...errors import FleetError
 from ...language import tr
+from ..colours import WRONG_STYLE
 from ..desk import Desk
 from ..drafting.datum_path import datum_path
 from ..drafting.place_text import read_place
@@ -83,7 +84,7 @@ class CoordinatesDialog(QDialog):
         except FleetError as error:
             self._told.setText(str(error))
             if self._text.text().strip():
-                self._told.setStyleSheet("color: #C62828;")
+                self._told.setStyleSheet(WRONG_STYLE)
         self._set.setEnabled(self._place is not None)
 
     def _in_words(self) -> str:

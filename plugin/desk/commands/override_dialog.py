@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from qgis.PyQt.QtCore import Qt, pyqtSignal
-from qgis.PyQt.QtWidgets import QDialog, QDialogButtonBox, QLabel, QLineEdit, QVBoxLayout, QWidget
+from qgis.PyQt.QtWidgets import QDialog, QDialogButtonBox, QLineEdit, QVBoxLayout, QWidget
 
 from ...language import tr
 from ..drafts import Draft, in_brief
+from ..wrapped_text import wrapped_text
 
 LONGEST_WHY = 300
 """characters."""
@@ -38,11 +39,11 @@ class OverrideDialog(QDialog):
         self._override.setObjectName("fleet_override_confirm")
         self._override.setEnabled(False)
         rows = QVBoxLayout(self)
-        rows.addWidget(_label(f"{draft.in_words()}. {in_brief(draft.findings.overridable, MOST_SHOWN)}"))
+        found = f"{draft.in_words()}. {in_brief(draft.findings.overridable, MOST_SHOWN)}"
+        rows.addWidget(wrapped_text(found, WIDTH))
         rows.addWidget(self._why)
-        rows.addWidget(
-            _label(tr("Your name, what was found and why go into the gateway's log. Nothing is sent yet."))
-        )
+        note = tr("Your name, what was found and why go into the gateway's log. Nothing is sent yet.")
+        rows.addWidget(wrapped_text(note, WIDTH))
         rows.addWidget(buttons)
         self._why.textChanged.connect(lambda text: self._override.setEnabled(bool(text.strip())))
         buttons.accepted.connect(self._confirm)
@@ -54,12 +55,3 @@ class OverrideDialog(QDialog):
         text = "".join(c if c.isprintable() else " " for c in f"{found} {why}")
         self.confirmed.emit(self._draft, text)
         self.accept()
-
-
-def _label(text: str) -> QLabel:
-    label = QLabel(text)
-    label.setTextFormat(Qt.TextFormat.PlainText)
-    label.setWordWrap(True)
-    # A dialog does not ask its wrapped labels how high they become.
-    label.setMinimumHeight(label.heightForWidth(WIDTH - 30))
-    return label

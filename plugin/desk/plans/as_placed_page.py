@@ -21,6 +21,7 @@ from qgis.PyQt.QtWidgets import (
 from ....robot_bridge.messages import PlacementReport
 from ...language import tr
 from ...settings.preferences import export_path
+from ..column_heads import fit_heads
 from ..desk import Desk
 from ..road_board import time_of_day
 from .as_placed import as_csv, chosen, tally
@@ -65,6 +66,7 @@ class AsPlacedPage(QWidget):
         self.table.verticalHeader().setDefaultSectionSize(20)
         self.table.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
         self.table.setSelectionBehavior(QAbstractItemView.SelectionBehavior.SelectRows)
+        fit_heads(self.table.horizontalHeader())
         self.table.cellDoubleClicked.connect(self._go_there)
         self.placements: list[PlacementReport] = []
         self._lay_out()

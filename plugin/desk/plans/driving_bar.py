@@ -6,11 +6,10 @@ from qgis.PyQt.QtCore import pyqtSignal
 from qgis.PyQt.QtWidgets import QCheckBox, QGridLayout, QLabel, QPushButton, QWidget
 
 from ...language import tr
+from ..colours import WRONG_STYLE
 from .draft_plan import DraftPlan
 from .driven_plan import DrivenPlan
 from .plan_rows import summary
-
-_WARNING = "color: #C62828; font-weight: bold;"
 
 
 class DrivingBar(QWidget):
@@ -27,7 +26,7 @@ class DrivingBar(QWidget):
         super().__init__(parent)
         self._drafts, self._driven = drafts, driven
         self.text, self.trouble = _label("fleet_plan_text"), _label("fleet_plan_trouble")
-        self.trouble.setStyleSheet(_WARNING)
+        self.trouble.setStyleSheet(WRONG_STYLE)
         self.send = _button(tr("Send…"), "fleet_plan_send", self.send_wanted)
         self.clear = _button(tr("Clear"), "fleet_plan_clear", self.clear_wanted)
         self.rest = QPushButton(tr("Plan what is left"))

@@ -18,11 +18,13 @@ COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#8
 _WORDS = {
     TaskState.WAITING: tr("in the queue"),
     TaskState.CURRENT: tr("under way"),
-    TaskState.FAILED: "FAILED",
-    TaskState.DONE: "done",
-    TaskState.SKIPPED: "skipped",
+    TaskState.FAILED: tr("FAILED"),
+    TaskState.DONE: tr("done"),
+    TaskState.SKIPPED: tr("skipped"),
     TaskState.REMOVED: tr("taken out"),
 }
+NOT_DONE = (_WORDS[TaskState.FAILED], _WORDS[TaskState.SKIPPED])
+"""What the words of a stop begin with that was not done."""
 
 
 @dataclass(frozen=True)

@@ -8,13 +8,15 @@ from qgis.PyQt.QtWidgets import QAbstractItemView, QMenu, QTreeWidget, QTreeWidg
 
 from ....robot_bridge.assignment.plan import Plan
 from ...language import tr
+from ..colours import WRONG, for_letters
+from ..column_heads import fit_heads
 from .draft_plan import Draft
-from .plan_rows import StopRow, clock, colour_of, end_of, place_for, rows_of
+from .plan_rows import NOT_DONE, StopRow, clock, colour_of, end_of, place_for, rows_of
 from .progress import Progress
 
 HEADS = (tr("Robot, stop"), tr("Arrives"), tr("State"), tr("Off [m]"))
 _NAME = Qt.ItemDataRole.UserRole
-_KINDS = {"place": "", "collect": "collect ", "store": "store ", "home": tr("end at ")}
+_KINDS = {"place": "", "collect": tr("collect "), "store": tr("store "), "home": tr("end at ")}
 
 
 class PlanTree(QTreeWidget):
@@ -39,6 +41,7 @@ class PlanTree(QTreeWidget):
         )
         for column, width in enumerate((142, 66, 84, 44)):
             self.setColumnWidth(column, width)
+        fit_heads(self.header())
         self.setIndentation(12)
         self._plan: Plan | None = None
         self._editable = False
@@ -158,8 +161,8 @@ def _fill(item: QTreeWidgetItem, row: StopRow) -> None:
     for column, text in enumerate((name, row.arrives, row.state, off)):
         if item.text(column) != text:
             item.setText(column, text)
-    if row.state.startswith("FAILED") or row.state.startswith("skipped"):
-        item.setForeground(2, QColor("#C62828"))
+    if row.state.startswith(NOT_DONE):
+        item.setForeground(2, for_letters(WRONG))
 
 
 def _robot_in_words(rows: list[StopRow], lost: bool) -> str:

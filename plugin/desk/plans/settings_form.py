@@ -171,6 +171,8 @@ def _combo(name: str, choices: dict[str, str] | None = None) -> QComboBox:
     combo.setMinimumContentsLength(10)
     for value, text in (choices or {}).items():
         combo.addItem(text, value)
+    # The name of a layer may be longer than the panel is wide.
+    combo.currentTextChanged.connect(combo.setToolTip)
     return combo
 
 

@@ -12,6 +12,7 @@ from qgis.PyQt.QtWidgets import QHBoxLayout, QLabel, QSizePolicy, QToolButton, Q
 from ....robot_bridge.messages import QueueReport, QueueState, TaskState
 from ...errors import FleetError
 from ...language import tr
+from ..colours import WRONG_STYLE
 from ..desk import Desk
 from .queue_edits import QueueEdits
 from .task_list import TaskList
@@ -31,7 +32,7 @@ class QueuePanel(QWidget):
         self._edits = edits
         self._head = _label("fleet_queue_head")
         self._conflict = _label("fleet_queue_conflict")
-        self._conflict.setStyleSheet("color: #C62828; font-weight: bold;")
+        self._conflict.setStyleSheet(WRONG_STYLE)
         self._last = _label("fleet_queue_last")
         self.list = TaskList()
         self._buttons(

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from qgis.PyQt.QtCore import QAbstractTableModel, QMimeData, QModelIndex, Qt, pyqtSignal
-from qgis.PyQt.QtGui import QColor, QFont
+from qgis.PyQt.QtGui import QFont
 from qgis.PyQt.QtWidgets import QAbstractItemView, QHeaderView, QTreeView, QWidget
 
 from ....robot_bridge.messages import TaskReport, TaskState
 from ...language import tr
+from ..colours import WRONG, for_letters
 from ..small_views import shrink
 from .task_words import state_in_words, task_in_words
 
 COLUMNS = ("", tr("Task"), tr("State"))
 MIME = "application/x-fleet-task"
-FAILED = QColor("#C62828")
 NUMBER, TASK, STATE = range(3)
 
 
@@ -61,7 +61,7 @@ class TaskModel(QAbstractTableModel):
             bold.setBold(True)
             return bold
         if role == Qt.ItemDataRole.ForegroundRole and task.state is TaskState.FAILED and column == STATE:
-            return FAILED
+            return for_letters(WRONG)
         return None
 
     def flags(self, index: QModelIndex) -> Qt.ItemFlag:

@@ -15,6 +15,7 @@ from qgis.PyQt.QtWidgets import QAbstractItemView, QHeaderView, QTableView, QWid
 
 from ...errors import PlacementError
 from ...language import tr
+from ..column_heads import fit_heads
 from ..desk import PULL_EVERY_MS, Desk
 from ..small_views import shrink
 from .columns import COLUMNS, TASK
@@ -99,6 +100,7 @@ class RobotTable(QTableView):
             self.setColumnWidth(number, max(widest + extra, TASK_WIDTH if number == TASK else 0))
             by_choice = column.first if hidden is None else column.title not in str(hidden).split(",")
             self.setColumnHidden(number, not by_choice)
+        fit_heads(header)
         header.setSectionResizeMode(TASK, QHeaderView.ResizeMode.Stretch)
 
     def _pulled(self) -> None:

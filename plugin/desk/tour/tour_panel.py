@@ -27,7 +27,10 @@ class TourPanel(QFrame):
         super().__init__(window)
         self.setObjectName("fleet_tour")
         self.setFrameShape(QFrame.Shape.Box)
-        self.setAutoFillBackground(True)
+        # Themes of QGIS make frames transparent, and this one lies over the map.
+        self.setStyleSheet(
+            "QFrame#fleet_tour { background: palette(window); border: 1px solid palette(mid); }"
+        )
         self.setFixedWidth(WIDTH)
         self._at, self._practice = 0, False
         self._grip: QPoint | None = None

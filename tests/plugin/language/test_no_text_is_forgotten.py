@@ -70,7 +70,8 @@ def forgotten(source: str) -> list[tuple[int, str]]:
     """Return line and text of what people read in ``source`` and is not translated."""
     tree = ast.parse(source)
     passed_over = set(_ids_passed_over(tree))
-    shown = {id(text): text for call in _calls(tree) for text in _texts_of(call)}
+    shown = {id(text) for call in _calls(tree) for text in _texts_of(call)}
+    shown |= set(_ids_beside_translated(tree))
     found = {}
     for node in ast.walk(tree):
         if not (isinstance(node, ast.Constant) and isinstance(node.value, str)) or id(node) in passed_over:
@@ -87,7 +88,7 @@ def _ids_passed_over(tree: ast.AST) -> Iterator[int]:
     for node in ast.walk(tree):
         if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant):
             yield id(node.value)
-        if isinstance(node, ast.Call) and _called(node) in TRANSLATED:
+        if _is_translation(node):
             yield from map(id, node.args)
         is_tags = isinstance(node, ast.Assign) and any(_name(one) == "TAGS" for one in node.targets)
         is_built_in = isinstance(node, ast.Call) and _called(node) in BUILT_IN
@@ -95,9 +96,20 @@ def _ids_passed_over(tree: ast.AST) -> Iterator[int]:
             yield from (id(part) for part in ast.walk(node) if isinstance(part, ast.Constant))
 
 
+def _ids_beside_translated(tree: ast.AST) -> Iterator[int]:
+    """Yield the literals that a dictionary has beside translated texts."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Dict) and any(_is_translation(value) for value in node.values):
+            yield from (id(value) for value in node.values)
+
+
+def _is_translation(node: ast.AST) -> bool:
+    return isinstance(node, ast.Call) and _called(node) in TRANSLATED
+
+
 def _calls(tree: ast.AST) -> Iterator[ast.Call]:
     for node in ast.walk(tree):
-        if isinstance(node, ast.Call) and (SHOWS.match(_called(node)) or _called(node) in TRANSLATED):
+        if isinstance(node, ast.Call) and (SHOWS.match(_called(node)) or _is_translation(node)):
             yield node
 
 
@@ -140,6 +152,7 @@ def _name(node: ast.AST) -> str:
         'QgsProcessingParameterNumber(WIDTH, "Width [m]")',
         'DockAction(iface, text="Replay")',
         'tr("{robots} robots", robots="no" if none else count)',
+        'WORDS = {DONE: "done", OPEN: tr("open")}',
     ],
 )
 def test_a_text_that_is_not_translated_is_found(line):
@@ -196,7 +209,7 @@ def test_every_placeholder_is_given_its_value():
 
 
 def _translations(tree: ast.AST) -> Iterator[ast.Call]:
-    return (node for node in ast.walk(tree) if isinstance(node, ast.Call) and _called(node) in TRANSLATED)
+    return (node for node in ast.walk(tree) if _is_translation(node))
 
 
 def _texts_to_fill_in(call: ast.Call) -> list[str]:

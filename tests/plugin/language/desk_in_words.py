@@ -1,0 +1,327 @@
+"""Opens what the plugin shows, in one language and look, and tells what is cut off.
+
+python desk_in_words.py LANGUAGE RESULT.json [--theme NAME] [--pictures FOLDER]
+
+LANGUAGE is a locale such as hu, or ``stretched``. In a process of its own: constants of modules take their
+language when they are imported. RESULT.json has, by the name of each part, what is wrong with it.
+"""
+
+from __future__ import annotations
+
+import argparse
+import importlib.util
+import json
+import os
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+from cut_off import cut_off, too_large
+from qgis.core import QgsApplication, QgsProject, QgsSettings
+from qgis.PyQt.QtCore import QCoreApplication, QEvent, QSettings, QSize
+from qgis.PyQt.QtTest import QTest
+from qgis.PyQt.QtWidgets import QDialog, QDialogButtonBox, QVBoxLayout, QWidget
+from stretched import StretchedLanguage
+
+ROOT = Path(__file__).resolve().parents[3]
+ROOM = QSize(1280, 800)
+"""The smallest screen that the desk is made for."""
+OPTIONS_ROOM = QSize(960, 620)
+"""What QGIS's options, as large as such a screen, leave for a page."""
+MAP_AT_LEAST = 480
+"""Pixels of width that are left for the map beside the fleet panel."""
+PANELS = ("observation_dock", "replay_dock", "plan_dock")
+
+
+def speak(language: str):
+    """Install a language before anything of the plugin is imported; return what keeps it."""
+    if language == "stretched":
+        stretched = StretchedLanguage()
+        QCoreApplication.installTranslator(stretched)
+        return stretched
+    from fleet_supervisor.plugin.language import Language
+
+    return Language(language)
+
+
+class Show:
+    """Each part of the plugin in turn, with something in it."""
+
+    def __init__(self, pictures: Path | None):
+        self._pictures = pictures
+        self.faults: dict[str, list[str]] = {}
+
+    def look(self, name: str, widget: QWidget, room: QSize = ROOM) -> None:
+        """Take down what is wrong with ``widget``, and its picture."""
+        settle()
+        if widget.isWindow():
+            # A platform without a window manager does not do what the layout asks for.
+            widget.resize(widget.size().expandedTo(widget.minimumSizeHint()))
+            settle()
+        found = [*too_large(widget, room), *cut_off(widget)]
+        if found:
+            self.faults[name] = found
+        if self._pictures is not None:
+            widget.grab().save(str(self._pictures / f"{name}.png"))
+
+    def dialog(self, name: str, dialog: QDialog) -> None:
+        """Look at a dialog and close it."""
+        dialog.open()
+        self.look(name, dialog)
+        dialog.close()
+        dialog.deleteLater()
+        settle()
+
+
+def settle() -> None:
+    """Let Qt lay out, paint and delete."""
+    for _ in range(3):
+        QCoreApplication.sendPostedEvents(None, QEvent.Type.DeferredDelete)
+        QTest.qWait(20)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("language")
+    parser.add_argument("result", type=Path)
+    parser.add_argument("--theme")
+    parser.add_argument("--pictures", type=Path)
+    wanted = parser.parse_args()
+    if wanted.pictures is not None:
+        wanted.pictures.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(prefix="fleet-words-") as folder:
+        QSettings.setPath(QSettings.Format.NativeFormat, QSettings.Scope.UserScope, folder)
+        QSettings.setPath(QSettings.Format.IniFormat, QSettings.Scope.UserScope, folder)
+        QCoreApplication.setOrganizationName("fleet-words")
+        application = QgsApplication([], True, folder)
+        application.initQgis()
+        if wanted.theme:
+            QgsApplication.setUITheme(wanted.theme)
+        tests = loaded("fleet_tests", ROOT / "tests" / "conftest.py")
+        tests.register_plugin_package()
+        language = speak(wanted.language)
+        show = Show(wanted.pictures)
+        show_all(show)
+        wanted.result.write_text(json.dumps(show.faults, indent=1, ensure_ascii=False), encoding="utf-8")
+        del language
+    # Not by way of Python's tidying up: QGIS's objects and Qt's would be gone in an order that Qt ends on.
+    sys.stdout.flush()
+    os._exit(0)
+
+
+def loaded(name: str, path: Path):
+    """Return the module in the file ``path``, which is in no package."""
+    spec = importlib.util.spec_from_file_location(name, path)
+    module = sys.modules[name] = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def show_all(show: Show) -> None:
+    """Load the plugin into a window, connect it, and look at all of it."""
+    desk_tests = loaded("desk_tests", ROOT / "tests" / "plugin" / "desk" / "conftest.py")
+    from fleet_supervisor.plugin.supervisor import FleetSupervisor
+
+    QgsSettings().setValue("fleet_supervisor/tour_offered", True)
+    window = desk_tests.Window()
+    window.resize(ROOM)
+    window.show()
+    gateway = desk_tests.SmallGateway(yard())
+    gateway.start()
+    plugin = FleetSupervisor(window)
+    plugin.initGui()
+    try:
+        look_at_panel(show, window, plugin.window, gateway, desk_tests)
+        look_at_docks(show, window, plugin)
+        for name, dialog in dialogs(window, plugin.window):
+            show.dialog(name, dialog)
+        look_at_options(show, window)
+        look_at_tour(show, window)
+    finally:
+        plugin.unload()
+        gateway.stop()
+        window.canvas.stopRendering()
+        window.close()
+        QgsProject.instance().clear()
+        settle()
+
+
+def yard():
+    from fleet_supervisor.robot_bridge.messages import SiteReport
+
+    return SiteReport(
+        id="yard",
+        name="Sample proving ground and campus",
+        version="1",
+        crs="EPSG:32633",
+        origin=(488000.0, 5190000.0),
+        rotation=0.0,
+        bounds=(0.0, 0.0, 200.0, 160.0),
+        reached_tolerance=0.2,
+        stale_after=3.0,
+        lost_after=10.0,
+    )
+
+
+def look_at_panel(show: Show, window, desk_window, gateway, desk_tests) -> None:
+    """The fleet panel: before a link, with one, each of its tabs, with a draft, under an emergency stop."""
+    from fleet_supervisor.plugin.desk.drafts import CONE, Draft, Findings
+
+    dock, desk = desk_window.dock, desk_window.desk
+    show.look("panel_alone", window)
+    gateway.show(*(desk_tests.robot(f"r{k}", 50 + 8 * k, 40 + 6 * k, battery=0.1 * k) for k in range(1, 6)))
+    dock.connection_panel._url.setText(gateway.url)
+    dock.connection_panel._operator.setText("anna")
+    desk_window.actions.connect.trigger()
+    desk_tests.wait_until(lambda: len(desk.picture) == 5, what="five robots")
+    desk.select("r1")
+    order(desk, gateway, desk_tests)
+    for tab in range(dock.tabs.count()):
+        dock.tabs.setCurrentIndex(tab)
+        show.look(f"panel_tab_{tab}", window)
+    dock.tabs.setCurrentIndex(0)
+    if window.canvas.width() < MAP_AT_LEAST:
+        show.faults["map"] = [f"the fleet panel leaves {window.canvas.width()} pixels for the map"]
+    found = Findings(overridable=("A cone target of r2 is 0.3 m from it",), warnings=("It is off the road",))
+    desk.drafts.put(Draft("r1", CONE, ((60.0, 50.0),), found, is_checked=True))
+    dock.connection_panel._more.setChecked(True)
+    show.look("panel_with_draft_and_access", window)
+    desk.drafts.done()
+    dock.connection_panel._more.setChecked(False)
+    gateway.stand(in_force=True, stop="s1", at=time.time(), by="anna", robots=5, waiting=["r1"])
+    desk_tests.wait_until(lambda: not dock.banner.isHidden(), what="the banner")
+    show.look("panel_emergency", window)
+    gateway.stand(in_force=False)
+    desk_tests.wait_until(lambda: dock.banner.isHidden(), what="the end of the banner")
+
+
+def order(desk, gateway, desk_tests) -> None:
+    """Put a command, a queue, observations and a conflict before the operator."""
+    from fleet_supervisor.plugin.desk.drafts import CONE, Draft
+    from fleet_supervisor.robot_bridge.messages import CommandState
+
+    desk.drafts.put(Draft("r1", CONE, ((60.0, 50.0),), is_checked=True))
+    desk.send_draft()
+    desk_tests.wait_until(lambda: gateway.commands, what="the command")
+    command = next(iter(gateway.commands))
+    gateway.step(command, CommandState.DELIVERED, "r1")
+    gateway.step(command, CommandState.FAILED, "r1", reason="the way is blocked")
+    task = {"robot": "r1", "kind": "place", "added_by": "anna", "added_at": time.time(), "x": 60.0, "y": 50.0}
+    tasks = [{**task, "task": f"t{k}", "state": state} for k, state in enumerate(("current", "waiting"))]
+    queue = {"robot": "r1", "revision": 1, "state": "paused", "robot_state": "fresh", "tasks": tasks}
+    gateway.tell("queue", {**queue, "by": "bob", "at": time.time(), "reason": "paused by bob"})
+    seen = {"robot": "r1", "op": "SetObject", "x": 20.0, "y": 30.0, "received_at": time.time()}
+    for number, state in enumerate(("pending", "accepted"), 1):
+        gateway.tell(
+            "observation", {**seen, "observation": number, "object": f"bin-{number}", "state": state}
+        )
+    meeting = {"robot": "r1", "other": "r2", "kind": "head-on", "metres": 0.4, "x": 60.0, "y": 50.0}
+    times = {"begins": time.time() + 5, "nearest_at": time.time() + 7, "ends": time.time() + 9}
+    gateway.tell("conflicts", {"t": time.time(), "conflicts": [{**meeting, **times}], "waiting": []})
+    desk_tests.wait_until(lambda: len(desk.observations) == 2, what="the observations")
+
+
+def look_at_docks(show: Show, window, plugin) -> None:
+    """The panels that the menu shows, one at a time as they are tabs of one another."""
+    for part in plugin._parts:
+        dock = getattr(part, "dock", None)
+        if dock is not None and dock.objectName().startswith(tuple(f"fleet_{name}" for name in PANELS)):
+            dock.setUserVisible(True)
+            choose_first(dock)
+            for tab, tabs in each_tab(dock):
+                tabs.setCurrentIndex(tab)
+                show.look(f"{dock.objectName()}_{tab}", window)
+            show.look(dock.objectName(), window)
+            dock.setUserVisible(False)
+
+
+def choose_first(dock) -> None:
+    """Have something chosen in a panel that shows what is chosen."""
+    if hasattr(dock, "choose"):
+        dock.reviewed.setChecked(True)
+        settle()
+        dock.choose(1)
+
+
+def each_tab(widget: QWidget) -> Iterator[tuple[int, QWidget]]:
+    from qgis.PyQt.QtWidgets import QTabWidget
+
+    for tabs in widget.findChildren(QTabWidget):
+        for tab in range(tabs.count()):
+            yield tab, tabs
+
+
+def dialogs(window, desk_window) -> Iterator[tuple[str, QDialog]]:
+    """Yield every dialog with something to say."""
+    from fleet_supervisor.plugin.desk.alarms.log_dialog import AlarmLogDialog
+    from fleet_supervisor.plugin.desk.alarms.thresholds import Thresholds
+    from fleet_supervisor.plugin.desk.alarms.thresholds_dialog import ThresholdsDialog
+    from fleet_supervisor.plugin.desk.clear_dialog import ClearDialog
+    from fleet_supervisor.plugin.desk.closure_dialog import ClosureDialog
+    from fleet_supervisor.plugin.desk.commands.coordinates_dialog import CoordinatesDialog
+    from fleet_supervisor.plugin.desk.commands.override_dialog import OverrideDialog
+    from fleet_supervisor.plugin.desk.drafts import CONE, Draft, Findings
+    from fleet_supervisor.plugin.help.help_window import HelpWindow
+    from fleet_supervisor.plugin.help.topics import START
+    from fleet_supervisor.plugin.roles.roles_dialog import RolesDialog
+    from fleet_supervisor.plugin.settings.connection_dialog import ConnectionDialog
+    from fleet_supervisor.plugin.settings.connections import Connections
+    from fleet_supervisor.plugin.settings.connections_dialog import ConnectionsDialog
+    from fleet_supervisor.plugin.settings.gateway_connection import GatewayConnection
+    from fleet_supervisor.robot_bridge.messages import EmergencyReport
+
+    site = GatewayConnection("Proving ground", "wss://gateway.example.org:8765/desk", "anna")
+    Connections().put(site)
+    yield "connection", ConnectionDialog(site, Connections(), window)
+    yield "connection_new", ConnectionDialog(GatewayConnection("", ""), Connections(), window)
+    yield "connections", ConnectionsDialog(window)
+    yield "thresholds", ThresholdsDialog(Thresholds(), window)
+    yield "alarm_log", AlarmLogDialog(window)
+    yield "closure", ClosureDialog(window)
+    yield "coordinates", CoordinatesDialog(desk_window.desk, window)
+    found = Findings(overridable=("A cone target of r2 is 0.3 m from it", "It is on the obstacle bin-4"))
+    yield "override", OverrideDialog(Draft("r1", CONE, ((60.0, 50.0),), found, is_checked=True), window)
+    stop = EmergencyReport(True, "s1", time.time(), "anna", robots=5, waiting=["r1", "r2"])
+    yield "clear", ClearDialog(stop, window)
+    help_window = HelpWindow(window)
+    help_window.show_topic(START)
+    yield "help", help_window
+    QgsProject.instance().read(str(ROOT / "resources" / "sample_site" / "sample_site.qgz"))
+    yield "roles", RolesDialog(QgsProject.instance(), window)
+
+
+def look_at_options(show: Show, window) -> None:
+    """The page of QGIS's options, in a frame like theirs."""
+    frame = QDialog(window)
+    page = window.options_pages[0].createWidget(frame)
+    rows = QVBoxLayout(frame)
+    rows.addWidget(page)
+    rows.addWidget(QDialogButtonBox(QDialogButtonBox.StandardButton.Ok))
+    frame.resize(OPTIONS_ROOM)
+    frame.open()
+    for tab, tabs in each_tab(page):
+        tabs.setCurrentIndex(tab)
+        show.look(f"options_{tab}", frame, OPTIONS_ROOM)
+    frame.close()
+    frame.deleteLater()
+
+
+def look_at_tour(show: Show, window) -> None:
+    """Each step of the tour, with all that may be said in it."""
+    from fleet_supervisor.plugin.desk.tour.steps import STEPS
+    from fleet_supervisor.plugin.desk.tour.tour_panel import TourPanel
+
+    panel = TourPanel(window)
+    panel.set_practice(True)
+    panel.show()
+    for step in range(len(STEPS)):
+        panel.show_step(step)
+        panel.place(window.canvas)
+        show.look(f"tour_{step}", panel)
+    panel.deleteLater()
+
+
+if __name__ == "__main__":
+    main()
