@@ -15,7 +15,7 @@ from sqlalchemy import Connection, text
 from robot_bridge.store.database import run_once
 
 from .desk import ENDS, Ledger
-from .yard import GATEWAY_KILLED, ROBOTS_KILLED, Fault, Yard
+from .yard import GATEWAY_KILLED, ROBOTS_KILLED, Death, Fault, Yard
 
 YOUNG_S = 2.0
 """seconds before a gateway's death in which positions may be lost."""
@@ -37,6 +37,14 @@ class Stored:
     observations: list[Any]
     positions: Counter[tuple[str, float]]
     waiting: list[Any]
+
+
+@dataclass
+class Deaths:
+    """When gateways were killed, and robots by their names."""
+
+    gateways: Sequence[Death]
+    robots: Mapping[str, Sequence[Death]]
 
 
 @dataclass
@@ -64,7 +72,8 @@ class Findings:
 def audit(yard: Yard) -> Findings:
     """Judge what happened in a yard that has finished."""
     stored = run_once(yard.place.url, _load)
-    findings = judged(yard.ledger, yard.faults, stored, list(yard.journals()), yard.robot_ends())
+    deaths = Deaths(yard.gateway_ends, yard.robot_ends())
+    findings = judged(yard.ledger, yard.faults, stored, list(yard.journals()), deaths)
     findings.wrong += yard.said("Traceback")[:3]
     findings.back_after = list(_recoveries(yard, stored))
     return findings
@@ -75,7 +84,7 @@ def judged(
     faults: Sequence[Fault],
     stored: Stored,
     lines: Sequence[dict[str, Any]],
-    ends: Mapping[str, Sequence[float]],
+    deaths: Deaths,
 ) -> Findings:
     """Judge what is stored by what desks were told, what was done, and what robots wrote down."""
     findings = Findings(wrong=list(ledger.wrong))
@@ -85,7 +94,7 @@ def judged(
     findings.counts.update(Counter(fault.what for fault in faults))
     _judge_commands(ledger, stored, _acts(lines), findings)
     _judge_observations(faults, stored, lines, findings)
-    _judge_positions(faults, stored, lines, ends, findings)
+    _judge_positions(faults, stored, lines, deaths, findings)
     return findings
 
 
@@ -208,10 +217,9 @@ def _judge_positions(
     faults: Iterable[Fault],
     stored: Stored,
     lines: Iterable[dict[str, Any]],
-    ends: Mapping[str, Sequence[float]],
+    deaths: Deaths,
     findings: Findings,
 ) -> None:
-    deaths = [fault.at for fault in faults if fault.what == GATEWAY_KILLED]
     counts = findings.counts
     for line in lines:
         if line["what"] != "pose":
@@ -219,13 +227,17 @@ def _judge_positions(
         counts["positions told"] += 1
         if (line["robot"], line["t"]) in stored.positions:
             counts["... stored"] += 1
-        elif any(death - YOUNG_S <= line["t"] <= death + NOTICED_WITHIN for death in deaths):
+        elif _is_beside(line["t"], deaths.gateways, YOUNG_S, NOTICED_WITHIN):
             counts["... lost, told at most 2 s before a gateway was killed"] += 1
-        elif any(death - LAST_WORDS_S <= line["t"] <= death for death in ends.get(line["robot"], ())):
+        elif _is_beside(line["t"], deaths.robots.get(line["robot"], ()), LAST_WORDS_S, 0.0):
             counts["... lost, told at most 0.5 s before the robot itself was killed"] += 1
         else:
             findings.wrong.append(f"position of {line['robot']} told {_beside(faults, line['t'])} is lost")
     counts["... stored twice"] = sum(count - 1 for count in stored.positions.values())
+
+
+def _is_beside(at: float, deaths: Iterable[Death], before: float, after: float) -> bool:
+    return any(death.since - before <= at <= death.by + after for death in deaths)
 
 
 def _recoveries(yard: Yard, stored: Stored) -> Iterator[float]:

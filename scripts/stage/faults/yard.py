@@ -47,6 +47,14 @@ FIRST_ROW, BETWEEN_ROWS = 8.0, 7.0
 
 
 @dataclass(frozen=True)
+class Death:
+    """A process that was killed: alive at ``since``, dead at ``by``; a busy machine takes its time."""
+
+    since: float
+    by: float
+
+
+@dataclass(frozen=True)
 class Fault:
     """Something that was done: when it began and when it was over, seconds since 1970-01-01."""
 
@@ -74,8 +82,7 @@ class Crew:
     journal: Path
     life: int = 0
     process: subprocess.Popen[bytes] | None = None
-    ends: list[float] = field(default_factory=list)
-    """when its robots were killed."""
+    ends: list[Death] = field(default_factory=list)
 
 
 @dataclass
@@ -86,6 +93,7 @@ class Yard:
     place: Place
     seed: int
     faults: list[Fault] = field(default_factory=list)
+    gateway_ends: list[Death] = field(default_factory=list)
     ledger: Ledger = field(default_factory=Ledger)
 
     def __enter__(self) -> Yard:
@@ -127,8 +135,7 @@ class Yard:
     def kill_gateway(self) -> None:
         """End the gateway the way a power cut does."""
         self.require_gateway()
-        self._gateway.kill()
-        self._gateway.wait()
+        self.gateway_ends.append(_kill(self._gateway))
 
     def require_gateway(self) -> None:
         """Note it as wrong when the gateway has ended by itself."""
@@ -146,9 +153,7 @@ class Yard:
     def kill_crew(self, crew: Crew) -> None:
         """End its robots the way a power cut does."""
         assert crew.process is not None
-        crew.ends.append(time.time())
-        crew.process.kill()
-        crew.process.wait()
+        crew.ends.append(_kill(crew.process))
 
     def start_crew(self, crew: Crew, *, remembers: bool = False) -> None:
         """Start its robots, which go on by their journal if they remember."""
@@ -161,7 +166,7 @@ class Yard:
         )
         crew.process = self._run(name, "stage.faults.crew", plan)
 
-    def robot_ends(self) -> dict[str, list[float]]:
+    def robot_ends(self) -> dict[str, list[Death]]:
         """Return for each robot when it was killed."""
         return {robot: crew.ends for crew in self.crews for robot in crew.robots}
 
@@ -244,6 +249,13 @@ class Yard:
                 return False
             time.sleep(0.1)
         return True
+
+
+def _kill(process: subprocess.Popen[bytes]) -> Death:
+    since = time.time()
+    process.kill()
+    process.wait()
+    return Death(since, time.time())
 
 
 def names(count: int) -> list[str]:

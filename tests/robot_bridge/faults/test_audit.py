@@ -8,9 +8,9 @@ from collections import Counter
 from types import SimpleNamespace
 
 import pytest
-from stage.faults.audit import Stored, judged
+from stage.faults.audit import Deaths, Stored, judged
 from stage.faults.desk import Ledger
-from stage.faults.yard import GATEWAY_KILLED, Fault
+from stage.faults.yard import GATEWAY_KILLED, Death, Fault
 
 TARGET, STOP = "sq01-000001", "sq01-000001-abort"
 IMAGE = b"an image"
@@ -50,16 +50,16 @@ def story():
             line("pose", 10.0, t=10.0),
             line("pose", 19.0, t=19.0),
         ],
-        ends={"sq01": [40.0]},
+        deaths=Deaths([Death(20.0, 20.2)], {"sq01": [Death(40.0, 40.1)]}),
     )
 
 
 def wrong(story):
-    return judged(story.ledger, story.faults, story.stored, story.lines, story.ends).wrong
+    return judged(story.ledger, story.faults, story.stored, story.lines, story.deaths).wrong
 
 
 def test_a_right_story_is_right_and_is_counted(story):
-    findings = judged(story.ledger, story.faults, story.stored, story.lines, story.ends)
+    findings = judged(story.ledger, story.faults, story.stored, story.lines, story.deaths)
     assert findings.wrong == []
     assert findings.counts["commands told queued"] == findings.counts["acted on"] == 2
     assert findings.counts["... lost, told at most 2 s before a gateway was killed"] == 1
@@ -133,15 +133,25 @@ def lose_position_older_than_two_seconds(story):
     story.lines.append(line("pose", 17.9, t=17.9))
 
 
-def test_what_a_robot_said_last_may_go_down_with_it(story):
+@pytest.mark.parametrize("death", [Death(30.02, 30.03), Death(29.9, 30.1)])
+def test_what_a_robot_said_last_may_go_down_with_it(story, death):
     story.lines.append(line("pose", 30.0, t=30.0))
-    story.ends["sq01"] = [30.02]
+    story.deaths.robots["sq01"] = [death]
     assert wrong(story) == []
+
+
+def test_what_a_robot_says_into_a_connection_that_died_slowly_may_be_lost(story):
+    story.lines.append(line("pose", 20.6, t=20.6))
+    assert wrong(story) == []
+
+
+def lose_position_told_when_the_gateway_was_surely_dead(story):
+    story.lines.append(line("pose", 20.8, t=20.8))
 
 
 def lose_position_of_a_robot_that_lived_on(story):
     story.lines.append(line("pose", 30.0, t=30.0))
-    story.ends["sq01"] = [30.6, 29.8]
+    story.deaths.robots["sq01"] = [Death(30.6, 30.7), Death(29.8, 29.9)]
 
 
 def leave_message(story):
@@ -170,6 +180,7 @@ def be_refused_for_no_reason(story):
         (spoil_image, "not stored as it was told"),
         (lose_position, "position of sq01"),
         (lose_position_older_than_two_seconds, "position of sq01"),
+        (lose_position_told_when_the_gateway_was_surely_dead, "is lost"),
         (lose_position_of_a_robot_that_lived_on, "position of sq01"),
         (leave_message, "SetPosEnd of or for robot sq01 still waits"),
         (be_refused_for_no_reason, "no such robot"),
