@@ -86,16 +86,15 @@ class NearestEdge:
         return self._in_cells(place - radius, place + radius)
 
     def _in_cells(self, low: Floats, high: Floats) -> Ints:
-        low, high = np.maximum(low, self._low), np.minimum(high, self._high)
-        if (low > high).any():
+        # Plain numbers: with arrays of two the bounds would take longer than the search.
+        (left, bottom), (right, top) = low.tolist(), high.tolist()
+        (least_x, least_y), (most_x, most_y) = self._low.tolist(), self._high.tolist()
+        left, bottom = max(left, least_x), max(bottom, least_y)
+        right, top = min(right, most_x), min(top, most_y)
+        if left > right or bottom > top:
             return np.empty(0, np.int64)
-        columns, rows = (
-            np.arange(
-                int((low[k] - self._low[k]) // self._cell), int((high[k] - self._low[k]) // self._cell) + 1
-            )
-            for k in (0, 1)
-        )
-        cells = cell_number(columns[None, :], rows[:, None]).ravel()
-        begin = np.searchsorted(self._cells, cells, side="left")
-        end = np.searchsorted(self._cells, cells, side="right")
-        return self._segment[ranges(begin, end - begin)]
+        rows = np.arange(int((bottom - least_y) // self._cell), int((top - least_y) // self._cell) + 1)
+        columns = np.array([(left - least_x) // self._cell, (right - least_x) // self._cell + 1], np.int64)
+        # The cells of a row are numbered one after another.
+        bounds = np.searchsorted(self._cells, cell_number(columns, rows[:, None])).tolist()
+        return np.concatenate([self._segment[begin:end] for begin, end in bounds])

@@ -48,7 +48,7 @@ def foot_on(a: Floats, b: Floats, p: Floats) -> tuple[Floats, Floats]:
     """
     step = b - a
     square = np.maximum((step * step).sum(axis=1), 1e-18)
-    share: Floats = np.clip(((p - a) * step).sum(axis=1) / square, 0.0, 1.0)
+    share: Floats = np.minimum(np.maximum(((p - a) * step).sum(axis=1) / square, 0.0), 1.0)
     away: Floats = np.hypot(*(a + share[:, None] * step - p).T)
     return share, away
 

@@ -7,13 +7,11 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 
 from ..centrelines import Floats, Ints
 from .engine import Ends, Graph
-from .own_thread import Kept, OwnThread
 from .plain import PlainEngine
 
 _INFINITE = 2**31 - 1
@@ -82,40 +80,29 @@ class ContractionEngine:
 
 
 class _Metric:
-    """One set of whole costs over the ordered graph; its query and updater live in a thread of their own.
+    """One set of whole costs over the ordered graph.
 
-    They may be used and let go in the thread alone that made them, and engines are asked from several.
+    Changes are laid over it when the next way is asked for: what is closed for one way and opened after it
+    costs no more than what stays closed.
     """
 
     def __init__(self, made_by: ContractionEngines, costs: Ints) -> None:
-        self._kit = made_by.kit
-        self._metric = self._kit.CCHMetric(made_by.hierarchy, costs.tolist())
-        self._thread = OwnThread("contraction hierarchy")
-        self._thread.run(_begin, self._kit, made_by.hierarchy, self._metric)
+        self._kit, self._hierarchy = made_by.kit, made_by.hierarchy
+        self._metric = self._kit.CCHMetric(self._hierarchy, costs.tolist())
+        self._changes: dict[int, int] = {}
 
     def change(self, arcs: Ints, costs: Ints) -> None:
-        changes = dict(zip(arcs.tolist(), costs.tolist(), strict=True))
-        self._thread.run(_change, self._kit, self._metric, changes)
+        self._changes.update(zip(arcs.tolist(), costs.tolist(), strict=True))
 
     def way(self, starts: Sequence[tuple[int, int]], goals: Sequence[tuple[int, int]]) -> list[int] | None:
-        return self._thread.run(_way, starts, goals)
-
-
-def _begin(kept: Kept, kit: Any, hierarchy: Any, metric: Any) -> None:
-    kept["updater"] = kit.CCHMetricPartialUpdater(hierarchy)
-    kept["query"] = kit.CCHQuery(metric)
-
-
-def _change(kept: Kept, kit: Any, metric: Any, changes: dict[int, int]) -> None:
-    # A query keeps hold of the costs that it was made with.
-    del kept["query"]
-    kept["updater"].apply(metric, changes)
-    kept["query"] = kit.CCHQuery(metric)
-
-
-def _way(kept: Kept, starts: Sequence[tuple[int, int]], goals: Sequence[tuple[int, int]]) -> list[int] | None:
-    result = kept["query"].run_multi(starts, goals)
-    return None if result.distance is None else list(result.arc_path)
+        if self._changes:
+            self._kit.CCHMetricPartialUpdater(self._hierarchy).apply(self._metric, self._changes)
+            self._changes = {}
+        # A query belongs to the thread that made it, engines are asked from several, and as long as there is
+        # one the costs cannot be changed. To make one takes less than to hand the question to its thread.
+        query = self._kit.CCHQuery(self._metric)
+        result = query.run_multi(starts, goals)
+        return None if result.distance is None else list(result.arc_path)
 
 
 def _without_costs(*ends: Ends) -> tuple[list[tuple[int, int]], ...]:
