@@ -185,7 +185,7 @@ def look_at_panel(show: Show, window, desk_window, gateway, desk_tests) -> None:
     if window.canvas.width() < MAP_AT_LEAST:
         show.faults["map"] = [f"the fleet panel leaves {window.canvas.width()} pixels for the map"]
     found = Findings(overridable=("A cone target of r2 is 0.3 m from it",), warnings=("It is off the road",))
-    desk.drafts.put(Draft("r1", CONE, ((60.0, 50.0),), found, is_checked=True))
+    desk.drafts.put(Draft("r1", CONE, ((60.0, 50.0),), found))
     dock.connection_panel._more.setChecked(True)
     show.look("panel_with_draft_and_access", window)
     desk.drafts.done()
@@ -199,15 +199,11 @@ def look_at_panel(show: Show, window, desk_window, gateway, desk_tests) -> None:
 
 def order(desk, gateway, desk_tests) -> None:
     """Put a command, a queue, observations and a conflict before the operator."""
-    from fleet_supervisor.plugin.desk.drafts import CONE, Draft
     from fleet_supervisor.robot_bridge.messages import CommandState
 
-    desk.drafts.put(Draft("r1", CONE, ((60.0, 50.0),), is_checked=True))
-    desk.send_draft()
-    desk_tests.wait_until(lambda: gateway.commands, what="the command")
-    command = next(iter(gateway.commands))
-    gateway.step(command, CommandState.DELIVERED, "r1")
-    gateway.step(command, CommandState.FAILED, "r1", reason="the way is blocked")
+    gateway._queue("c1", "r1", "SetPosEnd", {"x": 60.0, "y": 50.0, "cone": True})
+    gateway.step("c1", CommandState.DELIVERED, "r1")
+    gateway.step("c1", CommandState.FAILED, "r1", reason="the way is blocked")
     task = {"robot": "r1", "kind": "place", "added_by": "anna", "added_at": time.time(), "x": 60.0, "y": 50.0}
     tasks = [{**task, "task": f"t{k}", "state": state} for k, state in enumerate(("current", "waiting"))]
     queue = {"robot": "r1", "revision": 1, "state": "paused", "robot_state": "fresh", "tasks": tasks}
@@ -282,7 +278,7 @@ def dialogs(window, desk_window) -> Iterator[tuple[str, QDialog]]:
     yield "closure", ClosureDialog(window)
     yield "coordinates", CoordinatesDialog(desk_window.desk, window)
     found = Findings(overridable=("A cone target of r2 is 0.3 m from it", "It is on the obstacle bin-4"))
-    yield "override", OverrideDialog(Draft("r1", CONE, ((60.0, 50.0),), found, is_checked=True), window)
+    yield "override", OverrideDialog(Draft("r1", CONE, ((60.0, 50.0),), found), window)
     stop = EmergencyReport(True, "s1", time.time(), "anna", robots=5, waiting=["r1", "r2"])
     yield "clear", ClearDialog(stop, window)
     help_window = HelpWindow(window)
