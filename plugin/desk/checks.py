@@ -2,27 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from itertools import accumulate
+from collections.abc import Iterable, Sequence
+from typing import Any, TypeVar
 
-import numpy as np
-from qgis.core import (
-    QgsCoordinateTransform,
-    QgsFeature,
-    QgsGeometry,
-    QgsPointXY,
-    QgsProject,
-    QgsVectorLayer,
-    QgsWkbTypes,
-)
+from qgis.core import QgsProject, QgsVectorLayer, QgsWkbTypes
+from qgis.PyQt.QtCore import QObject, pyqtSignal
 
 from ...robot_bridge.messages import SiteReport
 from ..language import tr
-from ..sites.roles import KEEPOUT, ROAD_SURFACE, layers_with_role
-from .drafting.layer_features import LayerFeatures
+from ..sites.layer_watch import LayerWatch
+from ..sites.roles import layers_with_role
+from .drafting.keepout_check import KeepoutCheck
 from .drafting.obstacle_check import ObstacleCheck
-from .drafts import ROUTE, START, TARGETS, Draft, Findings, Point
-from .placement import Placement, transformed
+from .drafting.slices import Steps, part_of
+from .drafting.surface_check import SurfaceCheck
+from .drafting.tracks import Track, is_looked_at
+from .drafts import Draft, Findings, Point
+from .placement import Placement
+
+AT_ONCE = 500
+"""Tracks that are gone through between two looks at the clock."""
+
+T = TypeVar("T")
+Check = KeepoutCheck | ObstacleCheck | SurfaceCheck
+Found = dict[Track, list[Any]]
 
 
 def check_bounds(points: Sequence[Point], site: SiteReport) -> Findings:
@@ -48,119 +51,105 @@ def check_bounds(points: Sequence[Point], site: SiteReport) -> Findings:
     )
 
 
-class LayerCheck:
-    """Checks drafts against the project's layers that carry the roles of obstacles, keepouts and surfaces."""
+class LayerCheck(QObject):
+    """Checks drafts against the project's layers that carry the roles of obstacles, keepouts and surfaces.
 
-    def __init__(self, project: QgsProject):
+    What was found for a part of a draft is kept until a layer changes or another check needs it no more.
+    """
+
+    changed = pyqtSignal()
+    """A layer is not as it was: what is under way has to begin anew."""
+
+    def __init__(self, project: QgsProject, parent: QObject | None = None):
+        super().__init__(parent)
         self._project = project
-        self._obstacles = ObstacleCheck(project, _name)
+        self._checks: tuple[Check, ...] = (
+            KeepoutCheck(project),
+            ObstacleCheck(project),
+            SurfaceCheck(project),
+        )
+        self._kept: dict[Check, Found] = {}
+        self._kept_for: tuple[Any, ...] = ()
+        self._watch = LayerWatch(self)
+        self._watch.changed.connect(self._forget)
 
-    def __call__(self, draft: Draft, placement: Placement) -> Findings:
-        """Find what touches a keepout or an obstacle, warn of what leaves the road.
+    def remove(self) -> None:
+        """Watch no layer any longer."""
+        self._watch.remove()
 
-        Of a route only the ends of its legs are held against surfaces. Where a robot says that it stands is
-        not looked at: it may have been put there.
+    def look(self, draft: Draft, placement: Placement, afresh: bool = False) -> Steps[Findings]:
+        """Find what touches a keepout or an obstacle, warn of what leaves the road; ``afresh`` all of it.
+
+        Where a robot says that it stands is not looked at: it may have been put there.
 
         :raises PlacementError: when a point has no place in a layer's CRS.
         :raises ExpressionError: when the filter of a layer is no expression.
         """
-        if draft.kind == START:
+        if not is_looked_at(draft):
             return Findings()
-        points = draft.points
-        tracks = [(point,) for point in points] if draft.kind == TARGETS else [points]
-        ends = [points[end - 1] for end in accumulate(draft.legs)] if draft.kind == ROUTE else points
-        return (
-            self._keepouts(tracks, placement)
-            + self._obstacles(draft, placement)
-            + self._surfaces(ends, placement)
-        )
+        layers = {check: self._layers(check) for check in self._checks}
+        looked_at = (placement, *(tuple(layer.id() for layer in of_one) for of_one in layers.values()))
+        if afresh or looked_at != self._kept_for:
+            self._kept.clear()
+        self._kept_for = looked_at
+        for of_one in layers.values():
+            self._watch.watch(of_one)
+        findings = Findings()
+        for number, check in enumerate(self._checks):
+            work = self._look_by(check, layers[check], draft, placement)
+            findings += yield from part_of(work, number, len(self._checks))
+        return findings
 
-    def _keepouts(self, tracks: Sequence[Sequence[Point]], placement: Placement) -> Findings:
-        found = []
-        for layer in self._layers(KEEPOUT):
-            lines = [self._track(points, placement, layer) for points in tracks]
-            boxes = [line.boundingBox() for line in lines]
-            for number, feature in LayerFeatures(layer).near(boxes):
-                if feature.geometry().intersects(lines[number]):
-                    found.append(
-                        tr(
-                            "{spot} enters the keepout {name}. Choose a place or way outside it.",
-                            spot=_spot(tracks[number]),
-                            name=_name(feature, layer),
-                        )
-                    )
-        return Findings(overridable=tuple(found))
+    def _look_by(
+        self, check: Check, layers: Sequence[QgsVectorLayer], draft: Draft, placement: Placement
+    ) -> Steps[Findings]:
+        kept = self._kept.get(check, {})
+        tracks = yield from _listed(check.tracks(draft))
+        new: Found = {}
+        for number, track in enumerate(tracks):
+            if track not in kept:
+                new[track] = []
+            if number % AT_ONCE == 0:
+                yield 0.0
+        missing = list(new)
+        for number, layer in enumerate(layers if missing else ()):
+            hits = yield from part_of(check.look(layer, missing, placement), number, len(layers))
+            for place, found in hits.items():
+                new[missing[place]] += found
+        found_for: list[tuple[Track, list[Any]]] = []
+        still_needed: Found = {}
+        for number, track in enumerate(tracks):
+            found = new[track] if track in new else kept[track]
+            found_for.append((track, found))
+            still_needed[track] = found
+            if number % AT_ONCE == 0:
+                yield 0.0
+        self._kept[check] = still_needed
+        return (yield from check.told(found_for, bool(layers)))
 
-    def _surfaces(self, points: Sequence[Point], placement: Placement) -> Findings:
-        layers = list(self._layers(ROAD_SURFACE))
-        if not layers:
-            return Findings()
-        on: set[int] = set()
-        for layer in layers:
-            corners = self._corners(points, placement, layer)
-            spots = [QgsGeometry.fromPointXY(QgsPointXY(x, y)) for x, y in corners.tolist()]
-            for number, feature in LayerFeatures(layer).near([spot.boundingBox() for spot in spots]):
-                if number not in on and feature.geometry().contains(spots[number]):
-                    on.add(number)
-        off = [number for number in range(len(points)) if number not in on]
-        if not off:
-            return Findings()
-        x, y = points[off[0]]
-        where = (
-            tr("({x:.2f}, {y:.2f}) m is", x=x, y=y)
-            if len(off) == 1
-            else tr(
-                "{off} of {points} points are",
-                off=len(off),
-                points=len(points),
-            )
-        )
-        return Findings(warnings=(tr("{where} not on a road surface.", where=where),))
+    def _layers(self, check: Check) -> list[QgsVectorLayer]:
+        return [
+            layer
+            for layer in layers_with_role(self._project, *check.roles)
+            if isinstance(layer, QgsVectorLayer)
+            and layer.isValid()
+            and layer.isSpatial()
+            and (not check.only_polygons or _has_areas(layer))
+        ]
 
-    def _layers(self, role: str) -> Iterator[QgsVectorLayer]:
-        for layer in layers_with_role(self._project, role):
-            if (
-                isinstance(layer, QgsVectorLayer)
-                and layer.isValid()
-                and layer.geometryType() == QgsWkbTypes.GeometryType.PolygonGeometry
-            ):
-                yield layer
-
-    def _corners(self, points: Sequence[Point], placement: Placement, layer: QgsVectorLayer) -> np.ndarray:
-        in_site_crs = placement.frame.to_crs(np.array(points, dtype=np.float64))
-        if not layer.crs().isValid():
-            return in_site_crs
-        to_layer = QgsCoordinateTransform(placement.site_crs, layer.crs(), self._project)
-        return transformed(in_site_crs, to_layer)
-
-    def _track(self, points: Sequence[Point], placement: Placement, layer: QgsVectorLayer) -> QgsGeometry:
-        corners = [QgsPointXY(x, y) for x, y in self._corners(points, placement, layer)]
-        if len(corners) == 1:
-            return QgsGeometry.fromPointXY(corners[0])
-        return QgsGeometry.fromPolylineXY(corners)
+    def _forget(self) -> None:
+        self._kept.clear()
+        self.changed.emit()
 
 
-def _name(feature: QgsFeature, layer: QgsVectorLayer) -> str:
-    index = layer.fields().lookupField("name")
-    name = feature.attribute(index) if index >= 0 else None
-    return (
-        str(name)
-        if isinstance(name, str) and name
-        else tr(
-            "{layer} (feature {id})",
-            layer=layer.name(),
-            id=feature.id(),
-        )
-    )
+def _has_areas(layer: QgsVectorLayer) -> bool:
+    return layer.geometryType() == QgsWkbTypes.GeometryType.PolygonGeometry
 
 
-def _spot(points: Sequence[Point]) -> str:
-    return (
-        tr(
-            "({points:.2f}, {points2:.2f}) m",
-            points=points[0][0],
-            points2=points[0][1],
-        )
-        if len(points) == 1
-        else tr("The route")
-    )
+def _listed(things: Iterable[T]) -> Steps[list[T]]:
+    found = []
+    for number, thing in enumerate(things):
+        found.append(thing)
+        if number % AT_ONCE == AT_ONCE - 1:
+            yield 0.0
+    return found

@@ -22,8 +22,10 @@ from ..wire.outbox import Order
 from ..wire.status import LinkStatus, Phase
 from .checks import LayerCheck, check_bounds
 from .command_book import CommandBook
-from .drafting.target_check import check_targets
-from .drafts import Draft, DraftBoard, Point, in_brief
+from .drafting.draft_checker import DraftChecker
+from .drafting.slices import Steps
+from .drafting.target_check import TargetCheck
+from .drafts import Draft, DraftBoard, Findings, Point, in_brief
 from .observation_book import ObservationBook
 from .orders import Orders
 from .picture import RobotPicture
@@ -89,7 +91,11 @@ class Desk(QObject):
         self.emergency: EmergencyReport | None = None
         self.selection: tuple[str, ...] = ()
         self._placement: Placement | None = None
-        self._check_layers = LayerCheck(project)
+        self._check_layers = LayerCheck(project, self)
+        self._check_targets = TargetCheck(self.book, self.queues)
+        self.checks = DraftChecker(self.drafts, self._checked, self)
+        self.checks.found.connect(self._found)
+        self._check_layers.changed.connect(self.checks.begin_anew)
         self.orders.refused.connect(self._refused)
         self.orders.accepted.connect(self.remarked)
         self.orders.slow.connect(self.failed)
@@ -123,6 +129,8 @@ class Desk(QObject):
     def shut_down(self) -> None:
         """Stop the timer and wait for the connection's threads."""
         self._timer.stop()
+        self.checks.stop()
+        self._check_layers.remove()
         self.connection.shut_down()
 
     def pull(self) -> None:
@@ -149,6 +157,7 @@ class Desk(QObject):
             self.observations.clear()
             self.emergency = None
             self.roads.clear()
+            self._check_targets.clear()
             self.select(None)
         self.drafts.done()
         self.site, self._is_other_gateway = site, False
@@ -160,6 +169,7 @@ class Desk(QObject):
         self.picture.merge(news.robots)
         changed = self.book.merge(news.commands.values())
         if changed:
+            self._check_targets.take(report.robot for report in changed)
             self.commands_changed.emit(changed)
         self.roads.take(news.roads)
         self._take_queues(news)
@@ -175,6 +185,7 @@ class Desk(QObject):
     def _take_queues(self, news: News) -> None:
         queues = self.queues.merge(news.queues)
         if queues:
+            self._check_targets.take(queues)
             self.queues_changed.emit(queues)
         placed = self.placements.merge(news.placements)
         if placed:
@@ -197,27 +208,26 @@ class Desk(QObject):
             self._placement = Placement(self.site, crs, self.project.transformContext())
         return self._placement
 
-    def checked(self, draft: Draft) -> Draft:
-        """Return a draft with what is found when it is held against site, layers and other robots' targets.
+    def put_draft(self, draft: Draft) -> None:
+        """Make a draft the one on the map, have it checked, and say what speaks against it.
+
+        :raises FleetError: when there is no site or a layer cannot be read; what was on the map stays then.
+        """
+        self.checks.put(draft)
+
+    def _checked(self, draft: Draft, afresh: bool) -> Steps[Draft]:
+        """Hold a draft against site, layers and other robots' targets; return it with what was found.
 
         An override holds for what was found when it was given: it is gone when something else is found.
-
-        :raises PlacementError: as :meth:`placement`.
-        :raises FleetError: when a layer cannot be read.
         """
-        placement = self.placement()
-        found = check_bounds(draft.points, self.site) + self._check_layers(draft, placement)
-        found += check_targets(draft, self.book.under_way(), self.queues)
+        found = check_bounds(draft.points, self.site) if self.site is not None else Findings()
+        found += yield from self._check_layers.look(draft, self.placement(), afresh)
+        # At the end, so that nobody is sent there meanwhile.
+        found += self._check_targets.look(draft)
         override = draft.override if found.overridable == draft.findings.overridable else None
-        return replace(draft, findings=found, override=override)
+        return replace(draft, findings=found, override=override, is_checked=True)
 
-    def put_draft(self, draft: Draft) -> None:
-        """Check a draft, make it the one on the map, and say what speaks against it.
-
-        :raises FleetError: as :meth:`checked`; what was on the map stays then.
-        """
-        draft = self.checked(draft)
-        self.drafts.put(draft)
+    def _found(self, draft: Draft) -> None:
         if draft.findings.faults:
             self.complained.emit(in_brief(draft.findings.faults))
 
@@ -240,7 +250,7 @@ class Desk(QObject):
             self.selection_changed.emit()
 
     def send_draft(self) -> None:
-        """Send the draft; without one, or when it cannot be sent, say so."""
+        """Send the draft once it was looked at afresh; without one, or when it cannot be sent, say so."""
         draft = self.drafts.draft
         if draft is None:
             self.complained.emit(
@@ -251,15 +261,49 @@ class Desk(QObject):
             )
             return
         try:
-            renewed = self.checked(draft)
+            self.order_draft(self._send)
         except FleetError as error:
             self.failed.emit(tr("{in_words} was not sent: {error}", in_words=draft.in_words(), error=error))
+
+    def order_draft(self, order: Callable[[Draft], None]) -> None:
+        """Look at the draft on the map afresh, then do something with it.
+
+        Not if it is another by then, nor if the operator has not seen the warnings that there are now.
+
+        :raises FleetError: when it cannot be looked at.
+        """
+        draft = self.drafts.draft
+        assert draft is not None
+        self.checks.again(lambda looked_at: self._order(looked_at, draft.findings.warnings, order))
+
+    def _order(self, draft: Draft, known: tuple[str, ...], order: Callable[[Draft], None]) -> None:
+        unseen = [text for text in draft.findings.warnings if text not in known]
+        if not unseen or draft.fault:
+            order(draft)
             return
-        if renewed != draft:
-            # Since it was drawn a robot has been sent there, or a layer has changed.
-            self.drafts.renew(renewed)
-        if self._try(lambda: self.orders.send(renewed)):
+        self.failed.emit(
+            tr(
+                "{in_words} was not sent, since only now this is known: {warnings} Ask for it again to send "
+                "it all the same.",
+                in_words=draft.in_words(),
+                warnings=" ".join(unseen),
+            )
+        )
+
+    def _send(self, draft: Draft) -> None:
+        if self._try(lambda: self.orders.send(draft)):
             self.drafts.done()
+
+    def _withdraw(self) -> None:
+        """Send no draft any more that is still looked at: the operator wants robots to stand."""
+        draft = self.drafts.draft
+        if self.checks.withdraw() and draft is not None:
+            self.failed.emit(
+                tr(
+                    "{in_words} was not sent: robots were told to stop before it had been checked.",
+                    in_words=draft.in_words(),
+                )
+            )
 
     def abort_selected(self) -> None:
         """Ask every selected robot to give up its task."""
@@ -269,14 +313,17 @@ class Desk(QObject):
             )
         for robot in self.selection:
             self._try(lambda robot=robot: self.orders.abort(robot))
+        self._withdraw()
 
     def abort_all(self) -> None:
         """Ask every robot to give up its task, at once and without a question."""
         self._try(self.orders.abort_all)
+        self._withdraw()
 
     def emergency_stop(self) -> None:
         """Stop every robot at once and without a question, until a supervisor clears it."""
         self._try(self.orders.emergency_stop)
+        self._withdraw()
         self.emergency_changed.emit()
 
     def clear_emergency(self, stop: str, reason: str) -> None:

@@ -17,6 +17,7 @@ from qgis.PyQt.QtWidgets import (
 
 from ..language import tr
 from .actions import Actions
+from .colours import WRONG_STYLE
 from .desk import Desk
 from .drafts import TARGETS, Draft, in_brief
 
@@ -48,6 +49,7 @@ class DraftPanel(QWidget):
         self._actions = actions
         self._changes.hide()
         desk.drafts.changed.connect(self._show)
+        desk.checks.progressed.connect(self._show)
         desk.remarked.connect(self._remarked)
 
     def _remarked(self, text: str) -> None:
@@ -56,10 +58,20 @@ class DraftPanel(QWidget):
 
     def _show(self) -> None:
         draft = self._desk.drafts.draft
-        self._text.setText(_in_words(draft) if draft is not None else self._remark or NOTHING)
+        self._text.setText(self._told(draft) if draft is not None else self._remark or NOTHING)
         changes = (self._actions.undo, self._actions.redo, self._actions.override)
         self._changes.setVisible(any(action.isEnabled() for action in changes))
-        self._text.setStyleSheet("color: #C62828;" if draft is not None and draft.findings.faults else "")
+        is_wrong = draft is not None and draft.findings.faults
+        self._text.setStyleSheet(WRONG_STYLE if is_wrong else "")
+
+    def _told(self, draft: Draft) -> str:
+        checks = self._desk.checks
+        if not checks.is_under_way:
+            return _in_words(draft)
+        being = tr("{in_words}. Being checked: {share:.0%}.", in_words=draft.in_words(), share=checks.share)
+        if not checks.has_order:
+            return being
+        return being + tr(" It goes out when nothing speaks against it; Esc keeps it back.")
 
 
 def _row(actions: Sequence[QAction]) -> QHBoxLayout:

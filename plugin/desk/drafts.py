@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
-from itertools import pairwise
+from functools import cached_property
+from itertools import chain
 from typing import Any
 
+import numpy as np
 from qgis.PyQt.QtCore import QObject, pyqtSignal
 
 from ...robot_bridge.messages import SetPath, SetPosEnd, SetPosIni, to_json
@@ -56,7 +58,7 @@ class Draft:
     another selection does not change it. ``legs`` says how many of a route's points each click brought: one,
     or a way along the roads. ``note`` is what the operator is told of such ways. ``theta`` is the heading of
     a start position. ``names`` are those of several targets. ``override`` says why it is sent in spite of
-    what can be overridden.
+    what can be overridden. Nothing was found yet unless it ``is_checked``.
     """
 
     robot: str
@@ -68,6 +70,7 @@ class Draft:
     theta: float | None = None
     names: tuple[str, ...] = ()
     override: str | None = None
+    is_checked: bool = False
 
     def with_leg(self, points: tuple[Point, ...], note: str = "") -> Draft:
         """Return the route with another leg, unchecked."""
@@ -88,6 +91,8 @@ class Draft:
         """Why it cannot be sent, None if it can."""
         if self.kind == ROUTE and len(self.points) < 2:
             return tr("a route needs at least two points: click the next one")
+        if not self.is_checked:
+            return tr("it has not been checked to its end")
         return in_brief(self.findings.refused if self.override else self.findings.faults) or None
 
     @property
@@ -102,6 +107,13 @@ class Draft:
             return self.points
         ((x, y),) = self.points
         return ((x, y), (x + math.cos(self.theta), y + math.sin(self.theta)))
+
+    @cached_property
+    def length(self) -> float:
+        """Metres from the first point along all others."""
+        flat = np.fromiter(chain.from_iterable(self.points), np.float64)
+        steps = np.diff(flat.reshape(-1, 2), axis=0)
+        return float(np.hypot(steps[:, 0], steps[:, 1]).sum())
 
     def message(self) -> tuple[str, dict[str, Any]]:
         """Return the operation and its parameters."""
@@ -138,7 +150,7 @@ class Draft:
             "Route for {robot}: {points} points, {length:.1f} m{told}",
             robot=self.robot,
             points=len(self.points),
-            length=_length(self.points),
+            length=self.length,
             told=told,
         )
 
@@ -152,6 +164,8 @@ class DraftBoard(QObject):
     def __init__(self, parent: QObject | None = None):
         super().__init__(parent)
         self.draft: Draft | None = None
+        self.is_dragged = False
+        """Whether the draft is one under the mouse, which becomes another with each of its moves."""
         self.cursor: Point | None = None
         self._before: list[Draft | None] = []
         self._after: list[Draft | None] = []
@@ -166,6 +180,10 @@ class DraftBoard(QObject):
     def renew(self, draft: Draft) -> None:
         """Put ``draft`` in place of the present one, of which it differs in what was found or overridden."""
         self._show(draft)
+
+    def drag(self, draft: Draft) -> None:
+        """Show ``draft`` as it becomes while the mouse drags it; :meth:`renew` or :meth:`put` ends that."""
+        self._show(draft, is_dragged=True)
 
     def done(self) -> None:
         """Take the draft away for good: it was sent, or belongs to another site."""
@@ -202,8 +220,9 @@ class DraftBoard(QObject):
         self._show(here.pop())
         return True
 
-    def _show(self, draft: Draft | None) -> None:
+    def _show(self, draft: Draft | None, is_dragged: bool = False) -> None:
         self.draft = draft
+        self.is_dragged = is_dragged
         self.cursor = None
         self.changed.emit()
 
@@ -216,8 +235,3 @@ def in_brief(texts: tuple[str, ...], most: int = 3) -> str:
 
 def _place(point: Point) -> str:
     return tr("{point:.2f}, {point2:.2f} m", point=point[0], point2=point[1])
-
-
-def _length(points: tuple[Point, ...]) -> float:
-    legs = pairwise(points)
-    return sum(((bx - ax) ** 2 + (by - ay) ** 2) ** 0.5 for (ax, ay), (bx, by) in legs)

@@ -34,7 +34,8 @@ class RouteTool(DraftTool):
         self._handles = RouteHandles(desk)
         self._drag = RouteDrag(desk, self._handles)
         self._vertex: int | None = None
-        desk.drafts.changed.connect(self._let_go)
+        self._points: tuple[Point, ...] = ()
+        desk.drafts.changed.connect(self._changed)
 
     def deactivate(self) -> None:
         self._drag.give_up()
@@ -147,8 +148,13 @@ class RouteTool(DraftTool):
                 self._let_go()
 
     def _hold(self, draft: Draft, vertex: int | None) -> None:
-        self._vertex = vertex
+        self._vertex, self._points = vertex, draft.points
         self._handles.mark(draft, vertex)
+
+    def _changed(self) -> None:
+        # Where only a check has come to its end, the vertex stays in hand.
+        if self.draft is None or self.draft.points is not self._points:
+            self._let_go()
 
     def _let_go(self) -> None:
         self._vertex = None

@@ -30,7 +30,7 @@ def moved_together(xy: np.ndarray, transform: QgsCoordinateTransform) -> np.ndar
     # A line string of one point is none, so the first point goes twice.
     geometry = line_of(np.concatenate([xy[:1], xy]))
     geometry.transform(transform)
-    return np.frombuffer(bytes(geometry.asWkb()), dtype="<f8", offset=_LINE_HEADER.size).reshape(-1, 2)[1:]
+    return np.frombuffer(geometry.asWkb().data(), dtype="<f8", offset=_LINE_HEADER.size).reshape(-1, 2)[1:]
 
 
 def moved(xy: np.ndarray, transform: QgsCoordinateTransform) -> np.ndarray:

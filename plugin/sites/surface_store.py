@@ -12,26 +12,13 @@ from qgis.core import (
     QgsTask,
     QgsVectorLayer,
 )
-from qgis.PyQt import sip
 from qgis.PyQt.QtCore import QObject, QThread, pyqtSignal
 
 from ..errors import FleetError
 from ..language import tr
+from .layer_watch import LayerWatch
 from .roles import ROAD_SURFACE, layers_with_role
 from .surface_map import SurfaceMap, SurfaceSources, read_surface_map, surface_sources
-
-_CHANGES = (
-    "afterCommitChanges",
-    "afterRollBack",
-    "crsChanged",
-    "customPropertyChanged",
-    "dataChanged",
-    "dataSourceChanged",
-    "layerModified",
-    "subsetStringChanged",
-    "willBeDeleted",
-)
-"""Signals of a layer after which its surfaces are others; older QGIS lacks some."""
 
 Key = tuple[str, ...]
 
@@ -49,7 +36,8 @@ class SurfaceStore(QObject):
         super().__init__(parent)
         self._project = project
         self._maps: dict[Key, SurfaceMap] = {}
-        self._watched: dict[str, QgsVectorLayer] = {}
+        self._watch = LayerWatch(self)
+        self._watch.changed.connect(self._forget)
         self._age = 0
 
     def layers(self) -> list[QgsVectorLayer]:
@@ -70,7 +58,7 @@ class SurfaceStore(QObject):
             return found
         in_main_thread = QThread.currentThread() is self.thread()
         if in_main_thread:
-            self._watch(layers)
+            self._watch.watch(layers)
         found = read_surface_map(self._sources(layers), QgsFeedback())
         assert found is not None
         if in_main_thread:
@@ -82,7 +70,7 @@ class SurfaceStore(QObject):
 
         :raises FleetError: as :meth:`read`.
         """
-        self._watch(layers)
+        self._watch.watch(layers)
         task = SurfaceTask(self._sources(layers))
         key, age = _key(layers), self._age
 
@@ -96,11 +84,7 @@ class SurfaceStore(QObject):
 
     def remove(self) -> None:
         """Watch no layer any longer and forget everything."""
-        for layer in self._watched.values():
-            if not sip.isdeleted(layer):
-                for name in _signals_of(layer):
-                    getattr(layer, name).disconnect(self._forget)
-        self._watched.clear()
+        self._watch.remove()
         self._maps.clear()
 
     def _sources(self, layers: Sequence[QgsVectorLayer]) -> SurfaceSources:
@@ -110,14 +94,7 @@ class SurfaceStore(QObject):
         scope.appendScope(QgsExpressionContextUtils.projectScope(project))
         return surface_sources(layers, project.crs(), project.transformContext(), scope)
 
-    def _watch(self, layers: Sequence[QgsVectorLayer]) -> None:
-        for layer in layers:
-            if layer.id() not in self._watched:
-                self._watched[layer.id()] = layer
-                for name in _signals_of(layer):
-                    getattr(layer, name).connect(self._forget)
-
-    def _forget(self, *_what: object) -> None:
+    def _forget(self) -> None:
         self._age += 1
         self._maps.clear()
         self.forgotten.emit()
@@ -147,7 +124,3 @@ class SurfaceTask(QgsTask):
 
 def _key(layers: Sequence[QgsVectorLayer]) -> Key:
     return tuple(layer.id() for layer in layers)
-
-
-def _signals_of(layer: QgsVectorLayer) -> list[str]:
-    return [name for name in _CHANGES if hasattr(layer, name)]

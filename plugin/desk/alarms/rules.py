@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from ....robot_bridge.messages import RobotState
 from ...wire.sightings import STATES
-from .close_pairs import Ints, close_pairs
+from ..close_pairs import Ints, close_pairs
 from .thresholds import AlarmKind, Thresholds
 
 Floats = npt.NDArray[np.float64]

@@ -71,9 +71,10 @@ class DraftCommands(QObject):
 
         :raises FleetError: when it must not or cannot be; it stays on the map then.
         """
-        draft = self._desk.checked(self._draft())
-        if draft != self._desk.drafts.draft:
-            self._desk.drafts.renew(draft)
+        self._draft()
+        self._desk.order_draft(lambda draft: self._try(lambda: self._add(draft)))
+
+    def _add(self, draft: Draft) -> None:
         if draft.fault:
             raise NotSentError(
                 tr(
@@ -141,10 +142,9 @@ class DraftCommands(QObject):
         self._coordinates.activateWindow()
 
     def _chosen(self, x: float, y: float) -> None:
-        tool = self._desk.canvas.mapTool()
-        if not isinstance(tool, DraftTool):
+        if not isinstance(self._desk.canvas.mapTool(), DraftTool):
             self._actions.cone.trigger()
-            tool = self._desk.canvas.mapTool()
+        tool: DraftTool = self._desk.canvas.mapTool()
         tool.take((x, y))
         self._try(lambda: self._show(((x, y),)))
 

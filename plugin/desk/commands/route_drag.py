@@ -56,7 +56,7 @@ class RouteDrag:
             self._desk.complained.emit(str(error))
             self.give_up()
             return
-        self._desk.drafts.renew(self._shown)
+        self._desk.drafts.drag(self._shown)
         self._handles.mark(self._shown, self._vertex)
 
     def release(self) -> Draft | None:

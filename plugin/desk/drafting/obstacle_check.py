@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from itertools import accumulate
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from qgis.core import (
     QgsCoordinateTransform,
     QgsCsException,
-    QgsFeature,
     QgsGeometry,
-    QgsPointXY,
     QgsProject,
     QgsRectangle,
     QgsVectorLayer,
@@ -19,57 +16,55 @@ from qgis.core import (
 
 from ...errors import PlacementError
 from ...language import tr
-from ...sites.roles import FURNITURE, OBSTACLE, STAIRS, layers_with_role
-from ..drafts import ROUTE, Draft, Findings, Point
+from ...sites.roles import FURNITURE, OBSTACLE, STAIRS
+from ..drafts import Draft, Findings
 from ..placement import Placement, transformed
-from .layer_features import LayerFeatures
+from .layer_features import LayerFeatures, engine_of, name_of
+from .slices import Steps
+from .tracks import Track, boxes_of, drawn_by_hand, lines_in, place_in_words
 
 CLEARANCE_M = 0.25
 """Metres within which a place is taken to be on an obstacle: half the width of a small robot."""
 
-Named = Callable[[QgsFeature, QgsVectorLayer], str]
+Hit = tuple[str, float]
+"""The name of an obstacle, and how many metres away it is."""
 
 
 class ObstacleCheck:
-    """Holds drafts against the layers with the roles obstacle, stairs and furniture; ramps can be driven.
+    """Finds for each track the obstacles, stairs and furniture in its way; ramps can be driven."""
 
-    ``name`` tells how a feature of a layer is called.
-    """
+    roles = (OBSTACLE, STAIRS, FURNITURE)
+    only_polygons = False
 
-    def __init__(self, project: QgsProject, name: Named):
+    def __init__(self, project: QgsProject):
         self._project = project
-        self._name = name
 
-    def __call__(self, draft: Draft, placement: Placement) -> Findings:
-        """Find obstacles at the targets, or in the way of what was drawn by hand.
+    def tracks(self, draft: Draft) -> Iterator[Track]:
+        """Yield what of a draft is looked at: what was drawn by hand."""
+        return drawn_by_hand(draft)
 
-        Legs along the roads are the gateway's, which knows obstacles as the site was published.
+    def look(
+        self, layer: QgsVectorLayer, tracks: Sequence[Track], placement: Placement
+    ) -> Steps[dict[int, list[Hit]]]:
+        """Find the obstacles in ``layer`` by the numbers of the tracks that are too near to them.
 
-        :raises PlacementError: when a point has no place in a layer's CRS.
-        :raises ExpressionError: when the filter of a layer is no expression.
+        :raises PlacementError: when the layer has no place in the site's CRS.
         """
-        tracks = list(_tracks(draft, placement))
-        found: dict[tuple[int, str], str] = {}
-        for layer in layers_with_role(self._project, OBSTACLE, STAIRS, FURNITURE):
-            if tracks and isinstance(layer, QgsVectorLayer) and layer.isValid() and layer.isSpatial():
-                for number, name, away in self._near([line for line, _ in tracks], layer, placement):
-                    found.setdefault((number, name), _told(tracks[number][1], name, away))
-        return Findings(overridable=tuple(found[key] for key in sorted(found)))
-
-    def _near(
-        self, tracks: Sequence[QgsGeometry], layer: QgsVectorLayer, placement: Placement
-    ) -> Iterator[tuple[int, str, float]]:
         way = QgsCoordinateTransform(layer.crs(), placement.site_crs, self._project)
-        moved: dict[int, QgsGeometry] = {}
+        lines = yield from lines_in(tracks, placement, None, self._project)
+        found: dict[int, list[Hit]] = {}
         try:
-            for number, feature in LayerFeatures(layer).near(_boxes(tracks, way)):
-                if feature.id() not in moved:
-                    moved[feature.id()] = QgsGeometry(feature.geometry())
-                    if way.isValid():
-                        moved[feature.id()].transform(way)
-                away = moved[feature.id()].distance(tracks[number])
-                if 0 <= away <= CLEARANCE_M:
-                    yield number, self._name(feature, layer), away
+            boxes = yield from _boxes(lines, way)
+            for feature, numbers in (yield from LayerFeatures(layer).near(boxes)):
+                obstacle = QgsGeometry(feature.geometry())
+                if way.isValid():
+                    obstacle.transform(way)
+                engine = engine_of(obstacle, len(numbers))
+                for number in numbers:
+                    away = engine.distance(lines[number].constGet())
+                    if 0 <= away <= CLEARANCE_M:
+                        found.setdefault(number, []).append((name_of(feature, layer), away))
+                    yield 0.0
         except QgsCsException as error:
             raise PlacementError(
                 tr(
@@ -79,24 +74,24 @@ class ObstacleCheck:
                     error=error,
                 )
             ) from error
+        return found
+
+    def told(self, found: Sequence[tuple[Track, list[Hit]]], is_watched: bool) -> Steps[Findings]:
+        """Return the findings, each obstacle once for each track."""
+        texts = []
+        for track, hits in found:
+            place = place_in_words(track)
+            spot = place if len(track) == 1 else tr("The way to {to}", to=place)
+            # Several features may have one name: the nearest counts.
+            for name in sorted({name for name, _ in hits}):
+                texts.append(_told(spot, name, min(away for other, away in hits if other == name)))
+            yield 1.0
+        return Findings(overridable=tuple(texts))
 
 
-def _tracks(draft: Draft, placement: Placement) -> Iterator[tuple[QgsGeometry, str]]:
-    """Yield what is looked at in the site's CRS, and what it is called."""
-    corners = [QgsPointXY(x, y) for x, y in placement.frame.to_crs(np.array(draft.points)).tolist()]
-    if draft.kind != ROUTE or len(corners) == 1:
-        for corner, point in zip(corners, draft.points, strict=True):
-            yield QgsGeometry.fromPointXY(corner), _place(point)
-        return
-    for leg, end in zip(draft.legs, accumulate(draft.legs), strict=True):
-        if leg == 1 and end > 1:
-            to = _place(draft.points[end - 1])
-            yield QgsGeometry.fromPolylineXY(corners[end - 2 : end]), tr("The way to {to}", to=to)
-
-
-def _boxes(tracks: Sequence[QgsGeometry], way: QgsCoordinateTransform) -> list[QgsRectangle]:
+def _boxes(tracks: Sequence[QgsGeometry], way: QgsCoordinateTransform) -> Steps[list[QgsRectangle]]:
     """Return what is to be looked at in the layer's CRS, where ``way`` leads from."""
-    boxes = [track.boundingBox().buffered(CLEARANCE_M) for track in tracks]
+    boxes = yield from boxes_of(tracks, CLEARANCE_M)
     if not way.isValid() or way.isShortCircuited():
         return boxes
     back = QgsCoordinateTransform(way.destinationCrs(), way.sourceCrs(), way.context())
@@ -113,7 +108,3 @@ def _boxes(tracks: Sequence[QgsGeometry], way: QgsCoordinateTransform) -> list[Q
 def _told(spot: str, name: str, away: float) -> str:
     where = tr("is on") if away <= 0.0 else tr("is {away:.2f} m from", away=away)
     return tr("{spot} {where} {name}. Choose a place or way beside it.", spot=spot, where=where, name=name)
-
-
-def _place(point: Point) -> str:
-    return tr("({point:.2f}, {point2:.2f}) m", point=point[0], point2=point[1])

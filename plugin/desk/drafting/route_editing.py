@@ -67,7 +67,7 @@ def turned_round(draft: Draft) -> Draft:
 
 
 def _changed(draft: Draft, points: tuple[Point, ...], legs: tuple[int, ...]) -> Draft:
-    return replace(draft, points=points, legs=legs, findings=Findings(), override=None)
+    return replace(draft, points=points, legs=legs, findings=Findings(), override=None, is_checked=False)
 
 
 def _leg_of(draft: Draft, vertex: int) -> int:

@@ -2,47 +2,110 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import numpy.typing as npt
 from qgis.PyQt.QtCore import QPointF, Qt
-from qgis.PyQt.QtGui import QColor, QPainter
+from qgis.PyQt.QtGui import QColor, QImage, QPainter, QPen
 
 from ..colours import PAPER, REFUSED, ROUTE
 from ..drafts import CONE, START, TARGETS
-from ..glyphs import draw_cone
+from ..glyphs import CONE_TARGET, draw_cone
 from .scene import PlacedScene
 from .screen import Screen
-from .strokes import dashes, ring, route
+from .sprites import Sprites
+from .strokes import dashes, polygon, ring, route
 
 Points = npt.NDArray[np.float64]
+Marks = Callable[[float, float], Sprites]
+MANY = 60
+"""With more points lines are thin and targets small, and all of them are painted once into an image."""
+SMALL = 0.5
 
 
-def paint_draft(painter: QPainter, placed: PlacedScene, robots: Points, screen: Screen) -> None:
-    """Paint the draft and the next leg to the mouse; ``robots`` (n, 2) is where each robot is, in pixels."""
-    draft = placed.scene.draft
-    if draft is None:
-        return
-    points, cursor = screen.pixels(placed.draft), screen.pixels(placed.cursor)
-    is_wrong = bool(draft.findings.faults) and draft.override is None
-    colour = REFUSED if is_wrong else PAPER
-    row = placed.scene.rows.get(draft.robot)
-    start = robots[[row]] if row is not None and np.isfinite(robots[row]).all() else np.empty((0, 2))
-    if draft.kind in (CONE, TARGETS):
-        dashes(painter, np.concatenate([start, points]), colour, Qt.PenStyle.DashLine)
-        painter.setOpacity(0.85)
-        for point in points:
-            ring(painter, point, 12.0, colour)
-            draw_cone(painter, QPointF(*point), 26.0)
-        painter.setOpacity(1.0)
-        return
-    if draft.kind == START:
-        _paint_start(painter, points, colour)
-        return
-    dashes(painter, np.concatenate([start, points[:1]]), colour, Qt.PenStyle.DotLine)
-    route(painter, points, colour if is_wrong else ROUTE)
-    dashes(painter, np.concatenate([points[-1:], cursor]), colour, Qt.PenStyle.DashLine)
+class DraftPainter:
+    """Keeps an image of a large draft: to stroke a thousand legs anew for each frame takes seconds."""
+
+    def __init__(self) -> None:
+        self._image: QImage | None = None
+        self._made_for: tuple = ()
+
+    def paint(
+        self, painter: QPainter, placed: PlacedScene, robots: Points, screen: Screen, marks: Marks
+    ) -> None:
+        """Paint the draft and the next leg to the mouse; ``robots`` (n, 2) is where each robot is, in pixels.
+
+        ``marks`` gives the marks of a pixel ratio and a size.
+        """
+        draft = placed.scene.draft
+        if draft is None:
+            self._image, self._made_for = None, ()
+            return
+        is_wrong = bool(draft.findings.faults) and draft.override is None
+        colour = REFUSED if is_wrong else PAPER
+        points, cursor = screen.pixels(placed.draft), screen.pixels(placed.cursor)
+        if draft.kind == START:
+            _paint_start(painter, points, colour)
+            return
+        row = placed.scene.rows.get(draft.robot)
+        start = robots[[row]] if row is not None and np.isfinite(robots[row]).all() else np.empty((0, 2))
+        targets = draft.kind in (CONE, TARGETS)
+        first = Qt.PenStyle.DashLine if targets else Qt.PenStyle.DotLine
+        dashes(painter, np.concatenate([start, points[:1]]), colour, first)
+        if len(points) > MANY:
+            line = colour if is_wrong or targets else ROUTE
+            self._paint_many(painter, placed.draft, points, screen, line, marks if targets else None)
+        elif targets:
+            _paint_targets(painter, points, colour)
+        else:
+            _paint_route(painter, points, colour if is_wrong else ROUTE, colour)
+        if not targets:
+            dashes(painter, np.concatenate([points[-1:], cursor]), colour, Qt.PenStyle.DashLine)
+
+    def _paint_many(
+        self,
+        painter: QPainter,
+        on_map: Points,
+        points: Points,
+        screen: Screen,
+        colour: QColor,
+        marks: Marks | None,
+    ) -> None:
+        made_for = (on_map, screen, colour.rgba(), marks is None)
+        if not self._made_for or self._made_for[0] is not on_map or self._made_for[1:] != made_for[1:]:
+            self._image, self._made_for = _drawn(points, screen, colour, marks), made_for
+        painter.drawImage(QPointF(0.0, 0.0), self._image)
+
+
+def _drawn(points: Points, screen: Screen, colour: QColor, marks: Marks | None) -> QImage:
+    width, height = round(screen.width * screen.ratio), round(screen.height * screen.ratio)
+    image = QImage(width, height, QImage.Format.Format_ARGB32_Premultiplied)
+    image.setDevicePixelRatio(screen.ratio)
+    image.fill(QColor(0, 0, 0, 0))
+    painter = QPainter(image)
+    painter.setPen(QPen(colour, 0.0))
+    painter.drawPolyline(polygon(points))
+    if marks is not None:
+        seen = points[screen.seen(points, 30.0)]
+        marks(screen.ratio, SMALL).paint(painter, seen, CONE_TARGET)
+    painter.end()
+    return image
+
+
+def _paint_targets(painter: QPainter, points: Points, colour: QColor) -> None:
+    dashes(painter, points, colour, Qt.PenStyle.DashLine)
+    painter.setOpacity(0.85)
     for point in points:
-        ring(painter, point, 3.5, colour)
+        ring(painter, point, 12.0, colour)
+        draw_cone(painter, QPointF(*point), 26.0)
+    painter.setOpacity(1.0)
+
+
+def _paint_route(painter: QPainter, points: Points, line: QColor, rings: QColor) -> None:
+    route(painter, points, line)
+    for point in points:
+        ring(painter, point, 3.5, rings)
 
 
 def _paint_start(painter: QPainter, points: Points, colour: QColor) -> None:

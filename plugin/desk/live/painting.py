@@ -7,7 +7,7 @@ import numpy.typing as npt
 from qgis.PyQt.QtGui import QPainter
 
 from .border_hints import Hint, hints, paint_hints
-from .draft_painting import paint_draft
+from .draft_painting import DraftPainter
 from .labels import Labels
 from .names_painting import NamesPainter
 from .plans_painting import PlansPainter
@@ -30,6 +30,7 @@ class ScenePainter:
         self._labels = Labels()
         self._trails = TrailImage(Trails() if trails is None else trails)
         self._plans = PlansPainter(self._labels)
+        self._draft = DraftPainter()
         self.robots = RobotsPainter()
         self._names = NamesPainter(self._labels)
         self._circles: list = []
@@ -53,7 +54,7 @@ class ScenePainter:
         self._trails.paint(painter, screen)
         paint_circles(painter, self._circles, placed, screen)
         self._plans.paint(painter, placed, pixels, screen, self.robots.marks)
-        paint_draft(painter, placed, pixels, screen)
+        self._draft.paint(painter, placed, pixels, screen, self.robots.marks)
         self.robots.paint(painter, placed, pixels, seen, screen)
         self.hints = self._hints(pixels, seen, screen)
         taken = [(x - 24.0, y, x + 24.0, y + 26.0) for x, y in self._plans.distances]

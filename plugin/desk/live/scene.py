@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
+from itertools import chain
 
 import numpy as np
 import numpy.typing as npt
@@ -54,11 +55,13 @@ class PlacedScene:
 
 
 class Placer:
-    """Places scenes, each plan once for as long as the map keeps its CRS."""
+    """Places scenes, each plan and each draft once for as long as the map keeps its CRS."""
 
     def __init__(self) -> None:
         self._placement: Placement | None = None
         self._plans: dict[Plan, Points] = {}
+        self._outline: object = None
+        self._draft: Points = np.empty((0, 2))
 
     def placed(self, scene: Scene, placement: Placement) -> PlacedScene:
         """Place everything.
@@ -66,9 +69,11 @@ class Placer:
         :raises PlacementError: when a position has no place in the map's CRS.
         """
         if placement is not self._placement:
-            self._placement, self._plans = placement, {}
+            self._placement, self._plans, self._outline = placement, {}, None
         known = self._plans
         new = [plan for plan in scene.plans if plan not in known]
+        outline = scene.draft.outline if scene.draft else ()
+        is_known = outline is self._outline
         robots = scene.robots
         there = np.flatnonzero(np.isfinite(robots.xy).all(axis=1))
         theta = robots.theta[there]
@@ -76,20 +81,22 @@ class Placer:
         parts = [
             robots.xy[there],
             robots.xy[there] + step,
-            _points(scene.draft.outline if scene.draft else ()),
+            _points(() if is_known else outline),
             _points([scene.cursor] if scene.cursor else ()),
             *[plan.points for plan in new],
         ]
         ends = np.cumsum([len(part) for part in parts])[:-1]
         at, before, draft, cursor, *ways = np.split(placement.to_map(np.concatenate(parts)), ends)
         known.update(zip(new, ways, strict=True))
+        if not is_known:
+            self._outline, self._draft = outline, draft
         self._plans = {plan: known[plan] for plan in scene.plans}
         return PlacedScene(
             scene,
             _spread(at, there, len(robots.xy)),
             _spread(before, there, len(robots.xy)),
             list(self._plans.values()),
-            draft,
+            self._draft,
             cursor,
             placement.to_map,
         )
@@ -103,5 +110,5 @@ def _spread(values: Points, rows: npt.NDArray[np.intp], count: int) -> Points:
     return out
 
 
-def _points(points: object) -> Points:
-    return np.array(points, dtype=np.float64).reshape(-1, 2)
+def _points(points: Iterable[Point]) -> Points:
+    return np.fromiter(chain.from_iterable(points), np.float64).reshape(-1, 2)

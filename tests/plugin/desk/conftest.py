@@ -235,6 +235,8 @@ class Window(QMainWindow):
         self.locator = QgsLocator(self)
         self.options_pages = []
         self.drop_handlers = []
+        self.is_settled = lambda: True
+        """Whether what a click begins has come to its end."""
         self._pan_tool = QgsMapToolPan(self.canvas)
         self._pan = QAction("Pan", self)
         self._pan.triggered.connect(lambda: self.canvas.setMapTool(self._pan_tool))
@@ -302,6 +304,7 @@ class Window(QMainWindow):
 
     def click(self, x, y, button=Qt.MouseButton.LeftButton) -> None:
         QTest.mouseClick(self.canvas.viewport(), button, Qt.KeyboardModifier.NoModifier, self.pixel(x, y))
+        wait_until(self.is_settled, what="the check of the draft")
 
 
 @pytest.fixture
@@ -349,4 +352,5 @@ def at_desk(plugin, gateway, iface):
     window.dock.connection_panel._operator.setText("anna")
     window.actions.connect.trigger()
     wait_until(lambda: len(window.desk.picture) == 2, what="two robots")
+    iface.is_settled = lambda: not window.desk.checks.is_under_way
     return window

@@ -25,6 +25,7 @@ class Hand:
 
     @property
     def told(self) -> str:
+        self.wait(self.iface.is_settled, what="the check of the draft")
         return self.window.dock.findChild(QLabel, "fleet_draft_text").text()
 
     def take(self, tool: str, robot: str | None = "r1") -> Hand:
@@ -41,6 +42,7 @@ class Hand:
         for modifier in modifiers:
             held |= modifier
         QTest.keyClick(self.iface.canvas, key, held)
+        self.wait(self.iface.is_settled, what="the check of the draft")
 
     def type(self, text: str) -> None:
         QTest.keyClicks(self.iface.canvas, text)
@@ -59,6 +61,7 @@ class Hand:
             self._move(a + (b - a) * part, left)
         if let_go:
             QTest.mouseRelease(view, left, none, b)
+            self.wait(self.iface.is_settled, what="the check of the draft")
 
     def _move(self, at, held) -> None:
         """Move as the window system does: QTest's own move says of no button that it is down."""
@@ -71,6 +74,7 @@ class Hand:
         button = self.window.dock.findChild(QToolButton, f"{name}_button")
         assert button.isEnabled(), name
         QTest.mouseClick(button, Qt.MouseButton.LeftButton)
+        self.wait(self.iface.is_settled, what="the check of the draft")
 
     def sent(self, count: int = 1) -> dict:
         self.wait(lambda: len(self.gateway.asked("send")) >= count, what="the command")

@@ -17,8 +17,7 @@ def close_pairs(xy: npt.NDArray[np.float64], reach: float) -> tuple[Ints, Ints, 
     nothing = np.empty(0, np.int64)
     if len(xy) < 2 or reach <= 0:
         return nothing, nothing, np.empty(0)
-    cell = np.clip(np.floor(xy / reach), -LARGEST, LARGEST).astype(np.int64)
-    number = cell[:, 1] * ROW + cell[:, 0]
+    number = _cells(xy, reach)
     order = np.argsort(number, kind="stable")
     ranked = number[order]
     # Cells beside each other have numbers beside each other. Half of those about a cell are enough: the other
@@ -35,6 +34,31 @@ def close_pairs(xy: npt.NDArray[np.float64], reach: float) -> tuple[Ints, Ints, 
     near = apart <= reach
     one, other, apart = one[near], other[near], apart[near]
     return np.minimum(one, other), np.maximum(one, other), apart
+
+
+def pairs_between(
+    ones: npt.NDArray[np.float64], others: npt.NDArray[np.float64], reach: float
+) -> tuple[Ints, Ints, npt.NDArray[np.float64]]:
+    """Return the rows of (n, 2) ``ones`` and (m, 2) ``others`` at most ``reach`` apart, and how far apart."""
+    cells = _cells(others, reach)
+    order = np.argsort(cells, kind="stable")
+    ranked = cells[order]
+    cells = _cells(ones, reach)
+    found = [
+        _pairs(np.searchsorted(ranked, row - 1, side="left"), np.searchsorted(ranked, row + 1, side="right"))
+        for row in (cells - ROW, cells, cells + ROW)
+    ]
+    one = np.concatenate([pair[0] for pair in found])
+    other = order[np.concatenate([pair[1] for pair in found])]
+    apart = np.hypot(*(ones[one] - others[other]).T)
+    near = apart <= reach
+    return one[near], other[near], apart[near]
+
+
+def _cells(xy: npt.NDArray[np.float64], reach: float) -> Ints:
+    """Return the number of the cell that each place is in; those beside one another have numbers that are."""
+    cell = np.clip(np.floor(xy / reach), -LARGEST, LARGEST).astype(np.int64)
+    return cell[:, 1] * ROW + cell[:, 0]
 
 
 def _pairs(begin: Ints, end: Ints) -> tuple[Ints, Ints]:

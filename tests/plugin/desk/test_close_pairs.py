@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from fleet_supervisor.plugin.desk.alarms.close_pairs import close_pairs
+from fleet_supervisor.plugin.desk.close_pairs import close_pairs, pairs_between
 
 
 def brute_force(xy, reach):
@@ -36,3 +36,17 @@ def test_nobody_is_near_where_there_is_one_or_none(xy):
 
 def test_no_reach_makes_no_pair():
     assert len(close_pairs(np.zeros((3, 2)), 0.0)[0]) == 0
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_the_pairs_between_two_crowds_are_those_of_brute_force(seed):
+    random = np.random.default_rng(seed)
+    ones, others = random.uniform(-9, 9, (60, 2)), random.uniform(-9, 9, (80, 2))
+    others[:3] = ones[:3]
+    one, other, apart = pairs_between(ones, others, 1.5)
+    found = dict(zip(zip(one.tolist(), other.tolist(), strict=True), apart.tolist(), strict=True))
+    assert len(found) == len(one)
+    away = np.hypot(*(ones[:, None] - others[None]).transpose(2, 0, 1))
+    near = {(i, j): away[i, j] for i, j in zip(*np.nonzero(away <= 1.5), strict=True)}
+    assert found == pytest.approx(near)
+    assert {(0, 0), (1, 1), (2, 2)} <= set(found)

@@ -1,0 +1,110 @@
+"""Long work of the window's thread, done in slices between which the window paints and answers the mouse.
+
+QGIS's own tasks are no help where a click waits for the result: in QGIS 3.22 they wait until the map is
+drawn, and what they call of QGIS keeps Python to itself as long as it takes.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Generator
+from typing import Any, TypeVar
+
+from qgis.PyQt.QtCore import QObject, QTimer
+
+from ...errors import FleetError
+
+T = TypeVar("T")
+Steps = Generator[float, None, T]
+"""Work that yields, as often as it can, the share of it that is done: 0 to 1. It returns the result."""
+
+SLICE_SECONDS = 0.008
+REST_MS = 4
+"""Between two slices, for the window."""
+
+
+class Slices(QObject):
+    """Does one piece of work at a time, the first slice of it at once: small ones are done by that."""
+
+    def __init__(self, parent: QObject | None = None, clock: Callable[[], float] = time.perf_counter):
+        super().__init__(parent)
+        self._clock = clock
+        self._work: Steps[Any] | None = None
+        self._goes_on: Callable[[], None] = lambda: None
+        self._done: Callable[[Any], None] = lambda result: None
+        self._failed: Callable[[FleetError], None] = lambda error: None
+        self.share = 0.0
+        """How much is done, 0 to 1."""
+        self._timer = QTimer(self)
+        self._timer.setSingleShot(True)
+        self._timer.setInterval(REST_MS)
+        self._timer.timeout.connect(self._next)
+
+    def begin(
+        self,
+        work: Steps[T],
+        goes_on: Callable[[], None],
+        done: Callable[[T], None],
+        failed: Callable[[FleetError], None],
+    ) -> T | None:
+        """Return what ``work`` returns if the first slice of it was enough, else None.
+
+        ``goes_on`` is called after each later slice, then ``done`` with what it returns or ``failed`` with
+        what it raised. What was under way before is given up.
+
+        :raises FleetError: what the first slice raises; ``failed`` is not called then.
+        """
+        self.stop()
+        self._work, self._goes_on, self._done, self._failed = work, goes_on, done, failed
+        return self._slice()[1]
+
+    def stop(self) -> None:
+        """Give up what is under way; nothing is called for it any more."""
+        self._timer.stop()
+        work, self._work = self._work, None
+        self.share = 0.0
+        # What it does may be why it is to stop; it is not gone on with then.
+        if work is not None and not work.gi_running:
+            work.close()
+
+    def _next(self) -> None:
+        try:
+            is_done, result = self._slice()
+        except FleetError as error:
+            self._failed(error)
+            return
+        if is_done:
+            self._done(result)
+        elif self._work is not None:
+            self._goes_on()
+
+    def _slice(self) -> tuple[bool, Any]:
+        work = self._work
+        assert work is not None
+        until = self._clock() + SLICE_SECONDS
+        try:
+            while True:
+                self.share = next(work)
+                if self._work is not work:
+                    return False, None
+                if self._clock() >= until:
+                    break
+        except StopIteration as end:
+            is_wanted = self._work is work
+            self.stop()
+            return is_wanted, end.value
+        except BaseException:
+            self.stop()
+            raise
+        self._timer.start()
+        return False, None
+
+
+def part_of(work: Steps[T], before: int, parts: int) -> Steps[T]:
+    """Do ``work`` as one of so many ``parts``, after ``before`` of them."""
+    while True:
+        try:
+            share = next(work)
+        except StopIteration as end:
+            return end.value
+        yield (before + share) / parts

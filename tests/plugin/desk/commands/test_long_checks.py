@@ -1,0 +1,248 @@
+"""Checks that take longer than the window can wait: what may happen meanwhile, and what must not."""
+
+from __future__ import annotations
+
+import pytest
+from fleet_supervisor.plugin.desk.drafting import slices
+from fleet_supervisor.plugin.desk.drafting.keepout_check import KeepoutCheck
+from fleet_supervisor.plugin.desk.drafting.obstacle_check import ObstacleCheck
+from fleet_supervisor.plugin.desk.drafting.surface_check import SurfaceCheck
+from qgis.core import QgsFeature, QgsGeometry
+from qgis.PyQt.QtCore import Qt
+from qgis.PyQt.QtTest import QTest
+
+SQUARE = "Polygon ((60 50, 80 50, 80 60, 60 60, 60 50))"
+ENTER, ESCAPE = Qt.Key.Key_Return, Qt.Key.Key_Escape
+CTRL = Qt.KeyboardModifier.ControlModifier
+
+
+@pytest.fixture
+def slow(hand, monkeypatch):
+    """A desk where every check takes as many slices as it has steps; clicks and keys do not wait for it."""
+    monkeypatch.setattr(slices, "SLICE_SECONDS", 0.0)
+    hand.settled, hand.iface.is_settled = hand.iface.is_settled, lambda: True
+    return hand
+
+
+def settle(hand):
+    hand.wait(hand.settled, what="the check of the draft")
+
+
+@pytest.fixture
+def looked_at(monkeypatch):
+    """How many tracks each check looked at, in order: [(check, number)]."""
+    seen = []
+
+    def counting(check):
+        look = check.look
+
+        def counted(self, layer, tracks, placement):
+            seen.append((check.__name__, len(tracks)))
+            return look(self, layer, tracks, placement)
+
+        monkeypatch.setattr(check, "look", counted)
+
+    for check in (KeepoutCheck, ObstacleCheck, SurfaceCheck):
+        counting(check)
+    return seen
+
+
+def test_the_panel_says_that_it_is_checked_and_nothing_goes_out_before(slow, layer_of):
+    layer_of("Polygon", SQUARE, role="keepout", names=["Bay"])
+    slow.take("cone").click((20, 20))
+    assert slow.window.desk.checks.is_under_way
+    assert ". Being checked: " in slow.told
+    assert not slow.window.actions.override.isEnabled()
+    slow.key(ENTER)
+    assert "It goes out when nothing speaks against it; Esc keeps it back." in slow.told
+    assert slow.gateway.asked("send") == []
+    assert slow.sent()["params"]["x"] == pytest.approx(20, abs=0.3)
+    assert slow.points is None
+
+
+def test_what_is_found_at_last_keeps_it_here_although_it_was_ordered(slow, layer_of):
+    layer_of("Polygon", SQUARE, role="keepout", names=["Bay"])
+    slow.take("cone").click((70, 55))
+    slow.key(ENTER)
+    settle(slow)
+    assert slow.nothing_sent()
+    assert "enters the keepout Bay" in slow.told
+    assert slow.complained("enters the keepout Bay")
+
+
+def test_a_draft_that_was_moved_meanwhile_has_nothing_of_the_check_before(slow, layer_of):
+    layer_of("Polygon", SQUARE, role="keepout", names=["Bay"])
+    slow.take("cone").click((70, 55))
+    slow.key(ENTER)
+    slow.click((20, 20))
+    assert not slow.window.desk.checks.has_order
+    settle(slow)
+    assert slow.nothing_sent()
+    assert slow.drafts.draft.findings.faults == ()
+    assert not slow.complained("enters the keepout Bay")
+    slow.click((70, 55))
+    settle(slow)
+    assert "enters the keepout Bay" in slow.told
+
+
+def test_a_cancelled_draft_is_not_sent_by_its_check(slow, layer_of):
+    layer_of("Polygon", SQUARE, role="keepout", names=["Bay"])
+    slow.take("cone").click((20, 20))
+    slow.key(ENTER)
+    slow.key(ESCAPE)
+    assert not slow.window.desk.checks.is_under_way
+    assert slow.nothing_sent()
+    assert slow.points is None
+
+
+@pytest.mark.parametrize("how", ["abort", "abort_all", "emergency"])
+def test_who_stops_robots_wants_nothing_sent_any_more(slow, layer_of, how):
+    layer_of("Polygon", SQUARE, role="keepout", names=["Bay"])
+    slow.take("cone").click((20, 20))
+    slow.key(ENTER)
+    getattr(slow.window.actions, how).trigger()
+    settle(slow)
+    assert slow.gateway.asked("send") == [] or {s["op"] for s in slow.gateway.asked("send")} == {"Abort"}
+    QTest.qWait(150)
+    assert "SetPosEnd" not in {sent["op"] for sent in slow.gateway.asked("send")}
+    assert slow.points is not None
+    assert slow.complained("was not sent: robots were told to stop")
+
+
+def test_a_draft_for_the_queue_waits_for_its_check_too(slow, layer_of):
+    layer_of("Polygon", SQUARE, role="keepout", names=["Bay"])
+    slow.take("cone").click((70, 55))
+    slow.window.actions.enqueue.trigger()
+    settle(slow)
+    assert slow.nothing_sent()
+    assert slow.complained("was not put into the queue: ")
+
+
+def test_a_warning_that_nobody_has_seen_is_shown_before_it_is_sent(slow, layer_of):
+    layer_of("Polygon", SQUARE, role="road_surface", names=["Road"])
+    slow.take("cone").click((20, 20))
+    slow.key(ENTER)
+    settle(slow)
+    assert slow.nothing_sent()
+    assert slow.complained("was not sent, since only now this is known")
+    assert "is not on a road surface" in slow.told
+    slow.key(ENTER)
+    assert slow.sent()["params"]["x"] == pytest.approx(20, abs=0.3)
+
+
+def test_only_what_has_changed_of_a_route_is_looked_at_again(hand, layer_of, looked_at):
+    for role in ("keepout", "obstacle", "road_surface"):
+        layer_of("Polygon", SQUARE, role=role, name=role)
+    hand.take("route").click((20, 20), (30, 20), (40, 20), (50, 20), (50, 30))
+    looked_at.clear()
+    hand.drag((40, 20), (40, 25))
+    # Two legs meet in a vertex, and it is one place where legs end.
+    assert looked_at == [("KeepoutCheck", 2), ("ObstacleCheck", 2), ("SurfaceCheck", 1)]
+    looked_at.clear()
+    hand.drag((50, 30), (70, 55))
+    assert looked_at == [("KeepoutCheck", 1), ("ObstacleCheck", 1), ("SurfaceCheck", 1)]
+    assert "4 of 5 points are not on a road surface" not in hand.told
+    assert len(hand.drafts.draft.findings.overridable) == 2
+    hand.key(ENTER)
+    # What goes out is looked at afresh, all of it.
+    assert looked_at[3:] == [("KeepoutCheck", 4), ("ObstacleCheck", 4), ("SurfaceCheck", 5)]
+    assert hand.nothing_sent()
+
+
+def test_a_layer_that_changes_is_looked_at_anew(hand, layer_of, looked_at):
+    layer = layer_of("Polygon", role="obstacle")
+    hand.take("route").click((20, 20), (30, 20), (90, 60))
+    feature = QgsFeature(layer.fields())
+    square = QgsGeometry.fromWkt(SQUARE)
+    square.translate(488000, 5190000)
+    feature.setGeometry(square)
+    layer.dataProvider().addFeatures([feature])
+    layer.dataChanged.emit()
+    looked_at.clear()
+    hand.drag((20, 20), (20, 25))
+    assert looked_at == [("ObstacleCheck", 2)]
+    assert "is on things" in hand.told
+
+
+def test_a_layer_that_changes_under_a_check_has_it_begin_anew(slow, layer_of):
+    layer = layer_of("Polygon", SQUARE, role="keepout", names=["Bay"])
+    slow.take("cone").click((70, 55))
+    layer.setCustomProperty("fleet/filter", "\"name\" <> 'Bay'")
+    settle(slow)
+    assert slow.drafts.draft.is_checked
+    assert slow.drafts.draft.findings.faults == ()
+
+
+def test_a_layer_that_goes_under_a_check_does_no_harm(slow, layer_of):
+    from qgis.core import QgsProject
+
+    layer = layer_of("Polygon", SQUARE, role="keepout", names=["Bay"])
+    slow.take("cone").click((70, 55))
+    QgsProject.instance().removeMapLayer(layer.id())
+    settle(slow)
+    assert slow.drafts.draft.findings.faults == ()
+
+
+def test_a_layer_that_cannot_be_read_any_more_keeps_the_draft_here(slow, layer_of):
+    layer = layer_of("Polygon", SQUARE, role="keepout", names=["Bay"])
+    slow.take("cone").click((20, 20))
+    layer.setCustomProperty("fleet/filter", "1 +")
+    settle(slow)
+    assert "The filter expression '1 +' for the layer things" in slow.told
+    slow.key(ENTER)
+    settle(slow)
+    assert slow.nothing_sent()
+    assert slow.complained("was not sent: The filter expression")
+
+
+def test_a_draft_that_is_come_back_to_before_it_was_checked_is_checked_then(slow, layer_of):
+    layer_of("Polygon", SQUARE, role="keepout", names=["Bay"])
+    slow.take("cone").click((70, 55))
+    slow.click((20, 20))
+    settle(slow)
+    slow.key(Qt.Key.Key_Z, CTRL)
+    assert not slow.drafts.draft.is_checked
+    settle(slow)
+    assert "enters the keepout Bay" in slow.told
+
+
+def test_what_the_mouse_drags_is_looked_at_when_it_is_let_go(slow, layer_of):
+    layer_of("Polygon", SQUARE, role="keepout", names=["Bay"])
+    slow.take("route").click((20, 20), (30, 20))
+    settle(slow)
+    slow.drag((30, 20), (70, 55), let_go=False)
+    QTest.qWait(50)
+    assert not slow.window.desk.checks.is_under_way
+    assert not slow.drafts.draft.is_checked
+    view = slow.iface.canvas.viewport()
+    none = Qt.KeyboardModifier.NoModifier
+    QTest.mouseRelease(view, Qt.MouseButton.LeftButton, none, slow.iface.pixel(70, 55))
+    settle(slow)
+    assert "The route enters the keepout Bay" in slow.told
+
+
+def test_the_vertex_in_hand_stays_there_when_the_check_ends(slow, layer_of):
+    layer_of("Polygon", SQUARE, role="keepout", names=["Bay"])
+    slow.take("route").click((20, 20), (30, 20), (40, 30))
+    slow.move(100, 90)
+    slow.type(">>")
+    slow.key(Qt.Key.Key_Up, CTRL)
+    assert slow.window.desk.checks.is_under_way
+    settle(slow)
+    slow.key(Qt.Key.Key_Delete)
+    assert len(slow.points) == 2
+
+
+def test_a_thousand_targets_of_a_layer_are_checked_each(hand, layer_of):
+    places = [f"Point ({20 + k % 40} {20 + k // 40})" for k in range(1000)]
+    points = layer_of("Point", *places)
+    layer_of("Polygon", "Polygon ((29.5 29.5, 32.5 29.5, 32.5 31.5, 29.5 31.5, 29.5 29.5))", role="keepout")
+    layer_of("LineString", "LineString (19 40.1, 60 40.1)", role="obstacle", names=["Fence"])
+    hand.window.desk.select("r1")
+    hand.iface.canvas.setCurrentLayer(points)
+    hand.window.actions.from_layer.trigger()
+    hand.wait(hand.iface.is_settled, 60)
+    found = hand.drafts.draft.findings.overridable
+    assert len([text for text in found if "keepout" in text]) == 3 * 2
+    assert len([text for text in found if "Fence" in text]) == 40
+    assert len(found) == 46

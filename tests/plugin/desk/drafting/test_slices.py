@@ -1,0 +1,111 @@
+"""Work in slices: the first at once, the others when the window has time, none after it was given up."""
+
+import pytest
+from fleet_supervisor.plugin.desk.drafting import slices as module
+from fleet_supervisor.plugin.desk.drafting.slices import Slices, part_of
+from fleet_supervisor.plugin.errors import FleetError
+
+
+class Diary:
+    """What was called, and a clock that goes on by a millisecond whenever it is looked at."""
+
+    def __init__(self):
+        self.told = []
+        self.now = 0.0
+        self.slices = Slices(clock=self.tick)
+
+    def tick(self):
+        self.now += 0.001
+        return self.now
+
+    def begin(self, work):
+        return self.slices.begin(
+            work,
+            lambda: self.told.append(round(self.slices.share, 2)),
+            lambda result: self.told.append(("done", result)),
+            lambda error: self.told.append(("failed", str(error))),
+        )
+
+
+@pytest.fixture
+def diary(qgis_app):
+    return Diary()
+
+
+def steps(count, end="result"):
+    for number in range(count):
+        yield number / count
+    if isinstance(end, Exception):
+        raise end
+    return end
+
+
+def test_what_the_first_slice_is_enough_for_is_returned_and_nothing_called(diary):
+    assert diary.begin(steps(5)) == "result"
+    assert diary.told == []
+
+
+def test_more_goes_on_by_itself_a_slice_at_a_time(diary, wait):
+    assert diary.begin(steps(20)) is None
+    wait(lambda: ("done", "result") in diary.told)
+    *shares, last = diary.told
+    assert shares == sorted(shares) and len(shares) >= 1
+    assert last == ("done", "result")
+    # Nine looks at a clock of milliseconds are a slice of eight.
+    assert len(shares) == 20 // 8 - 1
+
+
+def test_one_step_is_done_however_late_it_is(diary, wait, monkeypatch):
+    monkeypatch.setattr(module, "SLICE_SECONDS", 0.0)
+    diary.begin(steps(4))
+    wait(lambda: ("done", "result") in diary.told)
+    assert diary.told == [0.25, 0.5, 0.75, ("done", "result")]
+
+
+def test_what_the_first_slice_raises_is_raised_and_later_ones_are_told(diary, wait):
+    with pytest.raises(FleetError, match="no"):
+        diary.begin(steps(2, FleetError("no")))
+    diary.begin(steps(20, FleetError("too late")))
+    wait(lambda: ("failed", "too late") in diary.told)
+
+
+def test_what_was_given_up_is_never_done(diary, wait):
+    closed = []
+
+    def work():
+        try:
+            yield from steps(50, "first")
+        finally:
+            closed.append(True)
+
+    diary.begin(work())
+    diary.begin(steps(20, "second"))
+    assert closed == [True]
+    wait(lambda: ("done", "second") in diary.told)
+    assert ("done", "first") not in diary.told
+
+
+def test_work_that_has_itself_stopped_is_not_gone_on_with(diary, wait):
+    def work():
+        yield 0.0
+        diary.slices.stop()
+        yield 0.5
+        raise AssertionError("it went on")
+
+    assert diary.begin(work()) is None
+    diary.begin(steps(20, "next"))
+    wait(lambda: ("done", "next") in diary.told)
+
+
+def test_parts_make_up_a_whole():
+    def whole():
+        first = yield from part_of(steps(2, 1), 0, 2)
+        second = yield from part_of(steps(2, 2), 1, 2)
+        return first + second
+
+    work, shares = whole(), []
+    with pytest.raises(StopIteration) as end:
+        while True:
+            shares.append(next(work))
+    assert shares == [0.0, 0.25, 0.5, 0.75]
+    assert end.value.value == 3
