@@ -29,6 +29,7 @@ class WayToMouse:
         self._band: QgsRubberBand | None = None
         self._mouse: QPoint | None = None
         desk.preview.shown.connect(self._show)
+        desk.selection_changed.connect(self._hide)
 
     def lead_to(self, event: QgsMapMouseEvent, robot: str | None, start: Point | None) -> None:
         """Have the way shown from ``start``, or from where the robot is, to where the mouse is."""
@@ -43,8 +44,8 @@ class WayToMouse:
             self.clear()
 
     def clear(self) -> None:
-        """Show nothing, until the mouse moves again."""
-        self._mouse = None
+        """Show nothing and ask nothing, until the mouse moves again."""
+        self._hide()
         self._desk.preview.forget()
 
     @property
@@ -54,10 +55,19 @@ class WayToMouse:
             return []
         return [QgsPointXY(self._band.getPoint(0, k)) for k in range(self._band.numberOfVertices())]
 
-    def _show(self) -> None:
+    def _hide(self) -> None:
+        if self._mouse is not None:
+            QToolTip.hideText()
+        self._mouse = None
+        self._take_away()
+
+    def _take_away(self) -> None:
         if self._band is not None and not sip.isdeleted(self._band):
             self._desk.canvas.scene().removeItem(self._band)
         self._band = None
+
+    def _show(self) -> None:
+        self._take_away()
         route = self._desk.preview.route
         if self._mouse is None:
             return

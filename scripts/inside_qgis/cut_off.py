@@ -17,6 +17,7 @@ from qgis.PyQt.QtWidgets import (
     QStyle,
     QStyleOptionComboBox,
     QTabBar,
+    QTableView,
     QTextEdit,
     QWidget,
 )
@@ -32,6 +33,7 @@ def what_is_cut_off() -> list[str]:
     found = []
     for widget in _shown():
         found += [f"{_name(widget)}: {fault}" for fault in _faults(widget)]
+    found += _beyond_the_screen(iface.mainWindow())
     for item in iface.messageBar().findChildren(QgsMessageBarItem):
         found += [f"message bar: {fault}" for fault in _cut_message(item)]
     return found
@@ -58,6 +60,8 @@ def _faults(widget: QWidget) -> Iterator[str]:
         yield f"{_text(widget)!r} does not fit into {_size(widget.size())}, it takes {_size(_wanted(widget))}"
     if isinstance(widget, QHeaderView):
         yield from _cut_heads(widget)
+    if isinstance(widget, QTableView):
+        yield from _cut_cells(widget)
     if _has_something_to_read(widget) and not _scrolls(widget):
         seen = widget.visibleRegion().boundingRect()
         if seen.width() < widget.width() - SLACK or seen.height() < widget.height() - SLACK:
@@ -100,6 +104,12 @@ def _wanted_by_combo(combo: QComboBox) -> QSize:
     return QSize(combo.width() + text - room.width(), 0)
 
 
+def _beyond_the_screen(window: QWidget) -> Iterator[str]:
+    screen = QApplication.primaryScreen().geometry()
+    if not screen.contains(window.frameGeometry()):
+        yield f"the window is {_size(window.size())}, beyond the screen of {_size(screen.size())}"
+
+
 def _cut_message(item: QgsMessageBarItem) -> Iterator[str]:
     for text in item.findChildren(QTextEdit):
         if text.isVisible() and text.document().size().height() > text.viewport().height() + SLACK:
@@ -114,6 +124,20 @@ def _cut_heads(header: QHeaderView) -> Iterator[str]:
         text = str(model.headerData(number, header.orientation()) or "")
         if header.fontMetrics().horizontalAdvance(text) > header.sectionSize(number):
             yield f"the head {text!r} does not fit into {header.sectionSize(number)} px"
+
+
+def _cut_cells(table: QTableView) -> Iterator[str]:
+    model = table.model()
+    beside = 2 * (table.style().pixelMetric(QStyle.PixelMetric.PM_FocusFrameHMargin) + 1)
+    for row in range(model.rowCount()):
+        for column in range(model.columnCount()):
+            index, width = model.index(row, column), table.columnWidth(column)
+            text = str(index.data() or "")
+            wanted = table.fontMetrics().horizontalAdvance(text) + beside if text else 0
+            if index.data(Qt.ItemDataRole.DecorationRole) is not None:
+                wanted += table.style().pixelMetric(QStyle.PixelMetric.PM_SmallIconSize) + beside
+            if 0 < width < wanted:
+                yield f"the cell {text!r} does not fit into {width} px, it takes {wanted} px"
 
 
 def _has_something_to_read(widget: QWidget) -> bool:

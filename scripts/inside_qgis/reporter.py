@@ -14,6 +14,7 @@ from qgis.core import (
     QgsCoordinateTransform,
     QgsPointXY,
     QgsProject,
+    QgsTemporalNavigationObject,
 )
 from qgis.PyQt.QtCore import QObject, QPoint, QRect
 from qgis.PyQt.QtNetwork import QLocalServer, QLocalSocket
@@ -55,6 +56,7 @@ class Reporter(QObject):
             "place": _place,
             "desk": _desk,
             "map": _map,
+            "time": _time,
             "cut_off": what_is_cut_off,
             "complaints": lambda: self._complaints,
         }
@@ -170,6 +172,14 @@ def _place(x: float, y: float, crs: str) -> dict[str, Any]:
 def _map() -> dict[str, Any]:
     """How the map stands: whether it is being drawn, and how many times smaller than the world it is."""
     return {"drawing": iface.mapCanvas().isDrawing(), "scale": iface.mapCanvas().scale()}
+
+
+def _time() -> dict[str, Any]:
+    """What QGIS's temporal controller shows, in milliseconds since 1970, and whether it plays."""
+    controller = iface.mapCanvas().temporalController()
+    begin = controller.dateTimeRangeForFrameNumber(controller.currentFrameNumber()).begin()
+    plays = controller.animationState() != QgsTemporalNavigationObject.AnimationState.Idle
+    return {"at": begin.toMSecsSinceEpoch(), "plays": plays}
 
 
 def _desk() -> dict[str, Any]:

@@ -10,6 +10,8 @@ from .scene import Scene
 
 TARGET = (52.0, 8.0)
 """Along the straight; site frame, metres."""
+UNDER_WAY = 35.0
+"""How far east r1 is when it is photographed; metres."""
 REACHED_M = 0.2
 """The sample site's tolerance."""
 PIXEL_M = 0.3
@@ -20,6 +22,9 @@ def send_cone(scene: Scene) -> None:
     """Select r1 on the map, set a target, send it by its key and watch."""
     operator, film = scene.operator, scene.film
     operator.press("Shift+F9")
+    operator.point_at_map(scene.gateway.place_of("r1"))
+    operator.wait_for_text("fleet_hover_card", "r1")
+    film.shoot("card", "the mouse rests on r1, whose card is shown")
     operator.click_map(scene.gateway.place_of("r1"))
     scene.wait_for_selection("r1")
     film.shoot("selected", "r1 is selected by a click on the map")
@@ -28,7 +33,9 @@ def send_cone(scene: Scene) -> None:
     operator.wait_for_text("fleet_draft_text", "Cone for r1")
     film.shoot("cone-draft", "a cone target as a draft")
     operator.press("Enter")
-    scene.wait_until_driving("r1")
+    # With the tool in hand the way to the mouse would go on being shown.
+    operator.press("Shift+F9")
+    operator.wait("r1 being under way", lambda: scene.gateway.place_of("r1")[0] > UNDER_WAY)
     require_place(scene)
     film.shoot("driving", "r1 drives to its target")
     operator.wait_for_state("r1", "reached")

@@ -78,6 +78,10 @@ class OperatorAtScreen:
         """Look until the map has been drawn."""
         self.wait("drawing the map", lambda: not self._window.ask("map")["drawing"])
 
+    def replayed(self) -> dict[str, Any]:
+        """Return what QGIS's temporal controller shows, and whether it plays."""
+        return dict(self._window.ask("time"))
+
     def cut_off(self) -> list[str]:
         """Return what of the plugin cannot be read or reached."""
         return list(self._window.ask("cut_off"))
@@ -187,23 +191,30 @@ class OperatorAtScreen:
 
     def _still(self, name: str) -> list[int]:
         """Return where a widget is once it can be used, is covered by nothing, and has come to rest."""
-        before: list[int] = []
 
-        def at_rest() -> list[int] | None:
-            nonlocal before
+        def where() -> list[int] | None:
             found = self.widget(name)
             usable = found["visible"] and found["enabled"] and found["on_top"]
-            rest = usable and found["rect"] == before
-            before = found["rect"] if usable else []
-            return before if rest else None
+            return list(found["rect"]) if usable else None
 
         try:
-            return list(self.wait(f"{name} being there to be clicked", at_rest))
+            return self._at_rest(f"{name} being there to be clicked", where)
         except StageError as error:
             raise StageError(f"{error}; {name}: {self.widget(name)}") from error
 
     def _click_seen(self, what: str, where: Callable[[], list[int] | None]) -> None:
-        self._screen.click(_middle(self.wait(f"{what} being there", where)))
+        self._screen.click(_middle(self._at_rest(f"{what} being there", where)))
+
+    def _at_rest(self, what: str, where: Callable[[], list[int] | None]) -> list[int]:
+        """Return where something is once two looks after another find it at the same place."""
+        before: list[int] | None = None
+
+        def same_again() -> list[int] | None:
+            nonlocal before
+            earlier, before = before, where()
+            return before if before == earlier else None
+
+        return list(self.wait(what, same_again))
 
     def _pixel(self, place: Place) -> Pixel:
         x, y = self._frame.to_crs(np.array([place]))[0].tolist()

@@ -2,26 +2,27 @@
 
 from __future__ import annotations
 
+from stage.errors import StageError
+
 from .scene import Scene
 
-MOMENT = r"\d\d:\d\d:\d\d"
+EARLIER = 0.9
+"""Where on the time line is clicked, as a share of its length: about half a minute before its end."""
 
 
 def play_again(scene: Scene) -> None:
-    """Load the last minutes, go to a moment, play with QGIS's own controller."""
+    """Load the last minutes, go to a moment, play and hold."""
     operator, film = scene.operator, scene.film
     operator.choose_from_menu("Plugins", "Fleet Supervisor", "Replay")
     operator.click("fleet_replay_load")
     operator.wait_for_text("fleet_replay_banner", r"positions: \d+, robots: 3")
-    operator.click_part("fleet_replay_line", 0.9)
-    film.shoot("replay", "the last minutes beside the live map")
-    operator.choose_from_menu("View", "Panels", "Temporal Controller")
-    before = moment(scene)
-    operator.click("mForwardButton")
-    operator.wait("the replayed time going on", lambda: moment(scene) != before)
-    film.shoot("replay-playing", "QGIS's temporal controller plays it")
-
-
-def moment(scene: Scene) -> str:
-    """Return the moment that the replay's banner names."""
-    return scene.operator.wait_for_text("fleet_replay_banner", MOMENT).group()
+    operator.click_part("fleet_replay_line", EARLIER)
+    before = operator.replayed()["at"]
+    operator.click("fleet_replay_play")
+    operator.wait("time going on", lambda: operator.replayed()["at"] > before + 2000)
+    film.shoot("replay", "the last minutes are played beside the live map")
+    operator.click("fleet_replay_play")
+    operator.wait("time being held", lambda: not operator.replayed()["plays"])
+    if "Connected" not in operator.text("fleet_link_state"):
+        raise StageError("the desk lost its gateway while it replayed")
+    film.happened("the replay was held; the desk is connected as before")

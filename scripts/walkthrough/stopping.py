@@ -18,6 +18,7 @@ def stop_and_clear(scene: Scene) -> None:
     operator.press("F8")
     operator.click_map(FAR)
     operator.press("Enter")
+    operator.press("Shift+F9")
     scene.wait_until_driving("r3")
     operator.press("F10")
     operator.wait_for_text("fleet_emergency_text", "3 of 3 robots acknowledged, 3 seen to stand")

@@ -9,13 +9,14 @@ from .scene import Scene
 
 TARGET = (40.0, 8.0)
 """Ahead of r1 on the straight; site frame, metres."""
-LAYERS_WIDTH = 205
+LAYERS_WIDTH = 215
 """Pixels in which the names of the sample site's layers can be read."""
 
 
 def take_tour(scene: Scene) -> None:
     """Go through the tour's pages and try what they say; close it."""
     operator, film = scene.operator, scene.film
+    make_room(scene)
     operator.wait("the offer of the tour", lambda: operator.widget("fleet_tour_start")["visible"])
     film.shoot("offer", "a new profile: the tour is offered")
     operator.click("fleet_tour_start")
@@ -23,7 +24,6 @@ def take_tour(scene: Scene) -> None:
     operator.click("fleet_tour_next")
     operator.click("fleet_tour_offer")
     operator.wait_for_text("fleet_tour_said", "is open")
-    make_room(scene)
     film.shoot("tour-site", "the sample site is open")
     operator.click("fleet_tour_next")
     practise(scene)

@@ -27,7 +27,7 @@ class Column:
 
 
 COLUMNS = (
-    Column("Robot", tr("Robot"), "robot-000", tr("The robot's name")),
+    Column("Robot", tr("Robot"), "robot-00", tr("The robot's name")),
     Column("State", tr("State"), "offline", tr("How far what is known of it can be trusted")),
     Column("Task", tr("Task"), "", tr("What it is doing, or what it says")),
     Column("Speed", tr("Speed"), "0.0 m/s", tr("Its speed, as it says"), True, False),
@@ -37,7 +37,7 @@ COLUMNS = (
     Column(
         "Off",
         tr("Off"),
-        "00.00 m",
+        "00.0 m",
         tr("How far it is beside its path, or from the target that it reached last"),
         True,
     ),
@@ -88,7 +88,7 @@ def number_in_words(title: str, value: float) -> str:
     if title == "Ping":
         return f"{value * 1000:.0f} ms"
     if title == "Off":
-        return f"{value:.2f} m"
+        return f"{value:.2f} m" if value < 10 else f"{value:.1f} m"
     return f"{value:.1f} s" if value < 3600 else f"{value / 3600:.1f} h"
 
 

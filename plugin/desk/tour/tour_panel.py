@@ -77,6 +77,9 @@ class TourPanel(QFrame):
         """Show how it went with what the step's button does."""
         self._said.setText(text)
         self._said.setVisible(bool(text))
+        if busy and self._offer.hasFocus():
+            # Left to Qt, Close would get the keyboard.
+            self._next.setFocus()
         self._offer.setEnabled(not busy)
         self._fit()
 

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import pytest
 from qgis.core import QgsFeature, QgsGeometry, QgsProject, QgsVectorLayer
+from qgis.gui import QgsRubberBand
 from qgis.PyQt.QtCore import QPoint, Qt
 from qgis.PyQt.QtTest import QTest
-from qgis.PyQt.QtWidgets import QApplication, QLabel, QToolButton
+from qgis.PyQt.QtWidgets import QApplication, QLabel, QToolButton, QToolTip
 
 NONE = Qt.KeyboardModifier.NoModifier
 
@@ -338,3 +339,25 @@ def test_the_button_of_the_tool_in_hand_keeps_it_in_hand(cone, iface):
     cone.actions.route.trigger()
     assert iface.canvas.mapTool() is not tool
     assert not cone.actions.cone.isChecked()
+
+
+def bands(iface):
+    """What is drawn of ways to the mouse: how many points each has."""
+    items = iface.canvas.scene().items()
+    return [item.numberOfVertices() for item in items if isinstance(item, QgsRubberBand) and item.isVisible()]
+
+
+@pytest.mark.parametrize("how", ["another robot", "another tool"])
+def test_the_way_to_the_mouse_goes_with_the_robot_and_with_the_tool(cone, iface, gateway, wait, how):
+    way = {"points": [[50, 40], [60, 40], [70, 55]], "metres": 28.0, "seconds": 20.0}
+    gateway.answers["get_route"] = lambda _: {"result": way}
+    for place in ((60, 50), (70, 55)):
+        QTest.mouseMove(iface.canvas.viewport(), iface.pixel(*place))
+    wait(lambda: 3 in bands(iface), what="the way")
+    assert "28" in QToolTip.text()
+    if how == "another robot":
+        cone.desk.select("r2")
+    else:
+        cone.actions.select.trigger()
+    assert 3 not in bands(iface)
+    wait(lambda: not QToolTip.isVisible(), what="the words going")

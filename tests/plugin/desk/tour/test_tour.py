@@ -121,6 +121,28 @@ def test_the_panel_lets_the_rest_be_used_and_can_be_dragged(tour):
     assert panel.pos().x() == before.x() + 40
 
 
+def test_while_the_fleet_starts_enter_leads_on_and_does_not_close(tour):
+    tour.action.start()
+    tour.go_to(at_of(FLEET))
+    panel = tour.action.panel
+    panel.findChild(QPushButton, "fleet_tour_offer").setFocus()
+    panel.say("Starting …", busy=True)
+    focus = QApplication.focusWidget()
+    assert focus.objectName() == "fleet_tour_next"
+    QTest.keyClick(focus, Qt.Key.Key_Return)
+    assert tour.action.panel is panel and panel.step is STEPS[at_of(FLEET) + 1]
+
+
+def test_it_does_not_lie_over_the_robots_of_the_sample_site(tour):
+    tour.action.start()
+    canvas = tour.iface.mapCanvas()
+    for at in range(len(STEPS)):
+        tour.go_to(at)
+        tour.action.panel.say("The practice fleet runs, and the desk is connected to it.")
+        foot = tour.action.panel.mapTo(tour.iface, tour.action.panel.rect().bottomLeft())
+        assert canvas.mapFrom(tour.iface, foot).y() < canvas.height() / 2, STEPS[at].title
+
+
 def test_without_the_bridge_it_says_how_to_get_it(iface):
     tour = Tour(iface, PracticeFleet(program=""))
     tour.action.start()
