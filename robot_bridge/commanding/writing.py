@@ -45,6 +45,8 @@ class Written(NamedTuple):
 
 Also = Callable[[Connection], None]
 """More to be written in the same transaction."""
+AlsoOf = Callable[[str], Also]
+"""What more is to be written, made from the id of the command that the robot then carries out."""
 
 
 def write_drafts(connection: Connection, drafts: Sequence[Draft], also: Also | None = None) -> Written:

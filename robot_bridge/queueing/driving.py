@@ -17,10 +17,12 @@ from sqlalchemy import Connection
 from ..command_life.open_command import Order
 from ..command_life.states import is_open
 from ..commanding.book import CommandBook
+from ..commanding.writing import Also, AlsoOf
 from ..errors import OutdatedError, RefusedError, StoreError
 from ..messages import (
     CommandReport,
     CommandState,
+    QueueTask,
     RobotState,
     SetPath,
     SetPosEnd,
@@ -29,7 +31,8 @@ from ..messages import (
 )
 from ..messages.queues import check_path
 from ..queues import life
-from ..queues.legs import legs, path_left
+from ..queues.legs import legs, path_left, to_the_end
+from ..queues.life import Path
 from ..queues.queue import Queue, QueuedTask
 from ..robots import Robots
 from ..served_site import ServedSite
@@ -70,6 +73,8 @@ class QueueDriving:
         self._event = asyncio.Event()
         self._sending: set[str] = set()
         self._told: dict[str, RobotState] = {}
+        self.waits_for: Callable[[str, str], str | None] = lambda _robot, _task: None
+        """Tells whom a robot is to let pass before it is sent a task, None for nobody."""
         book.due = self.look
 
     async def run(self) -> None:
@@ -129,21 +134,46 @@ class QueueDriving:
         MessageError for a path that ends elsewhere, RefusedError and StoreError.
         """
         async with self._book.holding([robot]):
-            queue = self._book.get(robot)
-            current = queue.current
-            if current is None or current.command is None or not self._commands.is_open(current.command):
+            queue, current = self._book.get(robot), self._current(robot)
+            if current is None:
                 return None
             check_path(current.id, path.points, (current.task.x, current.task.y))
             after = life.redirected(queue, path.points)
             message = legs(after.tasks[0].task, self._site.settings.cones.offset)[0]
             return await self._send(queue, after, message, operator, reason, current.command)
 
-    def place(self, robot: str) -> tuple[float, float] | None:
-        """Return the place of the task that the robot does, None where that is none of its queue."""
+    async def stop_over(self, robot: str, first: Path, rest: Path, other: str, by: str, also: AlsoOf) -> str:
+        """Send the robot along ``first`` only, as a task of its own; the task that it does waits behind that.
+
+        It is begun anew along ``rest`` as soon as :attr:`waits_for` lets it. ``also`` is written in the same
+        transaction. Return the id of the command. Raises MessageError for a ``rest`` that ends elsewhere,
+        RefusedError for a robot that does no task of its queue any more, and StoreError.
+        """
+        async with self._book.holding([robot]):
+            queue = self._book.get(robot)
+            current = self._current(robot)
+            if current is None:
+                raise RefusedError(f"robot {robot!r} has been told otherwise in the meantime")
+            check_path(current.id, rest, (current.task.x, current.task.y))
+            label = f"waits for {other}"
+            after = life.stopping_over(queue, first, rest, label, by, self._clock())
+            report = await self._send(queue, after, SetPath(first), by, label, current.command, also)
+            return report.command
+
+    def current(self, robot: str) -> QueueTask | None:
+        """Return the task of its queue that the robot does, None where it does none of it."""
+        current = self._current(robot)
+        return None if current is None else current.task
+
+    def to_the_end(self, task: QueueTask, left: Path) -> Path:
+        """Return what is ``left`` of the path that was sent for a task, up to the task's place."""
+        return to_the_end(task, self._site.settings.cones.offset, left)
+
+    def _current(self, robot: str) -> QueuedTask | None:
         current = self._book.get(robot).current
         if current is None or current.command is None or not self._commands.is_open(current.command):
             return None
-        return current.task.x, current.task.y
+        return current
 
     # --------------------------------------------------------------------------------------------------
 
@@ -170,6 +200,9 @@ class QueueDriving:
         if self._robots.get(queue.robot).state in AWAY:
             await self._wait_for_robot(queue)
             return
+        if (other := self.waits_for(queue.robot, head.id)) is not None:
+            await self._wait(queue, f"waits for {other}")
+            return
         busy, own = self._commands.busy_with(queue.robot), {task.command for task in queue.tasks}
         try:
             if busy is not None and busy not in own:
@@ -180,6 +213,11 @@ class QueueDriving:
             raise
         except RefusedError as error:
             await self._book.save(queue, life.held(queue, str(error), self._clock()))
+
+    async def _wait(self, queue: Queue, reason: str) -> None:
+        """Let operators know why the next task is not sent yet."""
+        if queue.tasks[0].reason != reason:
+            await self._book.save(queue, life.waits(queue, reason))
 
     async def _wait_for_robot(self, queue: Queue) -> None:
         away = self._clock() - self._robots.get(queue.robot).received_at
@@ -207,6 +245,7 @@ class QueueDriving:
         operator: str,
         reason: str | None = None,
         instead_of: str | None = None,
+        also: AlsoOf | None = None,
     ) -> CommandReport:
         task = after.tasks[0]
         assert task.command is not None
@@ -215,7 +254,8 @@ class QueueDriving:
         order = Order(*told, task=task.id, instead_of=instead_of)
         self._sending.add(order.command)
         try:
-            issuing = self._commands.issue([order], partial(_save, before, after))
+            more = None if also is None else also(order.command)
+            issuing = self._commands.issue([order], partial(_save, before, after, more))
             (report,) = await self._book.stored([before.robot], issuing)
         finally:
             self._sending.discard(order.command)
@@ -226,5 +266,7 @@ class QueueDriving:
         return (await self._database.run(stored_commands.find_all, [command])).get(command)
 
 
-def _save(before: Queue, after: Queue, connection: Connection) -> None:
+def _save(before: Queue, after: Queue, also: Also | None, connection: Connection) -> None:
     queues.save(connection, before, after)
+    if also is not None:
+        also(connection)

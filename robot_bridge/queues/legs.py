@@ -83,6 +83,19 @@ def path_left(path: SetPath, here: Place | None, driven: float, *, join: bool) -
     return SetPath([here, *(rest or [line.end])], path.theta)
 
 
+def to_the_end(task: QueueTask, offset: Offset, left: list[Place]) -> list[Place]:
+    """Return what is ``left`` of the path that a robot was sent along for ``task``, up to the task's place.
+
+    A cone's path was sent without its last metres.
+    """
+    short_by = 0.0 if task.kind is TaskKind.DRIVE else math.hypot(*offset)
+    if task.path is None or short_by == 0:
+        return left
+    line = Polyline(task.path)
+    tail = [point for point, at in zip(task.path, line.stations, strict=True) if at > line.length - short_by]
+    return [*left, *(tail or [line.end])]
+
+
 def _approach(task: QueueTask, short_by: float) -> list[Place] | None:
     """Return the path of a cone's task without its last metres, where the cone stands; None if none."""
     if task.path is None:

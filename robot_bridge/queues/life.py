@@ -6,11 +6,13 @@ import dataclasses
 import uuid
 from dataclasses import dataclass
 
-from ..messages import CommandReport, CommandState, TaskState
+from ..messages import CommandReport, CommandState, QueueTask, TaskState
 from .edits import given_back
 from .queue import Queue, QueuedTask
 
 GATEWAY = "gateway"
+Path = list[tuple[float, float]]
+"""(x, y) in metres in the site frame."""
 
 
 @dataclass(frozen=True)
@@ -78,6 +80,11 @@ def held(queue: Queue, reason: str, at: float) -> Queue:
     return queue.with_head(head).paused(reason, GATEWAY, at)
 
 
+def waits(queue: Queue, reason: str) -> Queue:
+    """Return the queue with the ``reason`` why its head is not sent yet; it goes on by itself."""
+    return queue.with_head(dataclasses.replace(queue.tasks[0], reason=reason))
+
+
 def ended(
     task: QueuedTask,
     state: TaskState,
@@ -94,7 +101,19 @@ def measured(task: QueuedTask, deviation: float) -> QueuedTask:
     return dataclasses.replace(task, deviation=deviation)
 
 
-def redirected(queue: Queue, path: list[tuple[float, float]]) -> Queue:
+def stopping_over(queue: Queue, first: Path, rest: Path, label: str, by: str, at: float) -> Queue:
+    """Return the queue whose current task's path is driven in two parts, the first as a task of its own.
+
+    The task itself waits behind that, to be begun anew along ``rest``.
+    """
+    x, y = first[-1]
+    stop = QueuedTask(QueueTask(str(uuid.uuid4()), x, y, path=first, label=label), by, at)
+    head = given_back(queue.tasks[0], label)
+    head = dataclasses.replace(head, task=dataclasses.replace(head.task, path=rest), command=None)
+    return sent(queue.with_tasks([stop, head, *queue.tasks[1:]], edited=True), at)
+
+
+def redirected(queue: Queue, path: Path) -> Queue:
     """Return the queue whose current task is driven anew, along another path to the same place."""
     head = queue.tasks[0]
     task = dataclasses.replace(head.task, path=path)

@@ -14,12 +14,13 @@ from sqlalchemy import Connection
 from ..command_life.open_command import NOTHING, Order
 from ..commanding.book import CommandBook
 from ..commanding.orders import Orders
-from ..commanding.writing import Also
+from ..commanding.writing import Also, AlsoOf
 from ..errors import BridgeError, RefusedError
 from ..messages import (
     AbortTask,
     CommandReport,
     MessageError,
+    QueueTask,
     ReplannedRobot,
     SetPath,
     SetPosEnd,
@@ -32,18 +33,30 @@ from .ways import Underway, Way, Ways
 log = logging.getLogger(__name__)
 
 
-AlsoOf = Callable[[str], Also]
-"""What more is to be written, made from the id of the command that the robot then carries out."""
-
-
 class Queues(Protocol):
-    """The robots' queues, as far as another way concerns them."""
+    """The robots' queues, as far as another way concerns them.
+
+    ``waits_for`` is asked whom a robot is to let pass before it is sent a task of its queue.
+    """
+
+    waits_for: Callable[[str, str], str | None]
 
     async def redirect(self, robot: str, path: SetPath, operator: str, reason: str) -> CommandReport | None:
         """Send a task of a queue by another path; None where the robot's task is none of a queue."""
 
-    def place(self, robot: str) -> Point | None:
-        """Return the place of the task that the robot does, None where that is none of its queue."""
+    async def stop_over(
+        self, robot: str, first: list[Point], rest: list[Point], other: str, by: str, also: AlsoOf
+    ) -> str:
+        """Send the robot along ``first``, and along ``rest`` for its task once ``other`` has passed."""
+
+    def current(self, robot: str) -> QueueTask | None:
+        """Return the task of its queue that the robot does, None where it does none of it."""
+
+    def to_the_end(self, task: QueueTask, left: list[Point]) -> list[Point]:
+        """Return what is ``left`` of the path that was sent for a task, up to the task's place."""
+
+    def look(self, robot: str) -> None:
+        """Look soon whether a robot's queue has something to send."""
 
 
 class Detours:
@@ -61,7 +74,7 @@ class Detours:
         self._ways = ways
         self._roads = roads
         self._orders = orders
-        self._queues = queues
+        self.queues = queues
         self._book = book
         self._stops = stops
 
@@ -74,16 +87,14 @@ class Detours:
         found = await asyncio.gather(*(self._lead(way, because, operator) for way in concerned))
         return sorted(found, key=lambda robot: robot.robot)
 
-    def is_queued_path(self, robot: str) -> bool:
-        """Tell whether the robot drives a path of its queue, which ends with the task."""
-        underway = self._ways.of(robot)
-        drives_path = underway is not None and isinstance(underway.task, SetPath)
-        return drives_path and self._queues.place(robot) is not None
+    def queued(self, way: Way) -> QueueTask | None:
+        """Return the task of the robot's queue whose path this way is, None where it is no such path."""
+        return self.queues.current(way.robot) if isinstance(way.task, SetPath) else None
 
     def goal(self, way: Way) -> Point:
         """Return where the robot's task ends."""
-        place = self._queues.place(way.robot) if isinstance(way.task, SetPath) else None
-        return place or way.points[-1]
+        task = self.queued(way)
+        return way.points[-1] if task is None else (task.x, task.y)
 
     async def send(
         self, way: Way, path: SetPath, operator: str, reason: str, also: AlsoOf | None = None
@@ -99,7 +110,7 @@ class Detours:
             await self._book.lead(way.robot, way.command, path, partial(_tell, way.robot, path, more))
             self._ways.told(way.robot, way.task, path)
             return way.command
-        done = await self._queues.redirect(way.robot, path, operator, reason)
+        done = await self.queues.redirect(way.robot, path, operator, reason)
         if done is None:
             order = Order(str(uuid.uuid4()), way.robot, path, operator, reason, instead_of=way.command)
             (done,) = await self._book.issue([order], None if also is None else also(order.command))

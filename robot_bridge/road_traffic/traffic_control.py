@@ -97,8 +97,7 @@ class TrafficControl:
         :raises RefusedError: when there is no such conflict, or it cannot be resolved so; nothing is changed.
         """
         async with self._lock:
-            queued = self._detours.is_queued_path(request.robot)
-            plan = await asyncio.to_thread(self._plan, self._look(), request, queued)
+            plan = await asyncio.to_thread(self._plan, self._look(), request)
             if plan.until is None:
                 return await self._send_round(request, plan, operator)
             return await self._let_wait(request, plan, operator)
@@ -112,7 +111,7 @@ class TrafficControl:
                 places[name] = (pose.x, pose.y), abs(pose.v) if usual else settings.speed_ms
         return Seen(self._clock(), settings, self._ways.all(), places, self._waiting.rows())
 
-    def _plan(self, seen: Seen, request: ResolveConflict, queued: bool) -> Plan:
+    def _plan(self, seen: Seen, request: ResolveConflict) -> Plan:
         """Return how the robot is out of the way soonest; raises RefusedError where it cannot be."""
         movements = seen.movements()
         for robot in (request.robot, request.other):
@@ -131,13 +130,13 @@ class TrafficControl:
             )
         way = underway.way()
         plans = []
-        if request.by != "route" and not queued:
+        if request.by != "route":
             plans.append(_waiting(way, movements, seen))
         if request.by != "waiting":
             plans.append(self._round(way, movements, seen))
         good = [plan for plan in plans if plan is not None]
         if not good:
-            raise RefusedError(_unresolved(request, queued))
+            raise RefusedError(_unresolved(request))
         return min(good, key=lambda plan: plan.later)
 
     def _round(self, way: Way, movements: dict[str, Movement], seen: Seen) -> Plan | None:
@@ -170,10 +169,7 @@ class TrafficControl:
         assert plan.until is not None
         robot = plan.way.robot
         first, rest = cut(plan.points, plan.station)
-        path = SetPath(rest, plan.way.task.theta)
-        command = await self._waiting.send(
-            plan.way, SetPath(first), path, request.other, plan.until, operator
-        )
+        command = await self._waiting.send(plan.way, first, rest, request.other, plan.until, operator)
         x, y = first[-1]
         text = f"{robot} waits at ({x:.1f}, {y:.1f}) for {request.other}, about {plan.later:.0f} s"
         return ConflictResolved(robot, "waits", text, command, round(plan.later, 1))
@@ -195,14 +191,12 @@ def _waiting(way: Way, movements: dict[str, Movement], seen: Seen) -> Plan | Non
     return Plan(way, way.points, wait.seconds, wait.station, until)
 
 
-def _unresolved(request: ResolveConflict, queued: bool) -> str:
+def _unresolved(request: ResolveConflict) -> str:
     how = {
         "waiting": "waiting does not resolve it, or it is too late for that",
         "route": "no other way on the roads meets nobody",
         "either": "neither waiting nor another way resolves it",
     }[request.by]
-    if queued and request.by != "route":
-        how += "; the task is one of a queue, and is not driven in two parts"
     return (
         f"{request.robot} cannot give way to {request.other}: {how}. Let {request.other} give way, "
         "abort one of the two, or draw a route"

@@ -14,6 +14,7 @@ from ..commanding.book import CommandBook
 from ..commanding.writing import Also
 from ..errors import BridgeError, RefusedError
 from ..messages import CommandReport, CommandState, HoldReport, SetPath, to_json
+from ..planning import Point
 from ..store import closures as stored
 from ..store.closures import HoldRow
 from ..store.database import Database
@@ -38,6 +39,7 @@ class WaitingRobots:
         self._detours = detours
         self._rows: dict[str, HoldRow] = {}
         book.waits = self.waits
+        detours.queues.waits_for = self.waits_for
 
     def __len__(self) -> int:
         return len(self._rows)
@@ -55,25 +57,38 @@ class WaitingRobots:
         self._rows = {row.robot: row for row in await self._database.run(stored.held)}
 
     async def send(
-        self, way: Way, first: SetPath, rest: SetPath, other: str, until: float, operator: str
+        self, way: Way, first: list[Point], rest: list[Point], other: str, until: float, operator: str
     ) -> str:
         """Send a robot along ``first`` and let it wait there for ``other`` until ``until`` at least.
 
-        Then it is sent along ``rest``. Return the id of the command that it carries out; raises as
-        :meth:`.Detours.send`.
+        Then it is sent along ``rest``; the path of a queue's task goes on as that task. Return the id of the
+        command that it carries out; raises as :meth:`.Detours.send`.
         """
-        row = HoldRow(way.robot, other, "", to_json(rest), until, operator)
+        task, queues = self._detours.queued(way), self._detours.queues
+        if task is not None:
+            rest = queues.to_the_end(task, rest)
+        after = to_json(SetPath(rest, way.task.theta))
+        row = HoldRow(way.robot, other, "", after, until, operator, None if task is None else task.task)
 
         def also(command: str) -> Also:
             return partial(_hold, row._replace(command=command))
 
-        command = await self._detours.send(way, first, operator, f"waits for {other}", also)
+        if task is None:
+            reason = f"waits for {other}"
+            command = await self._detours.send(way, SetPath(first), operator, reason, also)
+        else:
+            command = await queues.stop_over(way.robot, first, rest, other, operator, also)
         self._rows[way.robot] = row._replace(command=command)
         return command
 
     def waits(self, robot: str) -> bool:
         """Tell whether a robot waits."""
         return robot in self._rows
+
+    def waits_for(self, robot: str, task: str) -> str | None:
+        """Return whom a robot is to let pass before a task of its queue goes on, None for nobody."""
+        row = self._rows.get(robot)
+        return None if row is None or row.task != task else row.other
 
     def take(self, report: CommandReport) -> None:
         """Note a command: whoever is told anything else waits no longer, and is sent on by nobody."""
@@ -108,6 +123,10 @@ class WaitingRobots:
             return
         rest = SetPath(**row.rest)
         if not await asyncio.to_thread(_is_free, row, seen):
+            return
+        if row.task is not None:
+            await self._forget(row.robot)
+            self._detours.queues.look(row.robot)
             return
         given = self._book.task(row.robot)
         target = given[0] if given is not None else rest

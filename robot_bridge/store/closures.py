@@ -26,7 +26,10 @@ class ClosureRow(NamedTuple):
 
 
 class HoldRow(NamedTuple):
-    """A robot that waits at the end of ``command``; ``rest`` holds the parameters of what it is sent then."""
+    """A robot that waits at the end of ``command``; ``rest`` holds the parameters of what it is sent then.
+
+    ``task`` is the task of its queue that goes on then, None where it was sent there beside its queue.
+    """
 
     robot: str
     other: str
@@ -34,6 +37,7 @@ class HoldRow(NamedTuple):
     rest: dict[str, Any]
     until: float
     by: str
+    task: str | None = None
 
 
 def add(connection: Connection, closure: ClosureRow) -> None:

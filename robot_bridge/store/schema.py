@@ -152,6 +152,7 @@ holds = Table(
     Column("rest", _LongText, nullable=False),
     Column("until", Double, nullable=False),
     Column("by", String(128), nullable=False),
+    Column("task", String(64), nullable=True),
 )
 
 queues = Table(
