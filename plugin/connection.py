@@ -173,3 +173,5 @@ def _end_tasks(loop: asyncio.AbstractEventLoop) -> None:
         task.cancel()
     if left:
         loop.run_until_complete(asyncio.wait(left, timeout=CANCEL_WITHIN))
+    # A link that was cut off closes its socket in the loop's next round, and there would be none.
+    loop.run_until_complete(asyncio.sleep(0))

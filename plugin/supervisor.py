@@ -49,6 +49,7 @@ class FleetSupervisor:
         from .desk.observations.observations_action import ObservationsAction
         from .desk.options.options_factory import OptionsFactory
         from .desk.plans.plans_action import PlansAction
+        from .desk.plugin_menu import PluginMenu
         from .desk.replay.replay_action import ReplayAction
         from .desk.robot_feed import RobotFeed
         from .desk.shortcuts import Shortcuts
@@ -66,6 +67,8 @@ class FleetSupervisor:
         window = self._window = DeskWindow(iface)
         alarms = WindowAlarms(iface, window, self._surfaces)
         self._parts = [
+            # The first ones, so that they go last: everything else has left menu and project by then.
+            PluginMenu(iface.mainWindow(), MENU),
             live_layers,
             window,
             alarms,

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import importlib
 import importlib.util
+import sys
 from types import ModuleType
 
 from .errors import LibraryMissingError
@@ -57,4 +58,8 @@ def _package(name: str) -> ModuleType | None:
     except ModuleNotFoundError:
         return None
     # A folder without __init__.py is found too, as a namespace, and is no library.
-    return importlib.import_module(name) if found is not None and found.origin else None
+    if found is None or not found.origin:
+        return None
+    # Not by importlib: QGIS forgets with a plugin what it saw imported, and it sees no more than this.
+    __import__(name, fromlist=["asyncio"])
+    return sys.modules[name]

@@ -34,7 +34,7 @@ _NAMES = ("id", "robot", "name")
 """Fields that may hold the id of a feature; the first that the layer has."""
 _NUMBERS = {
     "CAPACITY": (tr("Cones that a robot carries (default of field capacity)"), _WHOLE, 8, 1),
-    "SPEED": (tr("Speed of a robot [m/s] (default of field speed)"), _REAL, 1.0, 0.01),
+    "ROBOT_SPEED": (tr("Speed of a robot [m/s] (default of field speed)"), _REAL, 1.0, 0.01),
     "RANGE": (
         tr("Metres that a robot's battery lasts, 0 for any (default of field range_m)"),
         _REAL,
@@ -220,7 +220,7 @@ def _robot(row: _Row, number: dict[str, float]) -> Robot:
         row.x,
         row.y,
         row.whole("capacity", number["CAPACITY"]),
-        row.number("speed", number["SPEED"]),
+        row.number("speed", number["ROBOT_SPEED"]),
         metres,
         row.whole("aboard", 0),
         row.whole("collected", 0),

@@ -29,7 +29,8 @@ DEFAULT_WIDTH_M = 3.5
 LABEL_FIELDS = {ROAD_CENTRELINE: "surface", ROAD_SURFACE: "surface", KEEPOUT: "name"}
 """The field that labels a feature of each role where no expression does."""
 
-Item = TypeVar("Item", Centreline, Area, Surface)
+# Named, not given: typing remembers variables, and would keep the classes of a plugin that was unloaded.
+Item = TypeVar("Item", bound="Centreline | Area | Surface")
 
 
 @dataclass

@@ -72,8 +72,7 @@ class DeskClient:
     async def _attempt(self) -> LinkError:
         """Hold one link and return why it ended."""
         try:
-            async with self._connect() as socket:
-                await self._converse(socket)
+            await self._hold()
         except LinkError as error:
             return error
         except AddressError as error:
@@ -86,6 +85,17 @@ class DeskClient:
         finally:
             self._protocol.ready = False
         return LinkError(tr("The gateway at {url} closed the link. It is tried again.", url=self._url))
+
+    async def _hold(self) -> None:
+        socket = None
+        try:
+            async with self._connect() as socket:
+                await self._converse(socket)
+        finally:
+            if socket is not None:
+                # Where closing takes too long while we are cancelled, asyncio of some Pythons (3.11.2)
+                # has the library take the one for the other and leave the socket open.
+                socket.transport.abort()
 
     def _connect(self) -> Any:
         options: dict[str, Any] = {

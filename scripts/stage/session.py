@@ -16,6 +16,8 @@ from .processes import Processes
 from .qgis import Profile, program
 
 SESSIONS = ROOT / "scripts" / "inside_qgis"
+BROKEN = "An error occurred during execution of following code"
+"""What QGIS prints when the script itself cannot be run; nothing would come of waiting for it."""
 
 
 def start_qgis(
@@ -72,6 +74,8 @@ def follow(
             break
         if time.monotonic() > until:
             raise StageError(f"QGIS was not done after {seconds:.0f} s; its output: {processes.log('qgis')}")
+        if not read and BROKEN in processes.log("qgis").read_text(encoding="utf-8", errors="replace"):
+            raise StageError(f"QGIS could not run the session's script; its output: {processes.log('qgis')}")
         processes.require_running(but=("qgis", *killed))
         time.sleep(0.1)
     if ended != 0:

@@ -7,6 +7,7 @@ import sys
 import threading
 from collections import Counter
 from collections.abc import Iterable
+from enum import Enum
 from pathlib import Path
 
 from qgis.core import QgsApplication, QgsExpression, QgsLocatorFilter, QgsProject
@@ -33,7 +34,7 @@ def belongings(window, canvas) -> Belongings:
         "docks": _names(window.findChildren(QDockWidget)),
         "toolbars": _names(window.findChildren(QToolBar)),
         "menus": _names(window.findChildren(QMenu)),
-        "actions": Counter(f"{a.objectName()} {a.text()}" for a in window.findChildren(QAction)),
+        "actions": Counter(map(_action, filter(_is_named, window.findChildren(QAction)))),
         "shortcuts": Counter(s.key().toString() for s in window.findChildren(QShortcut)),
         "timers": _names(window.findChildren(QTimer)),
         "locator filters": Counter(one.name() for one in window.findChildren(QgsLocatorFilter)),
@@ -58,16 +59,20 @@ def left_over(before: Belongings, after: Belongings) -> list[str]:
 
 
 def objects_of(package: str) -> Counter[str]:
-    """Return the living objects of classes that ``package`` defines, by class, and those classes."""
+    """Return the living objects of classes that ``package`` defines, by class, and older copies of those.
+
+    One copy of a class may stay: Python keeps overloaded functions until the same ones are loaded again.
+    """
     found: Counter[str] = Counter()
+    classes: Counter[str] = Counter()
     for one in gc.get_objects():
-        # Some proxies raise when they are asked; what they stand for is not ours.
         kind = type(one)
-        if _is_of(package, getattr(kind, "__module__", None)):
+        # Members of an enumeration are there as long as it is.
+        if _is_of(package, kind.__module__) and not issubclass(kind, Enum):
             found[f"{kind.__module__}.{kind.__qualname__}"] += 1
         elif isinstance(one, type) and _is_of(package, one.__dict__.get("__module__")):
-            found[f"class {one.__module__}.{one.__qualname__}"] += 1
-    return found
+            classes[f"class {one.__module__}.{one.__qualname__}"] += 1
+    return found + Counter({name: number - 1 for name, number in classes.items()})
 
 
 def running_threads() -> int:
@@ -89,6 +94,17 @@ def thread_names() -> list[str]:
 
 def _names(objects: Iterable[QObject]) -> Counter[str]:
     return Counter(f"{type(one).__name__} {one.objectName()}".strip() for one in objects)
+
+
+def _is_named(action: QAction) -> bool:
+    """Tell whether an action is not one of QGIS's own separators, of which it leaves some in its menus."""
+    return bool(action.objectName() or action.text())
+
+
+def _action(action: QAction) -> str:
+    parent = action.parent()
+    where = f"{type(parent).__name__} {parent.objectName()}".strip()
+    return f"{action.objectName() or action.text()} in {where}"
 
 
 def _is_of(package: str, module: object) -> bool:

@@ -98,12 +98,12 @@ class Endurance:
         Connections().put(kept)
 
     def _connected(self) -> Until:
-        table = self._window.findChild(QTableView, "fleet_robot_table")
         wanted = len(self._plan["robots"])
 
         def holds() -> bool:
-            linked = "Connected" in self._session.operator.link_state()
-            return linked and table.model().rowCount() == wanted
+            # Looked for each time: what is kept here would not go with the plugin.
+            table = self._window.findChild(QTableView, "fleet_robot_table")
+            return "Connected" in self._session.operator.link_state() and table.model().rowCount() == wanted
 
         return Until(f"a link with {wanted} robots", holds, CONNECTS_WITHIN)
 

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import asyncio
+import gc
 import socket
 import threading
 import time
+import warnings
 
 import pytest
 from fleet_supervisor.plugin.connection import Connection
@@ -296,3 +298,16 @@ def test_every_thread_has_ended_after_shut_down(connection, gateway, wait):
     connection.shut_down()
     assert all(worker.isFinished() for worker in workers)
     assert threading.active_count() <= before
+
+
+def test_a_link_that_is_cut_off_because_it_does_not_close_leaves_no_socket_behind(connection, gateway, wait):
+    connection.open(gateway.url, "anna")
+    wait(lambda: connection.take().link.phase is Phase.CONNECTED)
+    release = threading.Event()
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        gateway._loop.call_soon_threadsafe(release.wait)
+        connection.shut_down()
+        release.set()
+        gc.collect()
+    assert [str(one.message) for one in told if issubclass(one.category, ResourceWarning)] == []

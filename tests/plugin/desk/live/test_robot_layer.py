@@ -8,6 +8,7 @@ from fleet_supervisor.plugin.desk.picture import RobotPicture
 from fleet_supervisor.plugin.wire.position_rows import sightings
 from qgis.core import QgsProject, QgsSingleSymbolRenderer
 from qgis.gui import QgsAttributeTableFilterModel, QgsDualView
+from qgis.PyQt.QtWidgets import QDialog
 
 
 def told(number, x=1.0, **more):
@@ -124,7 +125,10 @@ def test_an_open_attribute_table_shows_what_comes_in(layer, iface, wait):
     picture = RobotPicture()
     picture.merge(sightings([told(1, battery=0.5)], 0.0))
     write_all(layer, picture)
-    table = QgsDualView(iface)
+    # As QGIS names the window of an attribute table, which only QGIS itself can make.
+    window = QDialog(iface)
+    window.setObjectName(f"QgsAttributeTableDialog/{layer.layer.id()}")
+    table = QgsDualView(window)
     table.init(layer.layer, iface.canvas)
     table.setFilterMode(QgsAttributeTableFilterModel.FilterMode.ShowAll)
     changes = []
@@ -135,4 +139,4 @@ def test_an_open_attribute_table_shows_what_comes_in(layer, iface, wait):
     model = table.masterModel()
     column = layer.layer.fields().indexOf("battery")
     wait(lambda: model.data(model.index(0, model.fieldCol(column)), 0) == "0.25", what="the new value")
-    table.deleteLater()
+    window.deleteLater()
