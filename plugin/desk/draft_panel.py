@@ -8,7 +8,6 @@ from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtWidgets import (
     QAction,
     QHBoxLayout,
-    QLabel,
     QSizePolicy,
     QToolButton,
     QVBoxLayout,
@@ -20,6 +19,7 @@ from .actions import Actions
 from .colours import WRONG_STYLE
 from .desk import Desk
 from .drafts import TARGETS, Draft, in_brief
+from .whole_text import WholeText
 
 NOTHING = tr("Select a robot, choose Cone target or Draw route, and click on the map.")
 
@@ -31,11 +31,8 @@ class DraftPanel(QWidget):
         super().__init__(parent)
         self._desk = desk
         self._remark = ""
-        self._text = QLabel(NOTHING)
+        self._text = WholeText(NOTHING, lines=2)
         self._text.setObjectName("fleet_draft_text")
-        self._text.setWordWrap(True)
-        self._text.setTextFormat(Qt.TextFormat.PlainText)
-        self._text.setMinimumHeight(2 * self._text.fontMetrics().lineSpacing() + 2)
         self._text.setAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignTop)
         rows = QVBoxLayout(self)
         rows.setContentsMargins(0, 0, 0, 0)

@@ -44,6 +44,7 @@ from .table_model import (
     ROTATION,
     SEMANTICS,
     TEMPLATE,
+    TITLES,
     WHAT,
     WIDTH,
     RoleTableModel,
@@ -159,6 +160,8 @@ class RolesDialog(QDialog):
         for column, width in WIDTHS.items():
             table.setColumnWidth(column, width)
         fit_heads(header)
+        # The column that takes what is left keeps room for its head.
+        header.setMinimumSectionSize(header.fontMetrics().horizontalAdvance(TITLES[RESULT]) + 8)
         header.setSectionResizeMode(RESULT, QHeaderView.ResizeMode.Stretch)
         return table
 

@@ -101,6 +101,8 @@ class RobotTable(QTableView):
             by_choice = column.first if hidden is None else column.title not in str(hidden).split(",")
             self.setColumnHidden(number, not by_choice)
         fit_heads(header)
+        # The column that takes what is left keeps room for its head.
+        header.setMinimumSectionSize(max(24, metrics.horizontalAdvance(COLUMNS[TASK].head) + 9))
         header.setSectionResizeMode(TASK, QHeaderView.ResizeMode.Stretch)
 
     def _pulled(self) -> None:

@@ -22,7 +22,7 @@ from qgis.PyQt.QtWidgets import (
     QWidget,
 )
 
-ROUNDING = 1
+ROUNDING = 2
 """Pixels that styles differ by in what they ask for and what they need."""
 HEADER_EDGE = 4
 """Pixels beside the words of a column's head."""

@@ -1,0 +1,32 @@
+"""Text of a panel that is never squeezed lower than its lines."""
+
+from __future__ import annotations
+
+from qgis.PyQt.QtCore import Qt
+from qgis.PyQt.QtGui import QResizeEvent
+from qgis.PyQt.QtWidgets import QLabel, QWidget
+
+
+class WholeText(QLabel):
+    """Plain text that wraps; at least as high as ``lines`` lines, so that what is below it jumps less.
+
+    A layout that has too little room for everything takes it from labels that wrap first.
+    """
+
+    def __init__(self, text: str = "", lines: int = 1, parent: QWidget | None = None):
+        super().__init__(text, parent)
+        self._least = lines * self.fontMetrics().lineSpacing() + 2
+        self.setWordWrap(True)
+        self.setTextFormat(Qt.TextFormat.PlainText)
+        self._fit()
+
+    def setText(self, text: str) -> None:
+        super().setText(text)
+        self._fit()
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self._fit()
+
+    def _fit(self) -> None:
+        self.setMinimumHeight(max(self._least, self.heightForWidth(self.width())))

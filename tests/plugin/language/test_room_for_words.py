@@ -1,0 +1,156 @@
+"""Every panel, dialog and page has room for its words, in long languages and in QGIS's themes.
+
+Looked at in processes of their own (desk_in_words.py): what a module calls things is settled when it is
+imported.
+"""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from qgis.PyQt.QtCore import QSize, QStringListModel, Qt
+from qgis.PyQt.QtWidgets import (
+    QComboBox,
+    QDialog,
+    QHeaderView,
+    QLabel,
+    QLineEdit,
+    QPushButton,
+    QScrollArea,
+    QTabBar,
+    QToolButton,
+    QWidget,
+)
+
+HERE = Path(__file__).parent
+LONG = "a text that is much longer than its place"
+
+
+@pytest.fixture
+def beside():
+    """Import a module that lies beside this one, as desk_in_words.py does."""
+    sys.path.insert(0, str(HERE))
+    yield lambda name: __import__(name)
+    sys.path.remove(str(HERE))
+
+
+@pytest.mark.parametrize(
+    ("language", "theme"),
+    [("stretched", None), ("hu", "Night Mapping"), ("ca", "Blend of Gray"), ("es", None)],
+)
+def test_nothing_is_cut_off_on_the_smallest_screen(language, theme, tmp_path):
+    result = tmp_path / "faults.json"
+    command = [sys.executable, str(HERE / "desk_in_words.py"), language, str(result)]
+    ran = subprocess.run([*command, *(["--theme", theme] if theme else [])], capture_output=True, text=True)
+    assert ran.returncode == 0, ran.stderr
+    assert json.loads(result.read_text(encoding="utf-8")) == {}
+
+
+def test_a_stretched_text_keeps_its_markup(beside):
+    stretched = beside("stretched").stretched
+    for text in (
+        "Send",
+        "&Height",
+        "{robots} robots of {site}",
+        "<p>All of <b>it</b></p>",
+        "%n tasks",
+        "Export…",
+    ):
+        longer = stretched(text)
+        assert len(longer) >= 1.3 * len(text) - 3, longer
+        assert [longer.count(mark) for mark in "&{}<>%…"] == [text.count(mark) for mark in "&{}<>%…"]
+
+
+def too_narrow(widget: QWidget, width: int = 40) -> QWidget:
+    """Return a window that leaves ``widget`` only ``width`` pixels."""
+    window = QDialog()
+    widget.setParent(window)
+    widget.setGeometry(0, 0, width, 30)
+    window.resize(200, 100)
+    window.show()
+    return window
+
+
+def of_tabs() -> QTabBar:
+    bar = QTabBar()
+    bar.addTab(LONG)
+    return bar
+
+
+def of_choices() -> QComboBox:
+    box = QComboBox()
+    box.addItem(LONG)
+    return box
+
+
+def of_hint() -> QLineEdit:
+    line = QLineEdit()
+    line.setPlaceholderText(LONG)
+    return line
+
+
+def of_tool() -> QToolButton:
+    button = QToolButton()
+    button.setText(LONG)
+    return button
+
+
+def of_lines() -> QLabel:
+    label = QLabel(LONG)
+    label.setWordWrap(True)
+    return label
+
+
+class Heads(QStringListModel):
+    def headerData(self, section, orientation, role=0):
+        return LONG if role == 0 else None
+
+
+def of_heads() -> QHeaderView:
+    heads = QHeaderView(Qt.Orientation.Horizontal)
+    heads.kept = Heads(["x"])
+    heads.setModel(heads.kept)
+    return heads
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda: QPushButton(LONG),
+        lambda: QLabel(LONG),
+        of_tabs,
+        of_choices,
+        of_hint,
+        of_tool,
+        of_lines,
+        of_heads,
+    ],
+)
+def test_what_is_too_small_for_its_words_is_found(qgis_app, beside, make):
+    window = too_narrow(make())
+    assert beside("cut_off").cut_off(window)
+    window.close()
+
+
+def test_what_ends_beyond_its_view_is_found(qgis_app, beside):
+    area = QScrollArea()
+    area.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+    content = QWidget()
+    content.resize(400, 20)
+    QPushButton("ok", content).setGeometry(350, 0, 50, 20)
+    area.setWidget(content)
+    area.resize(200, 50)
+    area.show()
+    assert any("beyond" in fault for fault in beside("cut_off").cut_off(area))
+    area.close()
+
+
+def test_a_window_that_needs_more_than_the_screen_is_found(qgis_app, beside):
+    window = QDialog()
+    window.setMinimumSize(1300, 100)
+    assert beside("cut_off").too_large(window, QSize(1280, 800))
+    assert not beside("cut_off").too_large(window, QSize(1300, 800))
