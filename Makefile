@@ -52,6 +52,7 @@ desktop: $(READY) ## open QGIS Desktop with the plugin, the sample site and thre
 
 screenshots: $(READY) build/run ## make the pictures in docs/images, in real windows under Xvfb
 	@$(RUN) scripts/desktop.py --screenshot docs/images/desktop.png
+	@PYTHONPATH=scripts $(RUN) -m walkthrough --pictures docs/images
 	@$(RUN) scripts/roles_picture.py
 	@$(DRAW).robot_maps
 	@$(DRAW).cones

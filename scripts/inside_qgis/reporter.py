@@ -175,11 +175,11 @@ def _map() -> dict[str, Any]:
 
 
 def _time() -> dict[str, Any]:
-    """What QGIS's temporal controller shows, in milliseconds since 1970, and whether it plays."""
+    """Which moment QGIS's temporal controller shows, in seconds since 1970, and whether it plays."""
     controller = iface.mapCanvas().temporalController()
     begin = controller.dateTimeRangeForFrameNumber(controller.currentFrameNumber()).begin()
     plays = controller.animationState() != QgsTemporalNavigationObject.AnimationState.Idle
-    return {"at": begin.toMSecsSinceEpoch(), "plays": plays}
+    return {"at": begin.toMSecsSinceEpoch() / 1000.0, "plays": plays}
 
 
 def _desk() -> dict[str, Any]:

@@ -96,10 +96,10 @@ class OperatorAtScreen:
         """Click a widget, by its object name, as soon as it can be used."""
         self._screen.click(_middle(self._still(name)))
 
-    def click_part(self, name: str, share: float) -> None:
-        """Click a widget ``share`` of its width from its left."""
+    def click_along(self, name: str, share: float, *, edge: int) -> None:
+        """Click the line in a widget, which begins and ends ``edge`` pixels inside, at ``share`` of it."""
         x, y, width, height = self._still(name)
-        self._screen.click((round(x + share * width), y + height // 2))
+        self._screen.click((round(x + edge + share * (width - 2 * edge)), y + height // 2))
 
     def click_tab(self, name: str, text: str) -> None:
         """Click a tab by what it begins with."""

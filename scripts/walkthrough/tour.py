@@ -9,7 +9,7 @@ from .scene import Scene
 
 TARGET = (40.0, 8.0)
 """Ahead of r1 on the straight; site frame, metres."""
-LAYERS_WIDTH = 215
+LAYERS_WIDTH = 230
 """Pixels in which the names of the sample site's layers can be read."""
 
 
