@@ -11,6 +11,7 @@ from ...robot_bridge.layouts.catalogue import LAYOUTS
 from ...robot_bridge.layouts.layout import Layout
 from ..language import tr
 from .actions import ICONS
+from .layout_dimensions import LayoutDimensions, remembered
 from .layout_tool import LayoutTool
 
 
@@ -25,22 +26,31 @@ class LayoutAction:
         self.action.setToolTip(
             tr(
                 "Place a cone layout: it is shown under the cursor, the wheel turns it (Shift: finely), a "
-                "click places it, Esc ends; nothing is sent to robots"
+                "click places it, Esc ends; by keys PgUp and PgDown turn it, Enter places it, F2 leads to "
+                "its dimensions. Nothing is sent to robots"
             )
         )
         self.tool = LayoutTool(iface.mapCanvas(), QgsProject.instance(), self._say)
+        self.dimensions = LayoutDimensions(window)
+        self.dimensions.changed.connect(self.tool.show_layout)
+        self.dimensions.turned.connect(self.tool.turn_to)
+        self.dimensions.left.connect(iface.mapCanvas().setFocus)
+        self.tool.turned.connect(self.dimensions.show_heading)
+        self.tool.dimensions_wanted.connect(self.dimensions.take_keys)
+        self.tool.deactivated.connect(self.dimensions.hide)
         self._layouts = QMenu(window)
         for kind in LAYOUTS.values():
             entry = self._layouts.addAction(f"{kind.TITLE} ({kind.STANDARD})")
             entry.setObjectName(f"fleet_cone_layout_{kind.NAME}")
-            entry.triggered.connect(lambda _=False, kind=kind: self.take(kind.of({})))
+            entry.triggered.connect(lambda _=False, kind=kind: self.take(remembered(kind)))
         self.action.setMenu(self._layouts)
         iface.addPluginToMenu(menu, self.action)
 
     def take(self, layout: Layout) -> None:
-        """Put the tool into the operator's hand, with ``layout``."""
-        self.tool.layout = layout
+        """Put the tool into the operator's hand, with ``layout`` and its dimensions to be changed."""
         self._iface.mapCanvas().setMapTool(self.tool)
+        self.tool.show_layout(layout)
+        self.dimensions.show_layout(layout, self.tool.heading)
         self._iface.mapCanvas().setFocus()
 
     def remove(self) -> None:
@@ -48,6 +58,7 @@ class LayoutAction:
         self._iface.mapCanvas().unsetMapTool(self.tool)
         self.tool.remove()
         self.tool.deleteLater()
+        self.dimensions.deleteLater()
         self._iface.removePluginMenu(self._menu, self.action)
         self._layouts.deleteLater()
         self.action.deleteLater()

@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 from qgis.core import QgsCoordinateTransform, QgsPointXY, QgsProject, QgsWkbTypes
 from qgis.gui import QgsMapCanvas, QgsMapMouseEvent, QgsMapTool, QgsRubberBand
-from qgis.PyQt.QtCore import QPoint, Qt
+from qgis.PyQt.QtCore import QPoint, Qt, pyqtSignal
 from qgis.PyQt.QtGui import QColor, QKeyEvent, QWheelEvent
 from qgis.PyQt.QtWidgets import QApplication
 
@@ -25,9 +25,19 @@ STEP, FINE_STEP = 15.0, 1.0
 
 NOTCH = 120.0
 
+_TURNS = {
+    Qt.Key.Key_PageUp: -1.0,
+    Qt.Key.Key_PageDown: 1.0,
+}
+
 
 class LayoutTool(QgsMapTool):
     """Places ``layout``. Nothing is sent by it. ``say`` takes (text, is it a complaint)."""
+
+    turned = pyqtSignal(float)
+    """The wheel or a key has turned the layout; degrees as :attr:`heading`."""
+    dimensions_wanted = pyqtSignal()
+    """F2: the operator wants to type dimensions."""
 
     def __init__(self, canvas: QgsMapCanvas, project: QgsProject, say: Callable[[str, bool], None]):
         super().__init__(canvas)
@@ -41,6 +51,16 @@ class LayoutTool(QgsMapTool):
         self.heading = 90.0
         """Degrees clockwise from the north of the cones' CRS."""
         self.setCursor(Qt.CursorShape.CrossCursor)
+
+    def show_layout(self, layout: Layout) -> None:
+        """Place ``layout`` from now on; where the mouse is not over the map it is shown in its middle."""
+        self.layout = layout
+        self._show()
+
+    def turn_to(self, heading: float) -> None:
+        """Let the layout point that many degrees clockwise from north."""
+        self.heading = heading % 360.0
+        self._show()
 
     def preview(self) -> np.ndarray:
         """Return where the cones are shown, (n, 2) in the canvas's CRS."""
@@ -77,15 +97,24 @@ class LayoutTool(QgsMapTool):
             return
         step = FINE_STEP if event.modifiers() & Qt.KeyboardModifier.ShiftModifier else STEP
         turned = event.angleDelta().y() or event.angleDelta().x()
-        self.heading = (self.heading + step * turned / NOTCH) % 360.0
-        self._show()
+        self._turn(step * turned / NOTCH)
         event.accept()
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
+        """Do by keys what the mouse does: QGIS's own arrow keys move the map below the layout."""
+        fine = bool(event.modifiers() & Qt.KeyboardModifier.ShiftModifier)
         if event.key() == Qt.Key.Key_Escape:
             self.canvas().unsetMapTool(self)
+        elif event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter):
+            self._try(self._place)
+        elif event.key() in _TURNS:
+            self._turn(_TURNS[event.key()] * (FINE_STEP if fine else STEP))
+        elif event.key() == Qt.Key.Key_F2:
+            self.dimensions_wanted.emit()
         else:
             super().keyPressEvent(event)
+            return
+        event.accept()
 
     def remove(self) -> None:
         """Take the preview off the canvas."""
@@ -100,14 +129,19 @@ class LayoutTool(QgsMapTool):
         crs = self._store.crs(canvas_crs)
         forward = QgsCoordinateTransform(crs, canvas_crs, self._project.transformContext())
         back = QgsCoordinateTransform(canvas_crs, crs, self._project.transformContext())
-        ((x, y),) = transformed(np.array([[self._cursor.x(), self._cursor.y()]]), back)
+        place = self._cursor or self.canvas().center()
+        ((x, y),) = transformed(np.array([[place.x(), place.y()]]), back)
         cones = self.layout.cones(self._store.prefix(self.layout.NAME))
         return placed(cones, float(x), float(y), math.radians(90.0 - self.heading)), forward
+
+    def _turn(self, degrees: float) -> None:
+        self.turn_to(self.heading + degrees)
+        self.turned.emit(self.heading)
 
     def _show(self) -> None:
         """Draw the layout at the cursor; where that cannot be, nothing: a click there says why."""
         self._clear()
-        if self.layout is None or self._cursor is None:
+        if self.layout is None or self.canvas().mapTool() is not self:
             return
         try:
             cones, forward = self._cones()

@@ -7,14 +7,22 @@ import math
 import numpy as np
 import pytest
 from fleet_supervisor.plugin.desk.layout_action import LayoutAction
+from fleet_supervisor.plugin.desk.layout_dimensions import GROUP, remembered
 from fleet_supervisor.plugin.sites.roles import ROAD_SURFACE, set_role
 from fleet_supervisor.robot_bridge.layouts.catalogue import LAYOUTS
-from qgis.core import QgsCoordinateReferenceSystem, QgsFeature, QgsGeometry, QgsProject, QgsVectorLayer
+from qgis.core import (
+    QgsCoordinateReferenceSystem,
+    QgsFeature,
+    QgsGeometry,
+    QgsProject,
+    QgsSettings,
+    QgsVectorLayer,
+)
 from qgis.gui import QgsMapToolPan, QgsRubberBand
 from qgis.PyQt.QtCore import QEvent, QPoint, QPointF, Qt
 from qgis.PyQt.QtGui import QWheelEvent
 from qgis.PyQt.QtTest import QTest
-from qgis.PyQt.QtWidgets import QAction, QApplication
+from qgis.PyQt.QtWidgets import QAction, QApplication, QWidget
 
 ORIGIN = (488000.0, 5190000.0)
 NONE = Qt.KeyboardModifier.NoModifier
@@ -189,3 +197,116 @@ def test_the_plugin_has_an_entry_for_each_layout_and_leaves_none(iface):
     loaded.unload()
     QApplication.sendPostedEvents(None, QEvent.Type.DeferredDelete)
     assert iface.findChild(QAction, "fleet_cone_layout") is None
+
+
+# --- dimensions ------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def fields(entry):
+    """The fields of the dimensions by name, of a layout taken from the menu; what was kept is forgotten."""
+    QgsSettings().remove(GROUP)
+
+    def take(name):
+        next(one for one in entry.action.menu().actions() if one.objectName().endswith(name)).trigger()
+        QApplication.processEvents()
+        kind = LAYOUTS[name]
+        return {
+            one.name: entry.dimensions.findChild(QWidget, f"fleet_layout_{one.name}")
+            for one in kind.dimensions()
+        }
+
+    yield take
+    QgsSettings().remove(GROUP)
+
+
+def type_into(field, text):
+    field.setFocus()
+    field.selectAll()
+    QTest.keyClicks(field, text)
+    QTest.keyClick(field, Qt.Key.Key_Tab)
+
+
+def test_every_dimension_has_a_field_with_its_unit_and_the_standards_value(entry, fields):
+    for name, kind in LAYOUTS.items():
+        shown = fields(name)
+        assert kind.STANDARD in entry.dimensions.standard.text()
+        for one in kind.dimensions():
+            field = shown[one.name]
+            if one.choices:
+                assert field.currentData() == one.standard
+                assert [field.itemData(k) for k in range(field.count())] == list(one.choices)
+            else:
+                assert field.value() == one.standard
+                assert field.suffix().strip() == one.unit
+
+
+def test_a_dimension_that_is_typed_is_what_is_shown_and_placed(entry, fields, iface):
+    shown = fields("slalom")
+    move(iface, 40, 50)
+    type_into(shown["count"], "3")
+    type_into(shown["spacing"], "5")
+    type_into(entry.dimensions.heading, "180")
+    assert len(entry.tool.preview()) == 7
+    pixel = iface.canvas.mapUnitsPerPixel()
+    iface.click(40, 60)
+    assert cones()["slalom-3"] == pytest.approx((40, 54, 180), abs=2 * pixel)
+    assert shown["count"].font().bold() and not shown["gate_width"].font().bold()
+
+
+def test_what_cannot_be_is_said_and_not_placed(entry, fields, iface):
+    shown = fields("iso3888_1")
+    move(iface, 40, 50)
+    before = entry.tool.layout
+    type_into(shown["vehicle_width"], "0")
+    assert entry.dimensions.problem.isVisible()
+    assert entry.dimensions.problem.text() == "Width of the vehicle without mirrors: give 0.1 or more."
+    assert entry.tool.layout == before
+    type_into(shown["vehicle_width"], "2")
+    assert not entry.dimensions.problem.isVisible()
+    assert entry.tool.layout.vehicle_width == 2.0
+
+
+def test_each_layout_remembers_its_dimensions_until_they_are_reset(entry, fields):
+    type_into(fields("slalom")["spacing"], "30.48")
+    assert fields("corridor")["spacing"].value() == LAYOUTS["corridor"].of({}).spacing
+    assert fields("slalom")["spacing"].value() == 30.48
+    entry.dimensions.reset.click()
+    assert entry.tool.layout == LAYOUTS["slalom"].of({})
+    assert fields("slalom")["spacing"].value() == 18.0
+
+
+def test_what_was_kept_and_cannot_be_any_more_is_the_standards(entry, fields):
+    fields("slalom")
+    QgsSettings().setValue(f"{GROUP}/slalom/spacing", "-3")
+    QgsSettings().setValue(f"{GROUP}/slalom/count", "many")
+    assert remembered(LAYOUTS["slalom"]) == LAYOUTS["slalom"].of({})
+
+
+def test_a_layout_is_turned_and_placed_by_keys_alone(entry, fields, iface):
+    fields("slalom")
+    canvas = iface.canvas
+    assert len(entry.tool.preview()) == 13
+    for key, modifiers, heading in (
+        (Qt.Key.Key_PageDown, NONE, 105.0),
+        (Qt.Key.Key_PageUp, NONE, 90.0),
+        (Qt.Key.Key_PageUp, Qt.KeyboardModifier.ShiftModifier, 89.0),
+    ):
+        QTest.keyClick(canvas, key, modifiers)
+        assert entry.tool.heading == entry.dimensions.heading.value() == heading
+    QTest.keyClick(canvas, Qt.Key.Key_Return)
+    assert len(cones()) == 13
+    QTest.keyClick(canvas, Qt.Key.Key_F2)
+    assert entry.dimensions.focusWidget() is entry.dimensions.heading
+    QTest.keyClick(entry.dimensions, Qt.Key.Key_Escape)
+    assert not entry.dimensions.isVisible()
+    assert canvas.mapTool() is entry.tool
+    QTest.keyClick(canvas, Qt.Key.Key_Escape)
+    assert canvas.mapTool() is not entry.tool
+
+
+def test_another_tool_takes_the_dimensions_away(entry, fields, iface):
+    fields("circle")
+    assert entry.dimensions.isVisible()
+    iface.canvas.setMapTool(QgsMapToolPan(iface.canvas))
+    assert not entry.dimensions.isVisible()
