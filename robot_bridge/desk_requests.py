@@ -12,12 +12,13 @@ from dataclasses import dataclass
 from typing import Any
 
 from . import map_requests
-from .access import supervision
+from .access import account_requests, supervision
 from .errors import ForbiddenError, RefusedError
 from .fleet import Fleet
 from .messages import (
     AbortAll,
     AbortTask,
+    AddOperator,
     AddTasks,
     ClearEmergencyStop,
     CloseRoad,
@@ -32,6 +33,7 @@ from .messages import (
     GetConflicts,
     GetImage,
     GetObservations,
+    GetOperators,
     GetPlacements,
     GetPositions,
     GetQueue,
@@ -48,11 +50,14 @@ from .messages import (
     ResolveConflict,
     ResumeQueue,
     ReviewObservation,
+    RevokeToken,
     Role,
+    RotateToken,
     Send,
     SendMap,
     SetPositions,
     SetQueue,
+    SetRole,
     SurfaceAt,
     TakeOver,
     to_json,
@@ -172,6 +177,26 @@ async def _end_session(fleet: Fleet, request: EndSession, caller: Caller) -> Jso
 
 async def _get_audit(fleet: Fleet, request: GetAudit, _caller: Caller) -> Json:
     return await supervision.get_audit(fleet.database, request)
+
+
+async def _get_operators(fleet: Fleet, _request: GetOperators, _caller: Caller) -> Json:
+    return await account_requests.get_operators(fleet.database)
+
+
+async def _add_operator(fleet: Fleet, request: AddOperator, _caller: Caller) -> Json:
+    return await account_requests.add_operator(fleet.database, request)
+
+
+async def _rotate_token(fleet: Fleet, request: RotateToken, _caller: Caller) -> Json:
+    return await account_requests.rotate_token(fleet.database, request)
+
+
+async def _revoke_token(fleet: Fleet, request: RevokeToken, _caller: Caller) -> Json:
+    return await account_requests.revoke_token(fleet.database, request)
+
+
+async def _set_role(fleet: Fleet, request: SetRole, _caller: Caller) -> Json:
+    return await account_requests.set_role(fleet.database, request)
 
 
 async def _get_trajectory(fleet: Fleet, request: GetTrajectory, _caller: Caller) -> Json:
@@ -294,6 +319,11 @@ SERVICES: dict[type[DeskRequest], Service] = {
     GetSessions: Service(Role.SUPERVISOR, _get_sessions),
     EndSession: Service(Role.SUPERVISOR, _end_session),
     GetAudit: Service(Role.SUPERVISOR, _get_audit),
+    GetOperators: Service(Role.SUPERVISOR, _get_operators),
+    AddOperator: Service(Role.SUPERVISOR, _add_operator),
+    RotateToken: Service(Role.SUPERVISOR, _rotate_token),
+    RevokeToken: Service(Role.SUPERVISOR, _revoke_token),
+    SetRole: Service(Role.SUPERVISOR, _set_role),
     GetRoute: Service(Role.VIEWER, _get_route),
     GetClosures: Service(Role.VIEWER, _get_closures),
     GetConflicts: Service(Role.VIEWER, _get_conflicts),

@@ -128,7 +128,7 @@ class DeskSession:
         if call.method not in DESK_REQUESTS or (harmless and code != jsonrpc.FORBIDDEN):
             return
         asked = call.params if isinstance(call.params, dict) else {}
-        names = (asked.get(name) for name in ("robot", "session", "observation", "command"))
+        names = (asked.get(name) for name in ("robot", "session", "operator", "observation", "command"))
         params = msgspec.json.encode(asked).decode()
         self._gate.journal.note(
             self._operator,

@@ -96,6 +96,17 @@ def all_operators(connection: Connection) -> list[Operator]:
     ]
 
 
+def find_operator(connection: Connection, name: str) -> Operator:
+    """Return an operator's account; raises AccessError when unknown."""
+    name = _known_operator(connection, name)
+    return next(operator for operator in all_operators(connection) if operator.name == name)
+
+
+def has_supervisor(connection: Connection, now: float) -> bool:
+    """Tell whether a supervisor has a token that holds at ``now``."""
+    return any(grant.role is Role.SUPERVISOR and grant.fault(now) is None for grant in grants(connection))
+
+
 def check_operator_name(name: str) -> str:
     """Return ``name`` without blanks around it if it can be an operator's, else raise AccessError."""
     name = name.strip()

@@ -8,6 +8,17 @@ QGIS can load it.
 
 from __future__ import annotations
 
+from .accounts import (
+    AddOperator,
+    GetOperators,
+    NewToken,
+    OperatorReport,
+    Operators,
+    RevokeToken,
+    RotateToken,
+    SetRole,
+    TokenState,
+)
 from .checks import (
     LARGEST_NUMBER,
     ROBOT_NAME,
@@ -29,7 +40,6 @@ from .desk import (
     GetPositions,
     Hello,
     RobotReport,
-    Role,
     Send,
     SendMap,
     SetPositions,
@@ -137,6 +147,7 @@ from .robots import (
     Start,
     Stopped,
 )
+from .roles import Role
 from .service import Stopping
 from .stopping import (
     AbortTask,
@@ -168,6 +179,7 @@ __all__ = [
     "Abort",
     "AbortAll",
     "AbortTask",
+    "AddOperator",
     "AddTasks",
     "Alive",
     "Answer",
@@ -196,6 +208,7 @@ __all__ = [
     "GetImage",
     "GetMap",
     "GetObservations",
+    "GetOperators",
     "GetPath",
     "GetPlacements",
     "GetPosEnd",
@@ -212,11 +225,14 @@ __all__ = [
     "MakeCurrent",
     "MessageError",
     "MoveTask",
+    "NewToken",
     "ObservationReport",
     "ObservationState",
     "Observed",
     "OpAck",
     "OpenRoad",
+    "OperatorReport",
+    "Operators",
     "PauseQueue",
     "PlacementReport",
     "Placements",
@@ -234,10 +250,12 @@ __all__ = [
     "ResolveConflict",
     "ResumeQueue",
     "ReviewObservation",
+    "RevokeToken",
     "RoadClosed",
     "RobotReport",
     "RobotState",
     "Role",
+    "RotateToken",
     "RouteReport",
     "Send",
     "SendGPS",
@@ -252,6 +270,7 @@ __all__ = [
     "SetPosIni",
     "SetPositions",
     "SetQueue",
+    "SetRole",
     "SetSurface",
     "Share",
     "SharedTask",
@@ -268,6 +287,7 @@ __all__ = [
     "TaskKind",
     "TaskReport",
     "TaskState",
+    "TokenState",
     "Trajectory",
     "TrajectoryPlace",
     "check_command_id",

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import Any, ClassVar
 
+from .accounts import AddOperator, GetOperators, RevokeToken, RotateToken, SetRole
 from .checks import MessageError, check_command_id, check_finite, check_robot_name
 from .observations import GetImage, GetObservations, ReviewObservation
 from .placements import CollectLayout, GetPlacements
@@ -31,19 +32,6 @@ from .trajectories import GetTrajectory
 PROTOCOL_VERSION = 1
 LONGEST_EXPIRY = 366 * 86400.0
 """seconds."""
-
-
-class Role(str, Enum):
-    """What an operator's account may do; each role may do what the one before it may."""
-
-    VIEWER = "viewer"
-    OPERATOR = "operator"
-    SUPERVISOR = "supervisor"
-
-    def includes(self, other: Role) -> bool:
-        """Tell whether this role may do what ``other`` may."""
-        order = list(Role)
-        return order.index(self) >= order.index(other)
 
 
 class CommandState(str, Enum):
@@ -278,6 +266,11 @@ DeskRequest = (
     | GetSessions
     | EndSession
     | GetAudit
+    | GetOperators
+    | AddOperator
+    | RotateToken
+    | RevokeToken
+    | SetRole
     | GetTrajectory
     | GetSurfaces
     | SetQueue
@@ -319,6 +312,11 @@ DESK_REQUESTS: dict[str, type[DeskRequest]] = {
         GetSessions,
         EndSession,
         GetAudit,
+        GetOperators,
+        AddOperator,
+        RotateToken,
+        RevokeToken,
+        SetRole,
         GetTrajectory,
         GetSurfaces,
         SetQueue,

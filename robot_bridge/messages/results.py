@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from .desk import CommandReport, RobotReport, Role, SiteReport
+from .desk import CommandReport, RobotReport, SiteReport
 from .observations import ObservationReport
 from .queues import QueueReport
+from .roles import Role
 from .stopping import EmergencyReport
 from .supervision import AuditReport, SessionReport
 

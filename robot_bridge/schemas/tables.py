@@ -18,6 +18,16 @@ from ..messages import (
     Surfaces,
     Trajectory,
 )
+from ..messages.accounts import (
+    AddOperator,
+    GetOperators,
+    NewToken,
+    OperatorReport,
+    Operators,
+    RevokeToken,
+    RotateToken,
+    SetRole,
+)
 from ..messages.desk import (
     AbortAll,
     GetCommands,
@@ -88,6 +98,11 @@ RESULTS: dict[type[DeskRequest], type] = {
     GetSessions: Sessions,
     EndSession: SessionReport,
     GetAudit: Audit,
+    GetOperators: Operators,
+    AddOperator: NewToken,
+    RotateToken: NewToken,
+    RevokeToken: OperatorReport,
+    SetRole: OperatorReport,
     GetTrajectory: Trajectory,
     GetSurfaces: Surfaces,
     SetQueue: QueueReport,
