@@ -24,8 +24,10 @@ HERE = Path(__file__).parent
 SERVER_CORE, SWARM_CORE = 0, 1
 SECONDS = 15.0
 STEP_SECONDS = 8.0
-STEPS = (10.0, 20.0, 30.0, 40.0, 50.0, 60.0, 70.0, 80.0, 90.0)
+STEPS = (10.0, 20.0, 25.0, 30.0, 40.0, 50.0, 60.0, 70.0, 80.0, 90.0)
 """positions a second of each of a thousand robots; the gateway itself allows no more than 100."""
+GOAL_RATE, GOAL_MS = 25_000, 50
+"""positions a second that a gateway is to take with a p99 below so many milliseconds."""
 LIMITS = """
 [limits]
 per_address = 5000
@@ -156,8 +158,10 @@ def _verdict(steps: Sequence[Seen]) -> str:
         return "Not even the first step was kept up."
     best = max(kept, key=lambda seen: seen.rate)
     claim = f"Highest rate kept up: **{best.rate:,.0f} positions/s**, with a p99 of {best.delays[1]} ms."
-    if fast := list(itertools.takewhile(lambda seen: (seen.delays[1] or 0.0) < 50, kept)):
-        claim += f" The p99 was below 50 ms at every step up to {fast[-1].rate:,.0f} positions/s."
+    if goal := [seen for seen in kept if abs(seen.rate - GOAL_RATE) < GOAL_RATE / 100]:
+        claim += f" At {goal[0].rate:,.0f} positions/s the p99 was {goal[0].delays[1]} ms."
+    if fast := list(itertools.takewhile(lambda seen: (seen.delays[1] or 0.0) < GOAL_MS, kept)):
+        claim += f" The p99 was below {GOAL_MS} ms at every step up to {fast[-1].rate:,.0f} positions/s."
     if not kept[-1].swarm_kept_up:
         claim += " Then the robots' process could not send faster: where the gateway ends is not measured."
     elif len(kept) == len(STEPS):
