@@ -48,6 +48,7 @@ class DraftPanel(QWidget):
         desk.drafts.changed.connect(self._show)
         desk.checks.progressed.connect(self._show)
         desk.remarked.connect(self._remarked)
+        desk.site_changed.connect(lambda: self._remarked(""))
 
     def _remarked(self, text: str) -> None:
         self._remark = text

@@ -105,8 +105,8 @@ class RoutePreview(QObject):
         self._asked = key, question, self._clock()
 
 
-def in_words(route: RouteReport) -> str:
-    """Return a way's length, time and surfaces."""
+def in_words(route: RouteReport, apart: str = "; ") -> str:
+    """Return a way's length, time and surfaces, and what is not as it should be, set apart by ``apart``."""
     minutes, seconds = divmod(round(route.seconds), 60)
     time = (
         tr(
@@ -127,5 +127,5 @@ def in_words(route: RouteReport) -> str:
     ]
     text = ", ".join([tr("{metres:.1f} m", metres=route.metres), time, *parts])
     if route.tight:
-        text += tr("; corners tighter than the robot turns: {tight}", tight=len(route.tight))
-    return f"{text}; {route.note}" if route.note else text
+        text += apart + tr("corners tighter than the robot turns: {tight}", tight=len(route.tight))
+    return text + apart + route.note if route.note else text

@@ -71,7 +71,7 @@ class WayToMouse:
         route = self._desk.preview.route
         if self._mouse is None:
             return
-        text = self._desk.preview.why_not if route is None else in_words(route)
+        text = self._desk.preview.why_not if route is None else in_words(route, apart="\n")
         QToolTip.showText(self._mouse + BESIDE, text, self._desk.canvas)
         if route is not None:
             self._draw(route)

@@ -3427,8 +3427,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/route_preview.py" />
-            <source>; corners tighter than the robot turns: {tight}</source>
-            <translation>; esquinas más cerradas que el giro del robot: {tight}</translation>
+            <source>corners tighter than the robot turns: {tight}</source>
+            <translation>esquinas más cerradas que el giro del robot: {tight}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/route_preview.py" />

@@ -3425,8 +3425,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/route_preview.py" />
-            <source>; corners tighter than the robot turns: {tight}</source>
-            <translation>; a robot fordulásánál élesebb sarkok: {tight}</translation>
+            <source>corners tighter than the robot turns: {tight}</source>
+            <translation>a robot fordulásánál élesebb sarkok: {tight}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/route_preview.py" />

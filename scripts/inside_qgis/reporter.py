@@ -25,6 +25,7 @@ from qgis.PyQt.QtWidgets import (
     QDockWidget,
     QMenu,
     QMenuBar,
+    QProgressBar,
     QTabBar,
     QTabWidget,
     QWidget,
@@ -171,7 +172,9 @@ def _place(x: float, y: float, crs: str) -> dict[str, Any]:
 
 def _map() -> dict[str, Any]:
     """How the map stands: whether it is being drawn, and how many times smaller than the world it is."""
-    return {"drawing": iface.mapCanvas().isDrawing(), "scale": iface.mapCanvas().scale()}
+    canvas = iface.mapCanvas()
+    bars = iface.mainWindow().statusBar().findChildren(QProgressBar)
+    return {"drawing": canvas.isDrawing() or any(bar.isVisible() for bar in bars), "scale": canvas.scale()}
 
 
 def _time() -> dict[str, Any]:

@@ -39,6 +39,7 @@ def send_cone(scene: Scene) -> None:
     require_place(scene)
     film.shoot("driving", "r1 drives to its target")
     operator.wait_for_state("r1", "reached")
+    operator.wait("r1's row saying so", lambda: operator.desk()["robots"]["r1"]["Task"] == "stopped")
     require_reached(scene)
     film.shoot("reached", "r1 reached its target")
 

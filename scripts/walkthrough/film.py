@@ -30,10 +30,14 @@ class Film:
 
         :raises StageError: when a part of the plugin cannot be read or reached, or something raised.
         """
-        self._operator.wait_for_map()
         if faults := [*self._operator.cut_off(), *self._operator.complaints()]:
             raise StageError(f"in the picture {name!r}: " + "; ".join(faults))
         self._shots += 1
         path = self._folder / f"operator-{self._shots:02d}-{name}.png"
+        self._operator.wait_for_map()
         self._screen.photograph(path)
+        while not self._operator.is_map_drawn():
+            # QGIS began to draw again meanwhile, as it does each second for the live layers.
+            self._operator.wait_for_map()
+            self._screen.photograph(path)
         self.happened(f"{text}: {path.name}")

@@ -76,7 +76,11 @@ class OperatorAtScreen:
 
     def wait_for_map(self) -> None:
         """Look until the map has been drawn."""
-        self.wait("drawing the map", lambda: not self._window.ask("map")["drawing"])
+        self.wait("drawing the map", self.is_map_drawn)
+
+    def is_map_drawn(self) -> bool:
+        """Tell whether the map is drawn at this moment, to its end."""
+        return not self._window.ask("map")["drawing"]
 
     def replayed(self) -> dict[str, Any]:
         """Return what QGIS's temporal controller shows, and whether it plays."""

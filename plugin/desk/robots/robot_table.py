@@ -53,6 +53,8 @@ class RobotTable(QTableView):
         self.positions.changed.connect(self.refresh)
         desk.selection_changed.connect(self._selected_elsewhere)
         desk.pulled.connect(self._pulled)
+        # The robots known so far may be gone, or be others by the same names.
+        desk.site_changed.connect(self.refresh)
 
     @property
     def robots(self) -> RobotModel:

@@ -7,6 +7,7 @@ import pytest
 from fleet_supervisor.plugin.desk.colours import TRAIL
 from qgis.PyQt.QtGui import QColor
 from qgis.PyQt.QtTest import QTest
+from qgis.PyQt.QtWidgets import QLabel
 
 
 def is_blue(iface, x, y):
@@ -87,10 +88,15 @@ def test_another_gateway_of_the_same_site_has_nothing_of_the_one_before(
     other.start()
     try:
         other.show(make_robot("z9", 20, 20))
+        rows = []
+        desk.site_changed.connect(lambda: rows.append(driven.dock.table.model().rowCount()))
         desk.open_link(other.url, "anna")
         wait(lambda: len(desk.picture) == 1 and desk.picture.row("z9") == 0)
         assert len(desk.book) == 0 and desk.selected is None
         assert driven.dock.log.view.model().rowCount() == 0
+        # Not for a moment does a row show what another robot told.
+        assert rows == [0]
+        assert "Abort" not in driven.dock.findChild(QLabel, "fleet_draft_text").text()
         assert not is_blue(iface, 62, 40)
     finally:
         desk.close_link()
