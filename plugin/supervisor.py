@@ -46,6 +46,7 @@ class FleetSupervisor:
         # Only here: qgis_process has no window, and needs nothing of what the window is made of.
         from .desk.layout_action import LayoutAction
         from .desk.live_layers import LiveLayers
+        from .desk.menu_letters import MenuLetters
         from .desk.observations.observations_action import ObservationsAction
         from .desk.options.options_factory import OptionsFactory
         from .desk.plans.plans_action import PlansAction
@@ -84,9 +85,12 @@ class FleetSupervisor:
             ObservationsAction(iface, MENU, window.desk),
             ReplayAction(iface, MENU, window.desk),
             TourAction(iface, MENU, window),
-            # The last one, so that it goes first: while every action is still there.
-            Shortcuts(iface.mainWindow(), window.actions),
         ]
+        entries = [*window.actions.all(), *(part.action for part in self._parts if hasattr(part, "action"))]
+        # The last ones, so that they go first: while every action is still there.
+        self._parts.append(Shortcuts(iface.mainWindow(), entries))
+        # Letters may run out in a long menu: what has no key gets one first.
+        self._parts.append(MenuLetters(sorted(entries, key=lambda entry: not entry.shortcut().isEmpty())))
 
     def unload(self):
         while self._parts:

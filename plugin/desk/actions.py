@@ -51,8 +51,15 @@ class Actions(QObject):
         self.emergency.setShortcutContext(Qt.ShortcutContext.ApplicationShortcut)
         self.emergency.setAutoRepeat(False)
         self.clear_emergency = self._made("fleet_clear_emergency", tr("Clear emergency stop …"), "cancel.svg")
-        self.off_toolbar = (self.undo, self.redo, self.reverse, self.override, self.send_map)
-        """In the menu, and beside the draft where they belong to it."""
+        self.off_toolbar = (
+            self.undo,
+            self.redo,
+            self.reverse,
+            self.override,
+            self.send_map,
+            self.clear_emergency,
+        )
+        """In the menu, and beside the draft or the emergency stop where they belong to it."""
         self._explain()
 
     def all(self) -> list[QAction]:
@@ -81,6 +88,7 @@ class Actions(QObject):
             self.abort,
             self.abort_all,
             self.emergency,
+            self.clear_emergency,
         ]
 
     def _made(self, name: str, text: str, icon: str, *, checkable: bool = False) -> QAction:

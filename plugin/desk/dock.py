@@ -135,7 +135,7 @@ def tool_button(action: QAction) -> QToolButton:
 
 
 def _stop_button(action: QAction, style: str) -> QPushButton:
-    button = QPushButton(action.icon(), action.text())
+    button = QPushButton(action.icon(), action.iconText())
     button.setObjectName(f"{action.objectName()}_button")
     button.setToolTip(action.toolTip())
     button.setStyleSheet(style)

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from qgis.gui import QgsGui
 from qgis.PyQt.QtWidgets import QAction, QShortcut, QWidget
-
-from .actions import Actions
 
 KEYS = {
     "fleet_panel": "F9",
@@ -22,8 +22,16 @@ KEYS = {
     "fleet_enqueue": "Ctrl+Shift+F9",
     "fleet_abort": "Ctrl+F10",
     "fleet_abort_all": "Ctrl+Shift+F10",
+    "fleet_coordinates": "F12",
+    "fleet_from_layer": "Shift+F12",
+    "fleet_override": "Ctrl+F12",
+    "fleet_plan_panel": "Alt+F12",
+    "fleet_observations": "Ctrl+Shift+F12",
+    "fleet_replay": "Alt+Shift+F12",
 }
 """By an action's object name. Function keys: with Ctrl+Alt, keyboards of many countries write letters."""
+KEPT = ("fleet_emergency_stop",)
+"""What has keys of its own that no user changes."""
 OURS = "fleet_"
 """What the object names of the plugin's actions begin with."""
 
@@ -31,16 +39,16 @@ OURS = "fleet_"
 class Shortcuts:
     """The keys as long as the plugin is loaded. :meth:`remove` undoes the constructor.
 
-    A key that something else in QGIS has stays with that. The keys of the emergency stop are not in the list:
-    nobody shall take them away.
+    Every action of the plugin's menu is in the list, with a key or without. A key that something else in QGIS
+    has stays with that. The keys of the emergency stop are not in the list: nobody shall take them away.
     """
 
-    def __init__(self, window: QWidget, actions: Actions):
+    def __init__(self, window: QWidget, actions: Sequence[QAction]):
         self._window, self._manager = window, QgsGui.shortcutsManager()
         taken = _keys_in(window)
-        for action in actions.all():
-            key = KEYS.get(action.objectName())
-            if key is not None:
+        for action in actions:
+            if action.objectName() not in KEPT:
+                key = KEYS.get(action.objectName(), "")
                 self._manager.registerAction(action, "" if key in taken else key)
 
     def remove(self) -> None:

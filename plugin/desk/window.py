@@ -169,7 +169,9 @@ class DeskWindow(QObject):
 
     def _ask_to_clear(self) -> None:
         report = self.desk.emergency
-        if report is not None and report.in_force:
+        if report is None or not report.in_force:
+            self.desk.complained.emit(tr("No emergency stop is in force."))
+        else:
             dialog = ClearDialog(report, self._iface.mainWindow())
             dialog.confirmed.connect(self.desk.clear_emergency)
             dialog.open()

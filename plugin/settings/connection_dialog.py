@@ -49,7 +49,8 @@ class ConnectionDialog(QDialog):
         self._token = _line("fleet_connection_token", "", tr("kept by QGIS, encrypted; or choose one below"))
         self._token.setEchoMode(QLineEdit.EchoMode.Password)
         self._token.setEnabled(self._store.is_there)
-        self._auth = QgsAuthConfigSelect(self)
+        # Without a parent yet: the keyboard goes from row to row, in the order in which they get one.
+        self._auth = QgsAuthConfigSelect()
         self._auth.setObjectName("fleet_connection_auth")
         self._auth.setConfigId(connection.auth)
         self._ca = QgsFileWidget()

@@ -1,0 +1,157 @@
+"""The desk without a mouse: the menu's letters and keys, and every dialog by Tab, Enter and Esc."""
+
+from __future__ import annotations
+
+import sys
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+from fleet_supervisor.plugin.desk.menu_letters import with_letters
+from fleet_supervisor.plugin.desk.shortcuts import KEYS
+from qgis.gui import QgsGui
+from qgis.PyQt import sip
+from qgis.PyQt.QtCore import Qt
+from qgis.PyQt.QtTest import QTest
+from qgis.PyQt.QtWidgets import QApplication, QDialogButtonBox, QPushButton, QWidget
+
+LANGUAGE = Path(__file__).parents[1] / "language"
+ROW = 12
+"""Pixels that parts of one row may be apart in height."""
+
+
+# --- the menu ---
+
+
+def letter_of(text):
+    return text[text.index("&") + 1].casefold() if "&" in text else None
+
+
+def test_every_action_is_in_the_menu_and_in_qgis_list_of_shortcuts(plugin, iface):
+    listed = {action.objectName() for action in QgsGui.shortcutsManager().listActions()}
+    entries = {action.objectName() for action in iface.plugins.actions()}
+    assert {action.objectName() for action in plugin.window.actions.all()} <= entries
+    assert plugin.window.actions.clear_emergency.objectName() in entries
+    # Its keys are its own: nobody can take them away.
+    assert entries - listed == {"fleet_emergency_stop"}
+    assert set(KEYS) <= entries
+    assert all(action.toolTip() for action in iface.plugins.actions())
+
+
+def test_no_two_entries_have_the_same_letter_key_or_name(plugin, iface):
+    actions = iface.plugins.actions()
+    texts = [action.text() for action in actions]
+    letters = [letter for letter in map(letter_of, texts) if letter]
+    assert len(letters) == len(set(letters)) >= 20
+    assert len({text.replace("&", "") for text in texts}) == len(texts)
+    keys = [key.toString() for action in actions for key in action.shortcuts()]
+    assert len(keys) == len(set(keys)) >= len(KEYS)
+
+
+def test_what_has_no_key_has_a_letter(plugin, iface):
+    without_key = [one.text() for one in iface.plugins.actions() if one.shortcut().isEmpty()]
+    assert [text for text in without_key if "&" not in text] == []
+
+
+def test_letters_stay_unique_when_an_entry_changes_its_text(plugin, iface):
+    connect = plugin.window.actions.connect
+    connect.setText("Disconnect")
+    letters = [letter_of(one.text()) for one in iface.plugins.actions() if "&" in one.text()]
+    assert len(letters) == len(set(letters))
+    assert connect.text().replace("&", "") == "Disconnect"
+
+
+def test_buttons_show_no_letters(plugin):
+    dock = plugin.window.dock
+    for name in ("fleet_abort_all_button", "fleet_emergency_stop_button", "fleet_connect_button"):
+        assert "&" not in dock.findChild(QWidget, name).text()
+
+
+def test_letters_go_round_by_giving_way():
+    assert with_letters(["ab", "a", "b c"]) in (["a&b", "&a", "b &c"], ["&ab", "a", "&b c"])
+    given = with_letters(["ab", "a", "b c"])
+    assert sum("&" in text for text in given) == 3
+    assert with_letters(["ő", "ő"]) == ["&ő", "ő"]
+    assert with_letters(["…"]) == ["…"]
+
+
+def test_an_emergency_stop_that_is_not_in_force_cannot_be_cleared_and_that_is_said(plugin, iface):
+    plugin.window.actions.clear_emergency.trigger()
+    assert any("No emergency stop is in force." in text for text in iface.texts())
+
+
+# --- dialogs ---
+
+
+@pytest.fixture
+def dialogs(plugin, iface):
+    """Every dialog of the plugin by its name, open one after the other."""
+    sys.path.insert(0, str(LANGUAGE))
+    import desk_in_words
+
+    def opened():
+        for name, dialog in desk_in_words.dialogs(iface, plugin.window):
+            dialog.open()
+            QApplication.processEvents()
+            yield name, dialog
+            if not sip.isdeleted(dialog):
+                dialog.close()
+                dialog.deleteLater()
+
+    yield opened
+    sys.path.remove(str(LANGUAGE))
+
+
+def test_esc_closes_every_dialog(dialogs):
+    for name, dialog in dialogs():
+        QTest.keyClick(dialog.focusWidget() or dialog, Qt.Key.Key_Escape)
+        assert sip.isdeleted(dialog) or not dialog.isVisible(), name
+
+
+def defaults_of(dialog):
+    return [button.objectName() for button in dialog.findChildren(QPushButton) if button.isDefault()]
+
+
+def test_enter_has_one_meaning_in_every_dialog(dialogs):
+    for name, dialog in dialogs():
+        if dialog.findChildren(QPushButton):
+            assert len(defaults_of(dialog)) == 1, (name, defaults_of(dialog))
+
+
+def test_enter_does_not_let_robots_go(dialogs):
+    """What stops robots or lets them go by a slip of the hand is not behind Enter."""
+    found = dict.fromkeys(("clear", "override"))
+    for name, dialog in dialogs():
+        if name in found:
+            found[name] = defaults_of(dialog)[0]
+            if name == "override":
+                assert not dialog.findChild(QPushButton, "fleet_override_confirm").isEnabled()
+    assert found["clear"] == "fleet_clear_keep"
+
+
+def test_tab_goes_through_every_dialog_from_top_to_bottom(dialogs):
+    for name, dialog in dialogs():
+        parts = tab_order(dialog)
+        places = [part.mapTo(dialog, part.rect().center()) for part in parts]
+        for k, (here, there) in enumerate(pairwise(places)):
+            on = there.y() >= here.y() - ROW and (there.y() > here.y() + ROW or there.x() >= here.x())
+            # The buttons at the foot are in the platform's order.
+            at_foot = all(isinstance(part.parentWidget(), QDialogButtonBox) for part in parts[k : k + 2])
+            assert on or at_foot, (name, called(parts[k]), called(parts[k + 1]))
+
+
+def tab_order(dialog):
+    """What Tab reaches, from the top, as the dialog leads through it."""
+    chain, part = [], dialog.nextInFocusChain()
+    while part is not dialog:
+        reached = part.focusPolicy() & Qt.FocusPolicy.TabFocus and part.isVisible() and part.isEnabled()
+        if reached and part.window() is dialog and part.focusProxy() is None:
+            chain.append(part)
+        part = part.nextInFocusChain()
+    heights = [part.mapTo(dialog, part.rect().center()).y() for part in chain]
+    top = heights.index(min(heights)) if heights else 0
+    return chain[top:] + chain[:top]
+
+
+def called(part):
+    return part.objectName() or type(part).__name__
