@@ -116,20 +116,25 @@ class LayoutDimensions(QDialog):
         self.left.emit()
 
     def _field(self, one: Dimension) -> NumberField | QComboBox:
-        if one.choices:
-            field = QComboBox()
-            for choice in one.choices:
-                field.addItem(f"{choice:g}", choice)
-            field.currentIndexChanged.connect(self._edited)
-        else:
-            field = _number("", f" {one.unit}" if one.unit else "")
-            field.setDecimals(0 if one.whole else 4)
-            field.setClearValue(one.standard)
-            field.valueChanged.connect(self._edited)
+        field = self._choice(one) if one.choices else self._number(one)
         field.setObjectName(f"fleet_layout_{one.name}")
         field.setFixedWidth(_WIDTH)
         unit = f" {one.unit}" if one.unit else ""
         field.setToolTip(tr("Standard: {value}", value=f"{one.standard:g}{unit}"))
+        return field
+
+    def _choice(self, one: Dimension) -> QComboBox:
+        field = QComboBox()
+        for choice in one.choices:
+            field.addItem(f"{choice:g}", choice)
+        field.currentIndexChanged.connect(self._edited)
+        return field
+
+    def _number(self, one: Dimension) -> NumberField:
+        field = _number("", f" {one.unit}" if one.unit else "")
+        field.setDecimals(0 if one.whole else 4)
+        field.setClearValue(one.standard)
+        field.valueChanged.connect(self._edited)
         return field
 
     def _fill(self, layout: Layout) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from qgis.core import QgsMapLayer, QgsMapLayerStyle, QgsProject
+from qgis.core import QgsLayerTreeGroup, QgsMapLayer, QgsMapLayerStyle, QgsProject
 from qgis.PyQt.QtCore import QObject
 from qgis.PyQt.QtXml import QDomDocument, QDomElement, QDomNode
 
@@ -67,7 +67,8 @@ class LiveLayers(QObject):
             group = node.parent() if node is not None else None
             self._project.removeMapLayer(layer.id())
             if group is not None and group.parent() is not None and not group.children():
-                group.parent().removeChildNode(group)
+                above: QgsLayerTreeGroup = group.parent()
+                above.removeChildNode(group)
         self._project.setDirty(was_dirty)
 
 

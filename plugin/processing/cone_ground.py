@@ -8,9 +8,9 @@ from collections.abc import Sequence
 import numpy as np
 from qgis.core import (
     QgsCoordinateReferenceSystem,
-    QgsFeedback,
     QgsGeometry,
     QgsProcessing,
+    QgsProcessingFeedback,
     QgsProcessingParameterDefinition,
     QgsProcessingParameterMultipleLayers,
     QgsProcessingParameterNumber,
@@ -163,7 +163,7 @@ def _parts(geometry: QgsGeometry, name: str) -> tuple[list[Shape], list[str]]:
     ], notes
 
 
-def _say(findings: Sequence[Finding], unchecked: bool, feedback: QgsFeedback) -> None:
+def _say(findings: Sequence[Finding], unchecked: bool, feedback: QgsProcessingFeedback) -> None:
     if unchecked:
         feedback.pushInfo(
             tr("No layer of surfaces is given: whether the cones stand on the road is not checked.")

@@ -64,6 +64,6 @@ class PlacedMap:
                     error=error,
                 )
             ) from error
-        wkb = bytes(line.asWkb())
+        wkb = line.asWkb().data()
         # 9 bytes come first: byte order, geometry type, number of points.
         return np.frombuffer(wkb, ("<" if wkb[0] else ">") + "f8", offset=9).reshape(-1, 2)

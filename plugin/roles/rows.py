@@ -34,7 +34,7 @@ _CHOICES = {
 class RoleRow:
     """A layer and what the dialog says it is; id and name can be asked for when the layer is gone."""
 
-    layer: QgsMapLayer
+    layer: QgsRasterLayer | QgsVectorLayer
     layer_id: str
     name: str
     setup: LayerSetup

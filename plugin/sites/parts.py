@@ -62,7 +62,7 @@ def _points(curve: QgsCurve) -> np.ndarray:
     line = curve.curveToLine()
     line.dropZValue()
     line.dropMValue()
-    wkb = bytes(line.asWkb())
+    wkb = line.asWkb().data()
     order = "<" if wkb[:1] == b"\x01" else ">"
     # 9 bytes come first: byte order, geometry type, number of points.
     return np.frombuffer(wkb, order + "f8", offset=9).reshape(-1, 2).astype(np.float64)

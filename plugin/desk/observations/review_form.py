@@ -44,7 +44,7 @@ class ReviewForm(QWidget):
         self.semantics.setObjectName("fleet_observation_semantics")
         self.semantics.setEditable(True)
         self.semantics.lineEdit().setMaxLength(ReviewObservation.texts["semantics"])
-        self.height = _metres("fleet_observation_height", 1000.0)
+        self.height_m = _metres("fleet_observation_height", 1000.0)
         self.radius = _metres("fleet_observation_radius", 50.0)
         self.reason = QLineEdit()
         self.reason.setObjectName("fleet_observation_reason")
@@ -73,7 +73,7 @@ class ReviewForm(QWidget):
         )
         self._report = report
         is_object = report is not None and report.media_type is None
-        for field in (self.semantics, self.height, self.radius):
+        for field in (self.semantics, self.height_m, self.radius):
             field.setEnabled(is_object)
         self.reason.setEnabled(report is not None)
         for button in (self.accept, self.reject):
@@ -85,7 +85,7 @@ class ReviewForm(QWidget):
         self.semantics.clear()
         self.semantics.addItems(list(dict.fromkeys([*words, *WORDS])))
         self.semantics.setEditText(((report.semantics or report.label) if report else "") or "")
-        self.height.setValue((report.height if report else None) or 0.0)
+        self.height_m.setValue((report.height if report else None) or 0.0)
         self.radius.setValue((report.radius if report else None) or 0.0)
         self.reason.setText((report.reason if report else "") or "")
 
@@ -98,7 +98,7 @@ class ReviewForm(QWidget):
         if accept and report.media_type is None:
             details = {
                 "semantics": self.semantics.currentText().strip() or None,
-                "height": self.height.value() or None,
+                "height": self.height_m.value() or None,
                 "radius": self.radius.value() or None,
             }
         reason = self.reason.text().strip() or None
@@ -115,7 +115,7 @@ class ReviewForm(QWidget):
         form = QFormLayout()
         form.setContentsMargins(0, 0, 0, 0)
         form.addRow(tr("It is a"), self.semantics)
-        form.addRow(tr("Height"), self.height)
+        form.addRow(tr("Height"), self.height_m)
         form.addRow(tr("Radius"), self.radius)
         form.addRow(tr("Reason"), self.reason)
         top = QHBoxLayout()

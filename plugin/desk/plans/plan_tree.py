@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from qgis.PyQt.QtCore import Qt, pyqtSignal
-from qgis.PyQt.QtGui import QColor, QIcon, QKeyEvent, QPixmap
+from qgis.PyQt.QtCore import QPoint, Qt, pyqtSignal
+from qgis.PyQt.QtGui import QColor, QDropEvent, QIcon, QKeyEvent, QPixmap
 from qgis.PyQt.QtWidgets import QAbstractItemView, QMenu, QTreeWidget, QTreeWidgetItem, QWidget
 
 from ....robot_bridge.assignment.plan import Plan
@@ -75,9 +75,9 @@ class PlanTree(QTreeWidget):
         else:
             super().keyPressEvent(event)
 
-    def dropEvent(self, event) -> None:
+    def dropEvent(self, event: QDropEvent) -> None:
         """Ask for the cone that is dragged to be where it is dropped; nothing is moved here."""
-        onto = self.itemAt(event.pos())
+        onto = self.itemAt(_place(event))
         below = self.dropIndicatorPosition() != QAbstractItemView.DropIndicatorPosition.AboveItem
         target = self._target()
         event.setDropAction(Qt.DropAction.IgnoreAction)
@@ -178,6 +178,13 @@ def _robot_in_words(rows: list[StopRow], lost: bool) -> str:
         else tr("{cones} cones", cones=len(cones))
     )
     return tr("LOST, {text}", text=text) if lost else text
+
+
+def _place(event: QDropEvent) -> QPoint:
+    """Return where in the view ``event`` happens; Qt 6 has no pos(), and Qt 5 no position()."""
+    if hasattr(event, "position"):
+        return event.position().toPoint()
+    return event.pos()  # type: ignore[attr-defined]
 
 
 def _swatch(colour: str) -> QIcon:

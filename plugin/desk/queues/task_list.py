@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from qgis.PyQt.QtCore import QAbstractTableModel, QMimeData, QModelIndex, Qt, pyqtSignal
-from qgis.PyQt.QtGui import QFont
+from qgis.PyQt.QtGui import QFont, QKeyEvent
 from qgis.PyQt.QtWidgets import QAbstractItemView, QHeaderView, QTreeView, QWidget
 
 from ....robot_bridge.messages import TaskReport, TaskState
@@ -145,7 +145,7 @@ class TaskList(QTreeView):
         rows = self.selectionModel().selectedRows()
         return self.tasks.tasks[rows[0].row()].task if rows else None
 
-    def keyPressEvent(self, event) -> None:
+    def keyPressEvent(self, event: QKeyEvent) -> None:
         task = self.chosen
         keys = Qt.Key
         if task is None:

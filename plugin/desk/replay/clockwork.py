@@ -29,7 +29,9 @@ class Clockwork(QObject):
         super().__init__(parent)
         known = canvas.temporalController()
         self._own = not isinstance(known, QgsTemporalNavigationObject)
-        self.controller = QgsTemporalNavigationObject(self) if self._own else known
+        self.controller: QgsTemporalNavigationObject = (
+            QgsTemporalNavigationObject(self) if self._own else known
+        )
         self._mode = self.controller.navigationMode()
         self._speed = 1.0
         self.since = self.until = self.moment = 0.0

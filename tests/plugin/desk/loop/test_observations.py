@@ -107,7 +107,7 @@ def test_an_accepted_object_is_in_the_next_map_with_what_the_operator_wrote(seen
     dock.form.semantics.setFocus()
     QTest.keyClick(dock.form.semantics.lineEdit(), Qt.Key.Key_A, Qt.KeyboardModifier.ControlModifier)
     QTest.keyClicks(dock.form.semantics.lineEdit(), "litter bin")
-    dock.form.height.setValue(1.1)
+    dock.form.height_m.setValue(1.1)
     dock.form.radius.setValue(0.4)
     click(dock.form.accept)
     operator.wait(
@@ -147,7 +147,7 @@ def test_a_rejected_object_is_on_no_map_and_a_review_can_be_revised(seen, dock, 
 def test_an_image_is_reviewed_without_attributes(seen, dock, operator):
     number = seen["SendImage"].observation
     choose(dock, number)
-    assert not dock.form.height.isEnabled()
+    assert not dock.form.height_m.isEnabled()
     click(dock.form.accept)
     operator.wait(
         "the review", lambda: operator.desk.observations.get(number).state is ObservationState.ACCEPTED, 5
