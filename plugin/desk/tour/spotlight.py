@@ -6,7 +6,7 @@ from qgis.PyQt.QtCore import QPoint, QRect, Qt, QTimer
 from qgis.PyQt.QtGui import QColor, QPainter, QPaintEvent, QPen
 from qgis.PyQt.QtWidgets import QWidget
 
-LOOK_MS = 200
+LOOK_MS = 50
 """How often it looks whether its widget has moved: docks are dragged and tabs are changed."""
 MARGIN = 4
 COLOUR = QColor("#FF8F00")
