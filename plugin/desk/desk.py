@@ -59,6 +59,8 @@ class Desk(QObject):
     """What became of an order: the Answer."""
     failed = pyqtSignal(str)
     """Something that was asked for was not done: the text must not go unseen."""
+    settled = pyqtSignal(str)
+    """What ``failed`` told with this text is over: it need not hang there any longer."""
     complained = pyqtSignal(str)
     """A text that the operator needs in order to go on."""
     remarked = pyqtSignal(str)

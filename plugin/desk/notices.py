@@ -40,6 +40,11 @@ class Notices(QObject):
         """Return what hangs there now."""
         return list(self._shown)
 
+    def take_down(self, text: str) -> None:
+        """Take down a text that is over; one that does not hang there is passed over."""
+        if text in self._shown:
+            self._bar.popWidget(self._shown[text])
+
     def withdraw(self) -> None:
         """Take down whatever still hangs there."""
         self._bar.widgetRemoved.disconnect(self._removed)

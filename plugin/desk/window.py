@@ -117,6 +117,7 @@ class DeskWindow(QObject):
         self.dock.table.zoom_wanted.connect(self.view.zoom_to)
         self.dock.log.place_wanted.connect(self.view.show_place)
         desk.failed.connect(self.notices.error)
+        desk.settled.connect(self.notices.take_down)
         desk.complained.connect(self.notices.warning)
         desk.link_changed.connect(self._show_link)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import uuid
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from qgis.core import QgsApplication
@@ -20,6 +20,7 @@ from ....robot_bridge.sites.frame import SiteFrame
 from ...errors import FleetError, PlacementError
 from ...language import tr
 from ..desk import Desk
+from .closed_ways import ClosedWay, closed_ways
 from .cone_source import ConeFacts, read_cones, read_stores
 from .near_meetings import Meeting, meetings
 from .plan_task import PlanTask, Work
@@ -40,6 +41,8 @@ class Draft:
     facts: Mapping[str, ConeFacts]
     name: str
     meetings: tuple[Meeting, ...] = field(default=())
+    closed: tuple[ClosedWay, ...] = field(default=())
+    """Ways along roads that are closed at the gateway, which would not take them."""
 
 
 class DraftPlan(QObject):
@@ -55,6 +58,7 @@ class DraftPlan(QObject):
         self.settings: PlanSettings = settings_in(desk.project)
         self.draft: Draft | None = None
         self.task: PlanTask | None = None
+        desk.roads.closures_changed.connect(self.look_at_closures)
 
     @property
     def busy(self) -> bool:
@@ -121,8 +125,18 @@ class DraftPlan(QObject):
             task.left.wait(10.0)
 
     def judged(self, plan: Plan, of: Draft) -> Draft:
-        """Return ``plan`` on the ground of ``of``, with the places where robots come too near each other."""
-        return Draft(plan, of.ways, of.facts, of.name, tuple(meetings(plan, self.settings.apart_m)))
+        """Return ``plan`` on the ground of ``of``, with where robots come too near each other, and what of it
+        leads along closed roads."""
+        near = tuple(meetings(plan, self.settings.apart_m))
+        return Draft(plan, of.ways, of.facts, of.name, near, closed_ways(plan, self._desk.roads.closures))
+
+    def look_at_closures(self) -> None:
+        """Find out anew what of the plan leads along closed roads."""
+        if self.draft is not None:
+            closed = closed_ways(self.draft.plan, self._desk.roads.closures)
+            if closed != self.draft.closed:
+                self.draft = replace(self.draft, closed=closed)
+                self.changed.emit()
 
     def _make(self, targets, facts: dict[str, ConeFacts], frame: SiteFrame, preview: bool) -> None:
         stores = read_stores(self._desk.project, self.settings, frame)
@@ -134,6 +148,7 @@ class DraftPlan(QObject):
         ways = PlanWays(self._desk.project, frame, self.settings)
         ways.standing = self._standing({one.placement for one in facts.values()})
         blank = Draft(Plan((), (), (), "", "", "", ""), ways, facts, uuid.uuid4().hex)
+        ways.closures = self._desk.roads.closures
         self.run(
             tr("Preview of the cone plan") if preview else tr("Cone plan"),
             lambda told: assign(job, ways.travel_of(job), wanted, told),
@@ -144,6 +159,7 @@ class DraftPlan(QObject):
         draft = self.draft
         if draft is not None:
             title = tr("Change of the cone plan")
+            draft.ways.closures = self._desk.roads.closures
             self.run(title, lambda told: change(draft), lambda plan: self._put(plan, draft))
 
     def _put(self, plan: Plan, of: Draft) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from qgis.PyQt.QtCore import QObject, pyqtSignal
@@ -16,8 +17,9 @@ from ...errors import FleetError
 from ...language import tr
 from ..desk import Desk
 from ..placement_book import MOST_ASKED
+from .closed_ways import closed_ways
 from .draft_plan import Draft, DraftPlan, PlanningError
-from .progress import Progress, Trouble, cones_under_way, situation_of, trouble_of
+from .progress import Progress, Trouble, behind, cones_under_way, situation_of, trouble_of
 from .sending import (
     Sending,
     Step,
@@ -43,6 +45,8 @@ class DrivenPlan(QObject):
     """Something new is known of the plan that is driven."""
     failed = pyqtSignal(str)
     remarked = pyqtSignal(str)
+    settled = pyqtSignal(str)
+    """What ``failed`` told with this text is over."""
 
     def __init__(self, desk: Desk, drafts: DraftPlan, parent: QObject | None = None):
         super().__init__(parent)
@@ -57,6 +61,8 @@ class DrivenPlan(QObject):
         self.held: dict[str, float | None] = {}
         """Robots that wait for the new plan, with the time since which their queues are paused for that."""
         self._dealt_with = Trouble()
+        self._complaints: list[str] = []
+        desk.roads.closures_changed.connect(self._take_closures)
         desk.queues_changed.connect(self._take_queues)
         desk.placements_changed.connect(self._take_placements)
         desk.link_changed.connect(self._ask_for_placements)
@@ -80,6 +86,7 @@ class DrivenPlan(QObject):
         self._note(draft.plan, tasks)
         self.driven, self.offer, self.held = draft, None, {}
         self.trouble = self._dealt_with = Trouble()
+        self._settle()
         self._start(first_steps(self._desk, tasks), self._sent)
 
     def plan_rest(self, *, try_again: bool = False) -> None:
@@ -142,6 +149,7 @@ class DrivenPlan(QObject):
         self._note(offer.plan, tasks)
         held, self.held = self.held, {}
         self.driven, self.offer = offer, None
+        self._settle()
         self._start(later_steps(self._desk, tasks, away, held, tr("its robot is lost")), self._sent)
 
     def discard(self) -> None:
@@ -154,6 +162,7 @@ class DrivenPlan(QObject):
         """Watch no plan any more; robots go on with what is in their queues."""
         self.driven = self.progress = self.offer = None
         self.trouble, self.held = Trouble(), {}
+        self._settle()
         self.changed.emit()
 
     # --- what becomes of it ---
@@ -167,6 +176,7 @@ class DrivenPlan(QObject):
                 if view.name in trouble.away:
                     standing.append(places[view.name])
         standing += [(one.x, one.y) for one in progress.placed.values() if one.collected_at is None]
+        driven.ways.closures = self._desk.roads.closures
         driven.ways.standing = np.array([*driven.ways.standing, *standing], dtype=float).reshape(-1, 2)
         now = situation_of(driven.plan, progress, places, trouble, time.time(), try_again=try_again)
         wanted = Wanted(driven.plan.objective, time_limit_s=min(self._drafts.settings.seconds, _REPLANNING_S))
@@ -179,7 +189,7 @@ class DrivenPlan(QObject):
     def _offer(self, offer: Draft) -> None:
         self.offer = offer
         self.changed.emit()
-        if self._drafts.settings.by_itself and not offer.meetings:
+        if self._drafts.settings.by_itself and not offer.meetings and not offer.closed:
             why = self._dealt_with.in_words()
             self.remarked.emit(tr("A new plan is sent by itself, as you switched on: {why}", why=why))
             # What made the plan is still telling of it.
@@ -212,18 +222,30 @@ class DrivenPlan(QObject):
                 self.progress.take_placement(report)
         self._look()
 
+    def _take_closures(self) -> None:
+        """Find out anew which ways are closed, of the plan that is driven and of the one that is offered."""
+        if self.progress is None or self.driven is None:
+            return
+        closures = self._desk.roads.closures
+        self.driven = replace(self.driven, closed=closed_ways(self.driven.plan, closures))
+        if self.offer is not None:
+            self.offer = replace(self.offer, closed=closed_ways(self.offer.plan, closures))
+        self._look()
+
     def _look(self) -> None:
         """Find out what is wrong, and tell of what was not wrong before."""
-        before, self.trouble = (
-            self.trouble,
-            trouble_of(self.driven.plan, self.progress, {one.robot: one for one in self._desk.queues}),
-        )
+        plan, queues = self.driven.plan, {one.robot: one for one in self._desk.queues}
+        made = behind(self.progress)
+        closed = tuple(one for one in self.driven.closed if not any(one.at is stop for stop in made))
+        before, self.trouble = self.trouble, trouble_of(plan, self.progress, queues, closed)
         self.changed.emit()
+        if not self.trouble:
+            self._settle()
         if not self.trouble or self.trouble == self._dealt_with:
             return
         if self.trouble != before:
             why = self.trouble.in_words()
-            self.failed.emit(tr("The cone plan cannot go on as it is: {why}. Plan what is left.", why=why))
+            self._complain(tr("The cone plan cannot go on as it is: {why}. Plan what is left.", why=why))
         if self._drafts.settings.by_itself and self.offer is None and not self.busy:
             # Tried once: what cannot be planned is told once, and is the operator's from then on.
             self._dealt_with = self.trouble
@@ -231,6 +253,17 @@ class DrivenPlan(QObject):
                 self.plan_rest()
             except FleetError as error:
                 self.failed.emit(str(error))
+
+    def _complain(self, text: str) -> None:
+        """Tell what a new plan is to mend: it hangs there until one was agreed to, and no longer."""
+        self._settle()
+        self._complaints.append(text)
+        self.failed.emit(text)
+
+    def _settle(self) -> None:
+        for text in self._complaints:
+            self.settled.emit(text)
+        self._complaints.clear()
 
     def _ask_for_placements(self) -> None:
         """Ask for what was put down while this desk was not connected."""

@@ -102,6 +102,8 @@ class DrivingBar(QWidget):
         parts = [meeting.in_words() for meeting in near[:3]]
         if len(near) > 3:
             parts.append(tr("and {more} more", more=len(near) - 3))
+        if shown is not None and (driven.driven is None or driven.offer):
+            parts = [*(one.in_words() for one in shown.closed[:3]), *parts]
         if driven.trouble and driven.offer is None:
             parts.insert(0, driven.trouble.in_words())
         return "; ".join(parts)

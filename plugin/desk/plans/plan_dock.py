@@ -236,6 +236,7 @@ class PlanDock(QgsDockWidget):
         self.drafts.refused.connect(desk.failed)
         self.driven.failed.connect(desk.failed)
         self.driven.remarked.connect(desk.remarked)
+        self.driven.settled.connect(desk.settled)
         self.collecting.refused.connect(desk.complained)
         self.placed.refresh_wanted.connect(self._ask_for_placements)
         self.placed.collect_wanted.connect(self.collect)

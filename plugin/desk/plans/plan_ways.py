@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import numpy.typing as npt
 from qgis.core import (
@@ -15,7 +17,9 @@ from qgis.core import (
 from ....robot_bridge.assignment.job import Job
 from ....robot_bridge.assignment.road_travel import RoadTravel
 from ....robot_bridge.assignment.travel import StraightTravel, Travel
+from ....robot_bridge.messages import ClosureReport
 from ....robot_bridge.roads.centrelines import centrelines
+from ....robot_bridge.roads.closures import edges_of_closure
 from ....robot_bridge.roads.network import build_network
 from ....robot_bridge.roads.routes import Router
 from ....robot_bridge.sites.frame import SiteFrame
@@ -36,12 +40,15 @@ class PlanWays:
     """The ground of one plan; made in the window's thread, used by one task after the other.
 
     ``standing`` (n, 2) is what stands beside the plan's own cones: cones of before, robots that are lost.
+    ``closures`` are the roads that are closed at the gateway; both hold for the next plan that is made.
     """
 
     def __init__(self, project: QgsProject, frame: SiteFrame, settings: PlanSettings) -> None:
         self.settings = settings
         self.standing: Floats = np.empty((0, 2))
+        self.closures: Sequence[ClosureReport] = ()
         self._router: Router | None = None
+        self._shut: set[int] = set()
         self._read = not settings.on_roads
         crs = stated_crs(QgsCoordinateReferenceSystem(frame.crs))
         self._site = SitePlacing(crs, frame, project.transformContext())
@@ -75,7 +82,18 @@ class PlanWays:
         if not self._read:
             self._read = True
             self._router = self._network()
+        if self._router is not None:
+            self._close(self._router)
         return self._router
+
+    def _close(self, router: Router) -> None:
+        """Close what is closed at the gateway, and open what is not any more."""
+        lines = [(np.array(one.line, dtype=float), one.level) for one in self.closures]
+        wanted = {edge for line in lines for edge in edges_of_closure(router.nearest, *line).tolist()}
+        always = set(np.flatnonzero(router.closed).tolist()) - self._shut
+        router.open(sorted(self._shut - wanted))
+        router.close(sorted(wanted - self._shut - always))
+        self._shut = wanted - always
 
     def _network(self) -> Router | None:
         feedback = QgsFeedback()

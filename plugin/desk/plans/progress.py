@@ -6,10 +6,11 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 
 from ....robot_bridge.assignment.job import Robot
-from ....robot_bridge.assignment.plan import Plan
+from ....robot_bridge.assignment.plan import Plan, Stop
 from ....robot_bridge.assignment.replanning import Situation
 from ....robot_bridge.messages import PlacementReport, QueueReport, RobotState, TaskReport, TaskState
 from ...language import tr
+from .closed_ways import ClosedWay
 from .cone_source import ConeFacts
 from .task_rows import SentStop
 
@@ -97,13 +98,14 @@ class Progress:
 
 @dataclass(frozen=True)
 class Trouble:
-    """Why a plan does not go on as it is: robots that are away, and cones that failed, with why."""
+    """Why a plan does not go on as it is: robots that are away, cones that failed, with why, closed roads."""
 
     away: tuple[str, ...] = ()
     failed: tuple[tuple[str, str], ...] = ()
+    closed: tuple[ClosedWay, ...] = ()
 
     def __bool__(self) -> bool:
-        return bool(self.away or self.failed)
+        return bool(self.away or self.failed or self.closed)
 
     def in_words(self) -> str:
         """Return what happened, for the operator."""
@@ -116,11 +118,15 @@ class Trouble:
             )
             for cone, why in self.failed
         ]
+        parts += [one.in_words() for one in self.closed]
         return "; ".join(parts)
 
 
-def trouble_of(plan: Plan, progress: Progress, queues: Mapping[str, QueueReport]) -> Trouble:
-    """Return what is wrong: a robot with cones to come that is away, a cone of this plan that failed."""
+def trouble_of(
+    plan: Plan, progress: Progress, queues: Mapping[str, QueueReport], closed: tuple[ClosedWay, ...] = ()
+) -> Trouble:
+    """Return what is wrong: a robot with cones to come that is away, a cone of this plan that failed, a
+    way that is ``closed``."""
     away, failed = [], []
     for one in plan.robots:
         if one.lost:
@@ -134,7 +140,7 @@ def trouble_of(plan: Plan, progress: Progress, queues: Mapping[str, QueueReport]
             for target in left
             if progress.state_of(target) in (TaskState.FAILED, TaskState.SKIPPED)
         ]
-    return Trouble(tuple(away), tuple(failed))
+    return Trouble(tuple(away), tuple(failed), closed)
 
 
 def situation_of(
@@ -177,6 +183,11 @@ def current_tasks(progress: Progress) -> dict[str, str]:
         for task, one in progress.stops.items()
         if task in progress.reports and progress.reports[task].state is TaskState.CURRENT
     }
+
+
+def behind(progress: Progress) -> list[Stop]:
+    """Return the stops that robots have made or are on their way to: the gateway leads them on itself."""
+    return [one.stop for task, one in progress.stops.items() if _is_behind(progress, task)]
 
 
 def cones_under_way(progress: Progress) -> set[str]:

@@ -28,6 +28,7 @@ def before_sending(desk: Desk, draft: Draft) -> str:
         for one in driving
     ]
     doubts = [doubt for one in driving for doubt in _doubts(desk, one.robot)]
+    doubts += [one.in_words() for one in draft.closed]
     doubts += [meeting.in_words() for meeting in draft.meetings]
     if doubts:
         lines += ["", tr("Mind:"), *(f"• {doubt}" for doubt in doubts)]

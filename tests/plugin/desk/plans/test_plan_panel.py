@@ -6,10 +6,18 @@ from dataclasses import replace
 
 import pytest
 from fleet_supervisor.plugin.desk.cone_store import ConeStore
+from fleet_supervisor.plugin.sites.roles import ROAD_CENTRELINE, set_role
 from fleet_supervisor.plugin.wire.outbox import Answer, Order
 from fleet_supervisor.robot_bridge.layouts.cone import Cone
 from fleet_supervisor.robot_bridge.messages import to_json
-from qgis.core import QgsCoordinateReferenceSystem, QgsProject
+from qgis.core import (
+    QgsCoordinateReferenceSystem,
+    QgsFeature,
+    QgsGeometry,
+    QgsPointXY,
+    QgsProject,
+    QgsVectorLayer,
+)
 from qgis.PyQt.QtCore import QEvent, QMimeData, QPointF, Qt
 from qgis.PyQt.QtGui import QDropEvent
 from qgis.PyQt.QtTest import QTest
@@ -401,3 +409,106 @@ def test_another_project_switches_off_what_is_sent_by_itself(panel, tmp_path):
     assert QgsProject().write(other)
     assert QgsProject.instance().read(other)
     assert not panel.bar.by_itself.isChecked() and not panel.drafts.settings.by_itself
+
+
+# --- closed roads ----------------------------------------------------------------------------------------
+
+
+def put_road(*points):
+    road = QgsVectorLayer("LineString?crs=EPSG:32633&field=width_m:double", "Roads", "memory")
+    feature = QgsFeature(road.fields())
+    feature.setGeometry(QgsGeometry.fromPolylineXY([QgsPointXY(E + x, N + y) for x, y in points]))
+    road.dataProvider().addFeatures([feature])
+    set_role(road, ROAD_CENTRELINE)
+    QgsProject.instance().addMapLayer(road)
+
+
+def closing(*lines):
+    reports = [
+        {"closure": f"closure-{k}", "line": line, "closed_at": 1.0, "closed_by": "bert", "reason": "tree"}
+        for k, line in enumerate(lines)
+    ]
+    return {"closures": reports}
+
+
+def way_to(plan, cone):
+    (path,) = [stop.path for _, stop in plan.all_stops() if stop.id == cone]
+    return path
+
+
+@pytest.fixture
+def far_cones(panel, gateway, wait):
+    """Two roads lead from r1 to a cone far off: a short one along y = 40, and one round by y = 90."""
+    put_road((45, 40), (60, 40))
+    put_road((60, 40), (200, 40))
+    put_road((45, 40), (45, 90), (200, 90), (200, 40))
+    layer = put_cones((200, 41), layout="far")
+    layer.selectByExpression("\"layout\" = 'far'")
+    panel.form.selected_only.setChecked(True)
+    settings = panel.drafts.settings
+    panel.drafts.settings = settings.with_robot("r2", replace(settings.of_robot("r2"), used=False))
+    return panel
+
+
+SHORT = [[60.0, 40.0], [200.0, 40.0]]
+
+
+def test_a_plan_is_made_round_the_roads_that_are_closed_at_the_gateway(far_cones, gateway, wait):
+    straight = way_to(planned(far_cones, wait), "far-1")
+    assert max(y for _, y in straight) < 50
+    assert far_cones.bar.trouble.text() == ""
+    gateway.tell("closures", closing(SHORT))
+    wait(lambda: "leads along a road that bert closed (tree)" in far_cones.bar.trouble.text(), 5)
+    text = question(far_cones).text()
+    assert "to far-1 leads along a road that bert closed (tree)" in text
+    answer(far_cones.question, send=False)
+    round_it = way_to(planned(far_cones, wait), "far-1")
+    assert max(y for _, y in round_it) > 85
+    assert far_cones.bar.trouble.text() == ""
+    gateway.tell("closures", closing())
+    wait(lambda: not far_cones._desk.roads.closures, 5)
+    assert max(y for _, y in way_to(planned(far_cones, wait), "far-1")) < 50
+
+
+def test_a_road_that_is_closed_under_a_plan_that_is_driven_is_told_until_another_is_agreed_to(
+    far_cones, gateway, wait, iface
+):
+    planned(far_cones, wait)
+    answer(question(far_cones), send=True)
+    wait(lambda: gateway.asked("set_queue") and not far_cones.driven.busy, 10)
+    gateway.tell("closures", closing(SHORT))
+    wait(lambda: far_cones.driven.trouble.closed, 5)
+
+    def told():
+        return [text for text in iface.texts() if "leads along a road that bert closed" in text]
+
+    assert len(told()) == 1
+    offered(far_cones, wait)
+    assert max(y for _, y in way_to(far_cones.driven.offer.plan, "far-1")) > 85
+    assert len(told()) == 1, "nobody has agreed yet"
+    press(far_cones, "fleet_plan_confirm")
+    wait(lambda: not far_cones.driven.busy, 10)
+    assert told() == []
+    assert far_cones.driven.trouble.closed == ()
+
+
+def test_a_road_that_is_opened_again_is_no_trouble_any_more(far_cones, gateway, wait, iface):
+    planned(far_cones, wait)
+    answer(question(far_cones), send=True)
+    wait(lambda: gateway.asked("set_queue") and not far_cones.driven.busy, 10)
+    gateway.tell("closures", closing(SHORT))
+    wait(lambda: far_cones.driven.trouble.closed, 5)
+    gateway.tell("closures", closing())
+    wait(lambda: not far_cones.driven.trouble, 5)
+    assert not any("closed" in text for text in iface.texts())
+
+
+def test_what_was_told_of_a_lost_robot_is_taken_down_when_a_new_plan_is_agreed_to(
+    under_way, gateway, wait, iface
+):
+    lose_r1(under_way, gateway, wait)
+    assert any("r1 is lost or offline" in text for text in iface.texts())
+    offered(under_way, wait)
+    press(under_way, "fleet_plan_confirm")
+    wait(lambda: not under_way.driven.busy, 10)
+    assert not any("r1 is lost or offline" in text for text in iface.texts())

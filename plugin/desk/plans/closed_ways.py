@@ -1,0 +1,73 @@
+"""Which ways of a plan lead along roads that are closed at the gateway."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+from ....robot_bridge.assignment.plan import Plan, Stop
+from ....robot_bridge.messages import ClosureReport
+from ....robot_bridge.roads.along import edges_along
+from ....robot_bridge.roads.centrelines import centrelines
+from ....robot_bridge.roads.nearest import NearestEdge
+from ....robot_bridge.roads.network import build_network
+from ...language import tr
+from ...sites.ground_reading import DEFAULT_WIDTH_M
+
+Floats = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class ClosedWay:
+    """The way of ``robot`` to ``stop`` leads along a road that ``by`` closed."""
+
+    robot: str
+    stop: str
+    by: str
+    reason: str = ""
+    at: Stop | None = field(default=None, compare=False, repr=False)
+
+    def in_words(self) -> str:
+        """Return whose way that is, and who closed the road and why."""
+        return tr(
+            "the way of {robot} to {stop} leads along a road that {by} closed{why}",
+            robot=self.robot,
+            stop=self.stop,
+            by=self.by,
+            why=f" ({self.reason})" if self.reason else "",
+        )
+
+
+def closed_ways(plan: Plan, closures: Sequence[ClosureReport]) -> tuple[ClosedWay, ...]:
+    """Return the ways of ``plan`` that lead along a closed road.
+
+    A way that only crosses one may be driven. The gateway says of closures no width, so that a road counts as
+    wide as one of which none is known.
+    """
+    if not closures:
+        return ()
+    roads = [_Road(closure) for closure in closures]
+    found = []
+    for one in plan.robots:
+        for stop in () if one.lost else one.stops:
+            path = np.array(stop.path, dtype=float)
+            road = next((road for road in roads if road.is_along(path)), None)
+            if road is not None:
+                found.append(ClosedWay(one.robot.id, stop.id, road.by, road.reason, stop))
+    return tuple(found)
+
+
+class _Road:
+    def __init__(self, closure: ClosureReport) -> None:
+        self.by, self.reason = closure.closed_by, closure.reason or ""
+        line = np.array(closure.line, dtype=float)
+        self._low, self._high = line.min(axis=0) - DEFAULT_WIDTH_M, line.max(axis=0) + DEFAULT_WIDTH_M
+        self._nearest = NearestEdge(build_network(centrelines([line], width=[DEFAULT_WIDTH_M])))
+
+    def is_along(self, path: Floats) -> bool:
+        """Tell whether ``path``, (n, 2) in the site frame, runs along the road."""
+        near = (path.min(axis=0) <= self._high).all() and (path.max(axis=0) >= self._low).all()
+        return bool(near) and len(path) > 1 and len(edges_along(self._nearest, path)) > 0
