@@ -1547,13 +1547,38 @@
         </message>
         <message>
             <location filename="../../plugin/desk/layout_action.py" />
-            <source>Place a cone layout: it is shown under the cursor, the wheel turns it (Shift: finely), a click places it, Esc ends; nothing is sent to robots</source>
-            <translation>Col·loca una disposició de cons: es mostra sota el cursor, la roda la gira (Maj: fi), un clic la col·loca, Esc acaba; no s'envia res als robots</translation>
+            <source>Place a cone layout: it is shown under the cursor, the wheel turns it (Shift: finely), a click places it, Esc ends; by keys PgUp and PgDown turn it, Enter places it, F2 leads to its dimensions. Nothing is sent to robots</source>
+            <translation>Col·loca una disposició de cons: es mostra sota el cursor, la roda la gira (Maj: finament), un clic la col·loca, Esc acaba; amb tecles, RePàg i AvPàg la giren, Retorn la col·loca, F2 porta a les seves dimensions. No s'envia res als robots</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/layout_action.py" />
             <source>Place cone layout</source>
             <translation>Col·loca una disposició de cons</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/layout_dimensions.py" />
+            <source>After: {standard}</source>
+            <translation>Segons: {standard}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/layout_dimensions.py" />
+            <source>Degrees clockwise from north; the wheel over the map turns it too</source>
+            <translation>Graus en sentit horari des del nord; la roda sobre el mapa també la gira</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/layout_dimensions.py" />
+            <source>Heading</source>
+            <translation>Rumb</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/layout_dimensions.py" />
+            <source>Reset to the standard</source>
+            <translation>Restableix la norma</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/layout_dimensions.py" />
+            <source>Standard: {value}</source>
+            <translation>Norma: {value}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/layout_tool.py" />
@@ -2029,6 +2054,11 @@
             <location filename="../../plugin/desk/plans/as_placed_page.py" />
             <source>the plan that is driven</source>
             <translation>el pla que s'executa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/closed_ways.py" />
+            <source>the way of {robot} to {stop} leads along a road that {by} closed{why}</source>
+            <translation>el camí de {robot} a {stop} passa per una via que {by} ha tancat{why}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/collecting.py" />
@@ -3714,6 +3744,11 @@
             <location filename="../../plugin/desk/window.py" />
             <source>Disconnect</source>
             <translation>Desconnecta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/window.py" />
+            <source>No emergency stop is in force.</source>
+            <translation>No hi ha cap parada d'emergència en vigor.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/window_alarms.py" />

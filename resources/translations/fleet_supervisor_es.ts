@@ -1547,13 +1547,38 @@
         </message>
         <message>
             <location filename="../../plugin/desk/layout_action.py" />
-            <source>Place a cone layout: it is shown under the cursor, the wheel turns it (Shift: finely), a click places it, Esc ends; nothing is sent to robots</source>
-            <translation>Colocar una disposición de conos: se muestra bajo el cursor, la rueda la gira (Mayús: fino), un clic la coloca, Esc termina; no se envía nada a los robots</translation>
+            <source>Place a cone layout: it is shown under the cursor, the wheel turns it (Shift: finely), a click places it, Esc ends; by keys PgUp and PgDown turn it, Enter places it, F2 leads to its dimensions. Nothing is sent to robots</source>
+            <translation>Colocar una disposición de conos: se muestra bajo el cursor, la rueda la gira (Mayús: finamente), un clic la coloca, Esc termina; con teclas, RePág y AvPág la giran, Intro la coloca, F2 lleva a sus dimensiones. No se envía nada a los robots</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/layout_action.py" />
             <source>Place cone layout</source>
             <translation>Colocar disposición de conos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/layout_dimensions.py" />
+            <source>After: {standard}</source>
+            <translation>Según: {standard}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/layout_dimensions.py" />
+            <source>Degrees clockwise from north; the wheel over the map turns it too</source>
+            <translation>Grados en sentido horario desde el norte; la rueda sobre el mapa también la gira</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/layout_dimensions.py" />
+            <source>Heading</source>
+            <translation>Rumbo</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/layout_dimensions.py" />
+            <source>Reset to the standard</source>
+            <translation>Restablecer la norma</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/layout_dimensions.py" />
+            <source>Standard: {value}</source>
+            <translation>Norma: {value}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/layout_tool.py" />
@@ -2029,6 +2054,11 @@
             <location filename="../../plugin/desk/plans/as_placed_page.py" />
             <source>the plan that is driven</source>
             <translation>el plan que se ejecuta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/closed_ways.py" />
+            <source>the way of {robot} to {stop} leads along a road that {by} closed{why}</source>
+            <translation>el camino de {robot} a {stop} pasa por una vía que {by} cerró{why}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/collecting.py" />
@@ -3714,6 +3744,11 @@
             <location filename="../../plugin/desk/window.py" />
             <source>Disconnect</source>
             <translation>Desconectar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/window.py" />
+            <source>No emergency stop is in force.</source>
+            <translation>No hay ninguna parada de emergencia en vigor.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/window_alarms.py" />

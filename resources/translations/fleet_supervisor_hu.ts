@@ -1546,13 +1546,38 @@
         </message>
         <message>
             <location filename="../../plugin/desk/layout_action.py" />
-            <source>Place a cone layout: it is shown under the cursor, the wheel turns it (Shift: finely), a click places it, Esc ends; nothing is sent to robots</source>
-            <translation>Bójaelrendezés elhelyezése: a kurzor alatt látszik, a görgő forgatja (Shift: finoman), kattintás elhelyezi, az Esc befejezi; a robotok nem kapnak semmit</translation>
+            <source>Place a cone layout: it is shown under the cursor, the wheel turns it (Shift: finely), a click places it, Esc ends; by keys PgUp and PgDown turn it, Enter places it, F2 leads to its dimensions. Nothing is sent to robots</source>
+            <translation>Bójaelrendezés elhelyezése: a kurzor alatt látszik, a görgő forgatja (Shift: finoman), kattintásra elhelyeződik, Esc-re vége; billentyűkkel a PgUp és a PgDown forgatja, az Enter elhelyezi, az F2 a méreteihez visz. A robotoknak semmi sem megy ki</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/layout_action.py" />
             <source>Place cone layout</source>
             <translation>Bójaelrendezés elhelyezése</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/layout_dimensions.py" />
+            <source>After: {standard}</source>
+            <translation>Forrás: {standard}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/layout_dimensions.py" />
+            <source>Degrees clockwise from north; the wheel over the map turns it too</source>
+            <translation>Fok északtól az óramutató járása szerint; a görgő a térkép felett is forgatja</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/layout_dimensions.py" />
+            <source>Heading</source>
+            <translation>Irány</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/layout_dimensions.py" />
+            <source>Reset to the standard</source>
+            <translation>Vissza a szabványhoz</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/layout_dimensions.py" />
+            <source>Standard: {value}</source>
+            <translation>Szabvány: {value}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/layout_tool.py" />
@@ -2028,6 +2053,11 @@
             <location filename="../../plugin/desk/plans/as_placed_page.py" />
             <source>the plan that is driven</source>
             <translation>a végrehajtás alatt lévő terv</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/closed_ways.py" />
+            <source>the way of {robot} to {stop} leads along a road that {by} closed{why}</source>
+            <translation>{robot} útja ide: {stop} olyan úton vezet, amelyet {by} lezárt{why}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/collecting.py" />
@@ -3712,6 +3742,11 @@
             <location filename="../../plugin/desk/window.py" />
             <source>Disconnect</source>
             <translation>Bontás</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/window.py" />
+            <source>No emergency stop is in force.</source>
+            <translation>Nincs érvényben vészleállítás.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/window_alarms.py" />
