@@ -1208,12 +1208,12 @@
         <message>
             <location filename="../../plugin/desk/desk.py" />
             <source>{in_words} was not sent, since only now this is known: {warnings} Ask for it again to send it all the same.</source>
-            <translation>{in_words}: no s'ha enviat, perquè només ara se sap això: {warnings} Torneu-ho a demanar per enviar-ho igualment.</translation>
+            <translation>{in_words}: no s'ha enviat, perquè fins ara no se sabia això: {warnings} Torneu-ho a demanar per enviar-ho igualment.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/desk.py" />
             <source>{in_words} was not sent: robots were told to stop before it had been checked.</source>
-            <translation>{in_words}: no s'ha enviat: s'ha dit als robots que s'aturessin abans de comprovar-ho.</translation>
+            <translation>{in_words}: no s'ha enviat, perquè s'ha ordenat aturar els robots abans d'acabar la comprovació.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/desk.py" />
@@ -1237,11 +1237,6 @@
         </message>
         <message>
             <location filename="../../plugin/desk/draft_panel.py" />
-            <source> It goes out when nothing speaks against it; Esc keeps it back.</source>
-            <translation> Surt quan no hi ha res en contra; Esc ho reté.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/draft_panel.py" />
             <source> Override… sends it all the same, where your role may.</source>
             <translation> Imposa… ho envia igualment, on el vostre paper ho permeti.</translation>
         </message>
@@ -1254,6 +1249,11 @@
             <location filename="../../plugin/desk/draft_panel.py" />
             <source>{in_words}. Being checked: {share:.0%}.</source>
             <translation>{in_words}. S'està comprovant: {share:.0%}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/draft_panel.py" />
+            <source>{in_words}. Being checked: {share:.0%}. It goes out when nothing speaks against it; Esc keeps it back.</source>
+            <translation>{in_words}. S'està comprovant: {share:.0%}. S'enviarà si res no hi va en contra; Esc ho atura.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/draft_panel.py" />
@@ -1483,7 +1483,7 @@
         <message>
             <location filename="../../plugin/desk/drafts.py" />
             <source>it has not been checked to its end</source>
-            <translation>no s'ha comprovat fins al final</translation>
+            <translation>encara no s'ha acabat de comprovar</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/drafts.py" />
@@ -1597,6 +1597,21 @@
         </message>
         <message>
             <location filename="../../plugin/desk/live/hover_card.py" />
+            <source>accuracy</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/hover_card.py" />
+            <source>battery</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/hover_card.py" />
+            <source>heading</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/hover_card.py" />
             <source>it says</source>
             <translation>diu</translation>
         </message>
@@ -1604,6 +1619,21 @@
             <location filename="../../plugin/desk/live/hover_card.py" />
             <source>last message</source>
             <translation>últim missatge</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/hover_card.py" />
+            <source>place</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/hover_card.py" />
+            <source>speed</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/hover_card.py" />
+            <source>task</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/desk/live/hover_card.py" />
@@ -2892,11 +2922,6 @@
         </message>
         <message>
             <location filename="../../plugin/desk/queues/task_words.py" />
-            <source>now</source>
-            <translation>ara</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/queues/task_words.py" />
             <source>place cone</source>
             <translation>col·loca con</translation>
         </message>
@@ -2944,6 +2969,11 @@
             <location filename="../../plugin/desk/replay/fetching.py" />
             <source>What came could not be put in order.</source>
             <translation>El que ha arribat no s'ha pogut ordenar.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/past_commands.py" />
+            <source>{robot}: {command} · {state} by {by}</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/desk/replay/replay_action.py" />
@@ -3514,6 +3544,71 @@
             <location filename="../../plugin/desk/site_drop.py" />
             <source>{site}: {count} layers loaded.</source>
             <translation>{site}: {count} capes carregades.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/state_words.py" />
+            <source>aborted</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/state_words.py" />
+            <source>delivered</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/state_words.py" />
+            <source>expired</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/state_words.py" />
+            <source>failed</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/state_words.py" />
+            <source>fresh</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/state_words.py" />
+            <source>now</source>
+            <translation>ara</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/state_words.py" />
+            <source>offline</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/state_words.py" />
+            <source>queued</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/state_words.py" />
+            <source>reached</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/state_words.py" />
+            <source>removed</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/state_words.py" />
+            <source>stale</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/state_words.py" />
+            <source>superseded</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/state_words.py" />
+            <source>waiting</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/desk/surface_action.py" />

@@ -1208,12 +1208,12 @@
         <message>
             <location filename="../../plugin/desk/desk.py" />
             <source>{in_words} was not sent, since only now this is known: {warnings} Ask for it again to send it all the same.</source>
-            <translation>{in_words}: no se envió, porque solo ahora se sabe esto: {warnings} Pídalo otra vez para enviarlo de todos modos.</translation>
+            <translation>{in_words}: no se envió, porque hasta ahora no se sabía esto: {warnings} Pídalo otra vez para enviarlo de todos modos.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/desk.py" />
             <source>{in_words} was not sent: robots were told to stop before it had been checked.</source>
-            <translation>{in_words}: no se envió: se mandó detener a los robots antes de comprobarlo.</translation>
+            <translation>{in_words}: no se envió, porque se ordenó detener los robots antes de terminar la comprobación.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/desk.py" />
@@ -1237,11 +1237,6 @@
         </message>
         <message>
             <location filename="../../plugin/desk/draft_panel.py" />
-            <source> It goes out when nothing speaks against it; Esc keeps it back.</source>
-            <translation> Sale cuando no hay nada en contra; Esc lo retiene.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/draft_panel.py" />
             <source> Override… sends it all the same, where your role may.</source>
             <translation> Imponer… lo envía de todos modos, donde su papel lo permita.</translation>
         </message>
@@ -1253,7 +1248,12 @@
         <message>
             <location filename="../../plugin/desk/draft_panel.py" />
             <source>{in_words}. Being checked: {share:.0%}.</source>
-            <translation>{in_words}. Comprobándose: {share:.0%}.</translation>
+            <translation>{in_words}. Se está comprobando: {share:.0%}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/draft_panel.py" />
+            <source>{in_words}. Being checked: {share:.0%}. It goes out when nothing speaks against it; Esc keeps it back.</source>
+            <translation>{in_words}. Se está comprobando: {share:.0%}. Se enviará si nada lo desaconseja; Esc lo detiene.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/draft_panel.py" />
@@ -1483,7 +1483,7 @@
         <message>
             <location filename="../../plugin/desk/drafts.py" />
             <source>it has not been checked to its end</source>
-            <translation>no se ha comprobado hasta el final</translation>
+            <translation>todavía no se ha terminado de comprobar</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/drafts.py" />
@@ -1597,6 +1597,21 @@
         </message>
         <message>
             <location filename="../../plugin/desk/live/hover_card.py" />
+            <source>accuracy</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/hover_card.py" />
+            <source>battery</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/hover_card.py" />
+            <source>heading</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/hover_card.py" />
             <source>it says</source>
             <translation>dice</translation>
         </message>
@@ -1604,6 +1619,21 @@
             <location filename="../../plugin/desk/live/hover_card.py" />
             <source>last message</source>
             <translation>último mensaje</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/hover_card.py" />
+            <source>place</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/hover_card.py" />
+            <source>speed</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/hover_card.py" />
+            <source>task</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/desk/live/hover_card.py" />
@@ -2892,11 +2922,6 @@
         </message>
         <message>
             <location filename="../../plugin/desk/queues/task_words.py" />
-            <source>now</source>
-            <translation>ahora</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/queues/task_words.py" />
             <source>place cone</source>
             <translation>colocar cono</translation>
         </message>
@@ -2944,6 +2969,11 @@
             <location filename="../../plugin/desk/replay/fetching.py" />
             <source>What came could not be put in order.</source>
             <translation>Lo que llegó no se pudo ordenar.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/past_commands.py" />
+            <source>{robot}: {command} · {state} by {by}</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/desk/replay/replay_action.py" />
@@ -3514,6 +3544,71 @@
             <location filename="../../plugin/desk/site_drop.py" />
             <source>{site}: {count} layers loaded.</source>
             <translation>{site}: {count} capas cargadas.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/state_words.py" />
+            <source>aborted</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/state_words.py" />
+            <source>delivered</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/state_words.py" />
+            <source>expired</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/state_words.py" />
+            <source>failed</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/state_words.py" />
+            <source>fresh</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/state_words.py" />
+            <source>now</source>
+            <translation>ahora</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/state_words.py" />
+            <source>offline</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/state_words.py" />
+            <source>queued</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/state_words.py" />
+            <source>reached</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/state_words.py" />
+            <source>removed</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/state_words.py" />
+            <source>stale</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/state_words.py" />
+            <source>superseded</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/state_words.py" />
+            <source>waiting</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/desk/surface_action.py" />

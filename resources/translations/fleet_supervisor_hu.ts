@@ -1207,12 +1207,12 @@
         <message>
             <location filename="../../plugin/desk/desk.py" />
             <source>{in_words} was not sent, since only now this is known: {warnings} Ask for it again to send it all the same.</source>
-            <translation>{in_words}: nem lett elküldve, mert csak most derült ki: {warnings} Kérje újra, hogy mégis elküldje.</translation>
+            <translation>{in_words}: nem lett elküldve, mert csak most derült ki: {warnings} Kérje újra, ha mégis el akarja küldeni.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/desk.py" />
             <source>{in_words} was not sent: robots were told to stop before it had been checked.</source>
-            <translation>{in_words}: nem lett elküldve: a robotokat leállították, mielőtt az ellenőrzés véget ért.</translation>
+            <translation>{in_words}: nem lett elküldve, mert a robotok az ellenőrzés vége előtt megállási utasítást kaptak.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/desk.py" />
@@ -1236,11 +1236,6 @@
         </message>
         <message>
             <location filename="../../plugin/desk/draft_panel.py" />
-            <source> It goes out when nothing speaks against it; Esc keeps it back.</source>
-            <translation> Elmegy, ha semmi sem szól ellene; az Esc visszatartja.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/draft_panel.py" />
             <source> Override… sends it all the same, where your role may.</source>
             <translation> A Felülbírálás… mégis elküldi, ha a szerepe engedi.</translation>
         </message>
@@ -1253,6 +1248,11 @@
             <location filename="../../plugin/desk/draft_panel.py" />
             <source>{in_words}. Being checked: {share:.0%}.</source>
             <translation>{in_words}. Ellenőrzés alatt: {share:.0%}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/draft_panel.py" />
+            <source>{in_words}. Being checked: {share:.0%}. It goes out when nothing speaks against it; Esc keeps it back.</source>
+            <translation>{in_words}. Ellenőrzés alatt: {share:.0%}. Elküldésre kerül, ha semmi sem szól ellene; az Esc visszatartja.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/draft_panel.py" />
@@ -1482,7 +1482,7 @@
         <message>
             <location filename="../../plugin/desk/drafts.py" />
             <source>it has not been checked to its end</source>
-            <translation>az ellenőrzése még nem ért véget</translation>
+            <translation>az ellenőrzése még nem fejeződött be</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/drafts.py" />
@@ -1596,6 +1596,21 @@
         </message>
         <message>
             <location filename="../../plugin/desk/live/hover_card.py" />
+            <source>accuracy</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/hover_card.py" />
+            <source>battery</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/hover_card.py" />
+            <source>heading</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/hover_card.py" />
             <source>it says</source>
             <translation>ezt mondja</translation>
         </message>
@@ -1603,6 +1618,21 @@
             <location filename="../../plugin/desk/live/hover_card.py" />
             <source>last message</source>
             <translation>utolsó üzenet</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/hover_card.py" />
+            <source>place</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/hover_card.py" />
+            <source>speed</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/hover_card.py" />
+            <source>task</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/desk/live/hover_card.py" />
@@ -2890,11 +2920,6 @@
         </message>
         <message>
             <location filename="../../plugin/desk/queues/task_words.py" />
-            <source>now</source>
-            <translation>most</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/queues/task_words.py" />
             <source>place cone</source>
             <translation>bója kihelyezése</translation>
         </message>
@@ -2942,6 +2967,11 @@
             <location filename="../../plugin/desk/replay/fetching.py" />
             <source>What came could not be put in order.</source>
             <translation>Ami megérkezett, azt nem lehetett sorba rendezni.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/replay/past_commands.py" />
+            <source>{robot}: {command} · {state} by {by}</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/desk/replay/replay_action.py" />
@@ -3512,6 +3542,71 @@
             <location filename="../../plugin/desk/site_drop.py" />
             <source>{site}: {count} layers loaded.</source>
             <translation>{site}: {count} réteg betöltve.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/state_words.py" />
+            <source>aborted</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/state_words.py" />
+            <source>delivered</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/state_words.py" />
+            <source>expired</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/state_words.py" />
+            <source>failed</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/state_words.py" />
+            <source>fresh</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/state_words.py" />
+            <source>now</source>
+            <translation>most</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/state_words.py" />
+            <source>offline</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/state_words.py" />
+            <source>queued</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/state_words.py" />
+            <source>reached</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/state_words.py" />
+            <source>removed</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/state_words.py" />
+            <source>stale</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/state_words.py" />
+            <source>superseded</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/state_words.py" />
+            <source>waiting</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/desk/surface_action.py" />
