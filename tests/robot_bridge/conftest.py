@@ -69,7 +69,11 @@ def start_bridge(tmp_path_factory):
             bridge = Bridge(processes, site, database or f"sqlite:///{folder}/fleet-{len(bridges)}.db")
             bridge.options += options
             bridges.append(bridge)
-            bridge.start_gateway()
+            try:
+                bridge.start_gateway()
+            except BaseException:  # a gateway that came too late would hold the next test's database
+                bridge.end()
+                raise
             return bridge
 
         yield start
