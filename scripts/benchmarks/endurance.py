@@ -52,10 +52,16 @@ ROWS = 15
 
 @dataclass(frozen=True)
 class Sample:
-    """What there was ``at`` so many seconds after the begin; ``drops`` and ``reloads`` so far."""
+    """What there was ``at`` so many seconds after the begin; ``drops`` and ``reloads`` so far.
+
+    ``megabytes`` is what the process has, ``in_use`` what of it is not free to be used again,
+    ``blocks`` how many pieces of it Python has for its objects.
+    """
 
     at: float
     megabytes: float
+    in_use: float
+    blocks: int
     reloads: int
     threads: int
     python_threads: int
@@ -110,8 +116,8 @@ def measure(_data: Path) -> Part:
     """Let it run for MINUTES of the environment, half an hour without."""
     minutes = float(os.environ.get("MINUTES") or MINUTES)
     run = endure(minutes * 60, reloads_in(minutes * 60))
-    slope = growth(run.samples, minutes * 60)
-    return Part("Endurance", report(run, minutes, slope), failed=bool(faults(run)) or slope > FLAT)
+    slope = growth(run.samples, minutes * 60, "megabytes")
+    return Part("Endurance", report(run, minutes), failed=bool(faults(run)) or slope > FLAT)
 
 
 def reloads_in(seconds: float) -> int:
@@ -197,14 +203,14 @@ def complaints_in(log: Path) -> list[str]:
     return [line for line in lines if any(word in line for word in words)]
 
 
-def growth(samples: Sequence[Sample], seconds: float) -> float:
-    """Return by how many MB an hour memory grew over the last part of the time: the slope of a line."""
+def growth(samples: Sequence[Sample], seconds: float, what: str) -> float:
+    """Return by how much ``what`` grew in an hour over the last part of the time: the slope of a line."""
     begin = max(WARM_UP, seconds * (1 - MEASURED))
-    counted = [(sample.at, sample.megabytes) for sample in samples if sample.at >= begin]
+    counted = [(sample.at / 3600, getattr(sample, what)) for sample in samples if sample.at >= begin]
     if len(counted) < 3:
         return float("nan")
-    at, megabytes = np.array(counted).T
-    return float(np.polyfit(at / 3600, megabytes, 1)[0])
+    hours, values = np.array(counted).T
+    return float(np.polyfit(hours, values, 1)[0])
 
 
 def faults(run: Run) -> list[str]:
@@ -215,7 +221,7 @@ def faults(run: Run) -> list[str]:
     return found + [f"printed: {line}" for line in dict.fromkeys(run.complaints)]
 
 
-def report(run: Run, minutes: float, slope: float) -> str:
+def report(run: Run, minutes: float) -> str:
     """Return the part's text."""
     wrong = faults(run)
     return TEXT.format(
@@ -225,7 +231,7 @@ def report(run: Run, minutes: float, slope: float) -> str:
         drops=", ".join(f"{number} × {how}" for how, number in run.drops.items()),
         table=_table(run.samples),
         last=minutes * MEASURED,
-        slope=slope,
+        **{what: growth(run.samples, minutes * 60, what) for what in ("megabytes", "in_use", "blocks")},
         first_unloaded=run.after_unloading[0],
         last_unloaded=run.after_unloading[-1],
         wrong="Wrong in all of this: nothing."
@@ -244,6 +250,7 @@ def _table(samples: Sequence[Sample]) -> str:
     head = [
         "minute",
         "memory, MB",
+        "of it in use",
         "links dropped",
         "reloads",
         "threads",
@@ -257,6 +264,7 @@ def _table(samples: Sequence[Sample]) -> str:
             [
                 f"{one.at / 60:.1f}",
                 f"{one.megabytes:.0f}",
+                f"{one.in_use:.0f}",
                 one.drops,
                 one.reloads,
                 one.threads,
@@ -306,8 +314,10 @@ machine: {load:.1f}.
 
 {table}
 
-Over the last {last:.0f} of {minutes:.0f} minutes memory changed by {slope:+.0f} MB an hour. Without the
-plugin QGIS had {first_unloaded:.0f} MB after the first unloading and {last_unloaded:.0f} MB after the last.
+Over the last {last:.0f} of {minutes:.0f} minutes the process grew by {megabytes:+.0f} MB an hour; what was in
+use of it, and not free to be used again, by {in_use:+.0f} MB an hour, and what Python had for its objects by
+{blocks:+,.0f} pieces an hour. With the plugin unloaded {first_unloaded:.0f} MB were in use after the first
+time and {last_unloaded:.0f} MB after the last.
 
 {wrong}
 

@@ -20,11 +20,15 @@ LOOK_EVERY = 0.05
 
 @dataclass(frozen=True)
 class Until:
-    """Something to wait for: ``holds`` is asked until it is true, at most for ``seconds``."""
+    """Something to wait for: ``holds`` is asked until it is true, at most for ``seconds``.
+
+    ``found`` says what there was instead.
+    """
 
     what: str
     holds: Callable[[], object]
     seconds: float
+    found: Callable[[], str]
 
 
 Script = Generator["float | Until", None, None]
@@ -71,5 +75,6 @@ class Player:
         if until.holds():
             return True
         if time.monotonic() > self._latest:
-            raise NotHappenedError(f"{until.what} did not happen within {until.seconds:.0f} s")
+            text = f"{until.what} did not happen within {until.seconds:.0f} s; there was {until.found()}"
+            raise NotHappenedError(text)
         return False

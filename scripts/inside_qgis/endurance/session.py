@@ -4,10 +4,9 @@ between two shifts; memory, what is left behind and what goes wrong are written 
 from __future__ import annotations
 
 import gc
-import resource
+import sys
 import threading
 import time
-from pathlib import Path
 
 import qgis.utils
 from qgis.PyQt.QtCore import QTimer
@@ -21,6 +20,7 @@ from inside_qgis.endurance.belongings import (
     left_over,
     running_threads,
 )
+from inside_qgis.endurance.memory import megabytes, megabytes_in_use
 from inside_qgis.endurance.play import Player, Script, Until
 from inside_qgis.endurance.pulse import Pulse
 from inside_qgis.endurance.shift import Shift
@@ -101,11 +101,16 @@ class Endurance:
         wanted = len(self._plan["robots"])
 
         def holds() -> bool:
-            # Looked for each time: what is kept here would not go with the plugin.
-            table = self._window.findChild(QTableView, "fleet_robot_table")
-            return "Connected" in self._session.operator.link_state() and table.model().rowCount() == wanted
+            return "Connected" in self._session.operator.link_state() and self._robots_listed() == wanted
 
-        return Until(f"a link with {wanted} robots", holds, CONNECTS_WITHIN)
+        def found() -> str:
+            return f"{self._session.operator.link_state()}, {self._robots_listed()} robots"
+
+        return Until(f"a link with {wanted} robots", holds, CONNECTS_WITHIN, found)
+
+    def _robots_listed(self) -> int:
+        # Looked for each time: what is kept here would not go with the plugin.
+        return self._window.findChild(QTableView, "fleet_robot_table").model().rowCount()
 
     def _work(self, number: int, until: float) -> Script:
         shift = Shift(self._session.operator, self._plan["robots"], number)
@@ -127,7 +132,9 @@ class Endurance:
             "sample",
             "",
             at=time.monotonic() - self._began,
-            megabytes=_megabytes(),
+            megabytes=megabytes(),
+            in_use=megabytes_in_use(),
+            blocks=sys.getallocatedblocks(),
             reloads=self._reloads - 1,
             threads=running_threads(),
             python_threads=threading.active_count(),
@@ -141,7 +148,7 @@ class Endurance:
         left = belongings(self._window, self._canvas)
         more = left_over(nothing, left)
         text = f"unloaded for the {self._reloads - 1}th time; left: {'; '.join(more) or 'nothing'}"
-        self._session.happened("unloaded", text, left=more, things=count(left), megabytes=_megabytes())
+        self._session.happened("unloaded", text, left=more, things=count(left), megabytes=megabytes_in_use())
 
     def _tell(self) -> None:
         pulse, trouble = self._pulse, self._trouble
@@ -157,11 +164,6 @@ class Endurance:
             gaps_at=pulse.gaps_at,
             worst=[vars(gap) for gap in pulse.worst()],
         )
-
-
-def _megabytes() -> float:
-    pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[1])
-    return pages * resource.getpagesize() / 1e6
 
 
 def work(session: Session) -> None:

@@ -64,8 +64,10 @@ class Shift:
         return acts
 
     def put_away(self) -> None:
-        """Put down what is in hand; what is open stays open."""
+        """Put down what is in hand and list all robots; what is open stays open."""
         iface.actionPan().trigger()
+        self._find(QLineEdit, "fleet_robot_search").clear()
+        self._find(QComboBox, "fleet_robot_filter").setCurrentIndex(0)
         self._canvas.setRotation(0.0)
         self._look_at_home()
 

@@ -1,0 +1,32 @@
+"""What memory this process has, and what of it is in use."""
+
+from __future__ import annotations
+
+import ctypes
+import resource
+from pathlib import Path
+
+
+class _Mallinfo(ctypes.Structure):
+    """glibc's ``struct mallinfo2``."""
+
+    _fields_ = [(name, ctypes.c_size_t) for name in ("arena", "ordblks", "smblks", "hblks", "hblkhd")] + [
+        (name, ctypes.c_size_t) for name in ("usmblks", "fsmblks", "uordblks", "fordblks", "keepcost")
+    ]
+
+
+def megabytes() -> float:
+    """Return the memory that the system has given to this process."""
+    pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[1])
+    return pages * resource.getpagesize() / 1e6
+
+
+def megabytes_in_use() -> float:
+    """Return what the process has asked for and not given back, as glibc counts it in all of its arenas.
+
+    What it has beyond that is free, and kept for later.
+    """
+    libc = ctypes.CDLL("libc.so.6")
+    libc.mallinfo2.restype = _Mallinfo
+    info = libc.mallinfo2()
+    return (info.uordblks + info.hblkhd) / 1e6
