@@ -8,7 +8,7 @@ from qgis.PyQt.QtWidgets import QDialog, QDialogButtonBox, QLineEdit, QVBoxLayou
 from ...robot_bridge.messages import EmergencyReport
 from ..language import tr
 from .emergency_banner import in_words
-from .wrapped_text import wrapped_text
+from .whole_text import WholeText
 
 WIDTH = 440
 
@@ -48,7 +48,7 @@ class ClearDialog(QDialog):
                 "aborted."
             ),
         ):
-            rows.addWidget(wrapped_text(text, WIDTH))
+            rows.addWidget(WholeText(text))
         rows.addWidget(self._reason)
         rows.addWidget(buttons)
         self.setMinimumWidth(WIDTH)

@@ -6,7 +6,7 @@ from qgis.PyQt.QtCore import Qt, pyqtSignal
 from qgis.PyQt.QtWidgets import QComboBox, QDialog, QDialogButtonBox, QFormLayout, QLineEdit, QWidget
 
 from ..language import tr
-from .wrapped_text import wrapped_text
+from .whole_text import WholeText
 
 TIMES = (
     (tr("until it is opened"), None),
@@ -30,13 +30,12 @@ class ClosureDialog(QDialog):
         self.setWindowTitle(tr("Close road"))
         self.setMinimumWidth(WIDTH)
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        text = wrapped_text(
+        text = WholeText(
             tr(
                 "The road is closed for every robot from this junction to the next. Robots whose way leads "
                 "along it get another way; one that has no other way is stopped, unless the site's settings "
                 "say otherwise."
-            ),
-            WIDTH,
+            )
         )
         self._reason = QLineEdit()
         self._reason.setObjectName("fleet_closure_reason")

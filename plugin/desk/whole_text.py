@@ -1,4 +1,4 @@
-"""Text of a panel that is never squeezed lower than its lines."""
+"""Text that is never lower than its lines."""
 
 from __future__ import annotations
 
@@ -10,7 +10,8 @@ from qgis.PyQt.QtWidgets import QLabel, QWidget
 class WholeText(QLabel):
     """Plain text that wraps; at least as high as ``lines`` lines, so that what is below it jumps less.
 
-    A layout that has too little room for everything takes it from labels that wrap first.
+    A layout that has too little room for everything takes it from labels that wrap first, and a dialog does
+    not ask them how high they become.
     """
 
     def __init__(self, text: str = "", lines: int = 1, parent: QWidget | None = None):

@@ -1598,17 +1598,17 @@
         <message>
             <location filename="../../plugin/desk/live/hover_card.py" />
             <source>accuracy</source>
-            <translation type="unfinished" />
+            <translation>precisió</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/live/hover_card.py" />
             <source>battery</source>
-            <translation type="unfinished" />
+            <translation>bateria</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/live/hover_card.py" />
             <source>heading</source>
-            <translation type="unfinished" />
+            <translation>rumb</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/live/hover_card.py" />
@@ -1623,17 +1623,17 @@
         <message>
             <location filename="../../plugin/desk/live/hover_card.py" />
             <source>place</source>
-            <translation type="unfinished" />
+            <translation>lloc</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/live/hover_card.py" />
             <source>speed</source>
-            <translation type="unfinished" />
+            <translation>velocitat</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/live/hover_card.py" />
             <source>task</source>
-            <translation type="unfinished" />
+            <translation>tasca</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/live/hover_card.py" />
@@ -2973,7 +2973,7 @@
         <message>
             <location filename="../../plugin/desk/replay/past_commands.py" />
             <source>{robot}: {command} · {state} by {by}</source>
-            <translation type="unfinished" />
+            <translation>{robot}: {command} · {state} per {by}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/replay/replay_action.py" />
@@ -3548,27 +3548,27 @@
         <message>
             <location filename="../../plugin/desk/state_words.py" />
             <source>aborted</source>
-            <translation type="unfinished" />
+            <translation>avortada</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/state_words.py" />
             <source>delivered</source>
-            <translation type="unfinished" />
+            <translation>lliurada</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/state_words.py" />
             <source>expired</source>
-            <translation type="unfinished" />
+            <translation>caducada</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/state_words.py" />
             <source>failed</source>
-            <translation type="unfinished" />
+            <translation>fallida</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/state_words.py" />
             <source>fresh</source>
-            <translation type="unfinished" />
+            <translation>actual</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/state_words.py" />
@@ -3578,37 +3578,37 @@
         <message>
             <location filename="../../plugin/desk/state_words.py" />
             <source>offline</source>
-            <translation type="unfinished" />
+            <translation>fora de línia</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/state_words.py" />
             <source>queued</source>
-            <translation type="unfinished" />
+            <translation>en cua</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/state_words.py" />
             <source>reached</source>
-            <translation type="unfinished" />
+            <translation>assolida</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/state_words.py" />
             <source>removed</source>
-            <translation type="unfinished" />
+            <translation>treta</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/state_words.py" />
             <source>stale</source>
-            <translation type="unfinished" />
+            <translation>desactualitzat</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/state_words.py" />
             <source>superseded</source>
-            <translation type="unfinished" />
+            <translation>substituïda</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/state_words.py" />
             <source>waiting</source>
-            <translation type="unfinished" />
+            <translation>en espera</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/surface_action.py" />
@@ -3703,7 +3703,7 @@
         <message>
             <location filename="../../plugin/desk/tour/steps.py" />
             <source>Every command is here with each of its steps: queued, delivered, acknowledged, reached; or why it failed. A double click shows its place on the map.</source>
-            <translation>Aquí hi ha cada ordre amb tots els passos: queued, delivered, acknowledged, reached; o per què ha fallat. Un doble clic en mostra el lloc al mapa.</translation>
+            <translation>Aquí hi ha cada ordre amb tots els passos: en cua, lliurada, reconeguda, assolida; o per què ha fallat. Un doble clic en mostra el lloc al mapa.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/tour/steps.py" />
@@ -3903,7 +3903,7 @@
         <message>
             <location filename="../../plugin/expressions/robot_values.py" />
             <source>&lt;h3&gt;function robot_state&lt;/h3&gt; &lt;p&gt;Returns how far what is known of a robot can be trusted: 'fresh', 'stale', 'lost' or 'offline'.&lt;/p&gt; &lt;h4&gt;Syntax&lt;/h4&gt; &lt;p&gt;&lt;code&gt;robot_state(robot)&lt;/code&gt;&lt;/p&gt; &lt;h4&gt;Arguments&lt;/h4&gt; &lt;table&gt;&lt;tr&gt;&lt;td&gt;&lt;i&gt;robot&lt;/i&gt;&lt;/td&gt;&lt;td&gt;its name, as in the Fleet panel&lt;/td&gt;&lt;/tr&gt;&lt;/table&gt; &lt;h4&gt;Examples&lt;/h4&gt; &lt;ul&gt; &lt;li&gt;&lt;code&gt;robot_state('r1')&lt;/code&gt; &amp;rarr; 'fresh'&lt;/li&gt; &lt;li&gt;&lt;code&gt;robot_state("robot") IN ('stale', 'lost')&lt;/code&gt; &amp;rarr; true of robots that are silent&lt;/li&gt; &lt;/ul&gt;</source>
-            <translation>&lt;h3&gt;funció robot_state&lt;/h3&gt; &lt;p&gt;Retorna fins a quin punt es pot confiar en el que se sap d'un robot: 'fresh' (actual), 'stale' (desactualitzat), 'lost' (perdut) o 'offline' (desconnectat).&lt;/p&gt; &lt;h4&gt;Sintaxi&lt;/h4&gt; &lt;p&gt;&lt;code&gt;robot_state(robot)&lt;/code&gt;&lt;/p&gt; &lt;h4&gt;Arguments&lt;/h4&gt; &lt;table&gt;&lt;tr&gt;&lt;td&gt;&lt;i&gt;robot&lt;/i&gt;&lt;/td&gt;&lt;td&gt;el seu nom, com al tauler Flota&lt;/td&gt;&lt;/tr&gt;&lt;/table&gt; &lt;h4&gt;Exemples&lt;/h4&gt; &lt;ul&gt; &lt;li&gt;&lt;code&gt;robot_state('r1')&lt;/code&gt; &amp;rarr; 'fresh'&lt;/li&gt; &lt;li&gt;&lt;code&gt;robot_state("robot") IN ('stale', 'lost')&lt;/code&gt; &amp;rarr; cert per als robots que callen&lt;/li&gt; &lt;/ul&gt;</translation>
+            <translation>&lt;h3&gt;funció robot_state&lt;/h3&gt; &lt;p&gt;Retorna fins a quin punt es pot confiar en el que se sap d'un robot: 'fresh' (actual), 'stale' (desactualitzat), 'lost' (perdut) o 'offline' (fora de línia).&lt;/p&gt; &lt;h4&gt;Sintaxi&lt;/h4&gt; &lt;p&gt;&lt;code&gt;robot_state(robot)&lt;/code&gt;&lt;/p&gt; &lt;h4&gt;Arguments&lt;/h4&gt; &lt;table&gt;&lt;tr&gt;&lt;td&gt;&lt;i&gt;robot&lt;/i&gt;&lt;/td&gt;&lt;td&gt;el seu nom, com al tauler Flota&lt;/td&gt;&lt;/tr&gt;&lt;/table&gt; &lt;h4&gt;Exemples&lt;/h4&gt; &lt;ul&gt; &lt;li&gt;&lt;code&gt;robot_state('r1')&lt;/code&gt; &amp;rarr; 'fresh'&lt;/li&gt; &lt;li&gt;&lt;code&gt;robot_state("robot") IN ('stale', 'lost')&lt;/code&gt; &amp;rarr; cert per als robots que callen&lt;/li&gt; &lt;/ul&gt;</translation>
         </message>
         <message>
             <location filename="../../plugin/expressions/robot_values.py" />

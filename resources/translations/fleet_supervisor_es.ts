@@ -1598,17 +1598,17 @@
         <message>
             <location filename="../../plugin/desk/live/hover_card.py" />
             <source>accuracy</source>
-            <translation type="unfinished" />
+            <translation>precisión</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/live/hover_card.py" />
             <source>battery</source>
-            <translation type="unfinished" />
+            <translation>batería</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/live/hover_card.py" />
             <source>heading</source>
-            <translation type="unfinished" />
+            <translation>rumbo</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/live/hover_card.py" />
@@ -1623,17 +1623,17 @@
         <message>
             <location filename="../../plugin/desk/live/hover_card.py" />
             <source>place</source>
-            <translation type="unfinished" />
+            <translation>lugar</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/live/hover_card.py" />
             <source>speed</source>
-            <translation type="unfinished" />
+            <translation>velocidad</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/live/hover_card.py" />
             <source>task</source>
-            <translation type="unfinished" />
+            <translation>tarea</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/live/hover_card.py" />
@@ -2973,7 +2973,7 @@
         <message>
             <location filename="../../plugin/desk/replay/past_commands.py" />
             <source>{robot}: {command} · {state} by {by}</source>
-            <translation type="unfinished" />
+            <translation>{robot}: {command} · {state} por {by}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/replay/replay_action.py" />
@@ -3548,27 +3548,27 @@
         <message>
             <location filename="../../plugin/desk/state_words.py" />
             <source>aborted</source>
-            <translation type="unfinished" />
+            <translation>abortada</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/state_words.py" />
             <source>delivered</source>
-            <translation type="unfinished" />
+            <translation>entregada</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/state_words.py" />
             <source>expired</source>
-            <translation type="unfinished" />
+            <translation>caducada</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/state_words.py" />
             <source>failed</source>
-            <translation type="unfinished" />
+            <translation>fallida</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/state_words.py" />
             <source>fresh</source>
-            <translation type="unfinished" />
+            <translation>actual</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/state_words.py" />
@@ -3578,37 +3578,37 @@
         <message>
             <location filename="../../plugin/desk/state_words.py" />
             <source>offline</source>
-            <translation type="unfinished" />
+            <translation>fuera de línea</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/state_words.py" />
             <source>queued</source>
-            <translation type="unfinished" />
+            <translation>en cola</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/state_words.py" />
             <source>reached</source>
-            <translation type="unfinished" />
+            <translation>alcanzada</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/state_words.py" />
             <source>removed</source>
-            <translation type="unfinished" />
+            <translation>quitada</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/state_words.py" />
             <source>stale</source>
-            <translation type="unfinished" />
+            <translation>desactualizado</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/state_words.py" />
             <source>superseded</source>
-            <translation type="unfinished" />
+            <translation>sustituida</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/state_words.py" />
             <source>waiting</source>
-            <translation type="unfinished" />
+            <translation>en espera</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/surface_action.py" />
@@ -3703,7 +3703,7 @@
         <message>
             <location filename="../../plugin/desk/tour/steps.py" />
             <source>Every command is here with each of its steps: queued, delivered, acknowledged, reached; or why it failed. A double click shows its place on the map.</source>
-            <translation>Aquí está cada orden con todos sus pasos: queued, delivered, acknowledged, reached; o por qué falló. Un doble clic muestra su lugar en el mapa.</translation>
+            <translation>Aquí está cada orden con todos sus pasos: en cola, entregada, reconocida, alcanzada; o por qué falló. Un doble clic muestra su lugar en el mapa.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/tour/steps.py" />
@@ -3903,7 +3903,7 @@
         <message>
             <location filename="../../plugin/expressions/robot_values.py" />
             <source>&lt;h3&gt;function robot_state&lt;/h3&gt; &lt;p&gt;Returns how far what is known of a robot can be trusted: 'fresh', 'stale', 'lost' or 'offline'.&lt;/p&gt; &lt;h4&gt;Syntax&lt;/h4&gt; &lt;p&gt;&lt;code&gt;robot_state(robot)&lt;/code&gt;&lt;/p&gt; &lt;h4&gt;Arguments&lt;/h4&gt; &lt;table&gt;&lt;tr&gt;&lt;td&gt;&lt;i&gt;robot&lt;/i&gt;&lt;/td&gt;&lt;td&gt;its name, as in the Fleet panel&lt;/td&gt;&lt;/tr&gt;&lt;/table&gt; &lt;h4&gt;Examples&lt;/h4&gt; &lt;ul&gt; &lt;li&gt;&lt;code&gt;robot_state('r1')&lt;/code&gt; &amp;rarr; 'fresh'&lt;/li&gt; &lt;li&gt;&lt;code&gt;robot_state("robot") IN ('stale', 'lost')&lt;/code&gt; &amp;rarr; true of robots that are silent&lt;/li&gt; &lt;/ul&gt;</source>
-            <translation>&lt;h3&gt;función robot_state&lt;/h3&gt; &lt;p&gt;Devuelve hasta qué punto se puede confiar en lo que se sabe de un robot: 'fresh' (actual), 'stale' (desactualizado), 'lost' (perdido) u 'offline' (desconectado).&lt;/p&gt; &lt;h4&gt;Sintaxis&lt;/h4&gt; &lt;p&gt;&lt;code&gt;robot_state(robot)&lt;/code&gt;&lt;/p&gt; &lt;h4&gt;Argumentos&lt;/h4&gt; &lt;table&gt;&lt;tr&gt;&lt;td&gt;&lt;i&gt;robot&lt;/i&gt;&lt;/td&gt;&lt;td&gt;su nombre, como en el panel Flota&lt;/td&gt;&lt;/tr&gt;&lt;/table&gt; &lt;h4&gt;Ejemplos&lt;/h4&gt; &lt;ul&gt; &lt;li&gt;&lt;code&gt;robot_state('r1')&lt;/code&gt; &amp;rarr; 'fresh'&lt;/li&gt; &lt;li&gt;&lt;code&gt;robot_state("robot") IN ('stale', 'lost')&lt;/code&gt; &amp;rarr; verdadero para los robots que callan&lt;/li&gt; &lt;/ul&gt;</translation>
+            <translation>&lt;h3&gt;función robot_state&lt;/h3&gt; &lt;p&gt;Devuelve hasta qué punto se puede confiar en lo que se sabe de un robot: 'fresh' (actual), 'stale' (desactualizado), 'lost' (perdido) u 'offline' (fuera de línea).&lt;/p&gt; &lt;h4&gt;Sintaxis&lt;/h4&gt; &lt;p&gt;&lt;code&gt;robot_state(robot)&lt;/code&gt;&lt;/p&gt; &lt;h4&gt;Argumentos&lt;/h4&gt; &lt;table&gt;&lt;tr&gt;&lt;td&gt;&lt;i&gt;robot&lt;/i&gt;&lt;/td&gt;&lt;td&gt;su nombre, como en el panel Flota&lt;/td&gt;&lt;/tr&gt;&lt;/table&gt; &lt;h4&gt;Ejemplos&lt;/h4&gt; &lt;ul&gt; &lt;li&gt;&lt;code&gt;robot_state('r1')&lt;/code&gt; &amp;rarr; 'fresh'&lt;/li&gt; &lt;li&gt;&lt;code&gt;robot_state("robot") IN ('stale', 'lost')&lt;/code&gt; &amp;rarr; verdadero para los robots que callan&lt;/li&gt; &lt;/ul&gt;</translation>
         </message>
         <message>
             <location filename="../../plugin/expressions/robot_values.py" />

@@ -1597,17 +1597,17 @@
         <message>
             <location filename="../../plugin/desk/live/hover_card.py" />
             <source>accuracy</source>
-            <translation type="unfinished" />
+            <translation>pontosság</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/live/hover_card.py" />
             <source>battery</source>
-            <translation type="unfinished" />
+            <translation>akkumulátor</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/live/hover_card.py" />
             <source>heading</source>
-            <translation type="unfinished" />
+            <translation>irány</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/live/hover_card.py" />
@@ -1622,17 +1622,17 @@
         <message>
             <location filename="../../plugin/desk/live/hover_card.py" />
             <source>place</source>
-            <translation type="unfinished" />
+            <translation>hely</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/live/hover_card.py" />
             <source>speed</source>
-            <translation type="unfinished" />
+            <translation>sebesség</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/live/hover_card.py" />
             <source>task</source>
-            <translation type="unfinished" />
+            <translation>feladat</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/live/hover_card.py" />
@@ -2971,7 +2971,7 @@
         <message>
             <location filename="../../plugin/desk/replay/past_commands.py" />
             <source>{robot}: {command} · {state} by {by}</source>
-            <translation type="unfinished" />
+            <translation>{robot}: {command} · {state}, {by}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/replay/replay_action.py" />
@@ -3546,27 +3546,27 @@
         <message>
             <location filename="../../plugin/desk/state_words.py" />
             <source>aborted</source>
-            <translation type="unfinished" />
+            <translation>megszakítva</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/state_words.py" />
             <source>delivered</source>
-            <translation type="unfinished" />
+            <translation>kézbesítve</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/state_words.py" />
             <source>expired</source>
-            <translation type="unfinished" />
+            <translation>lejárt</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/state_words.py" />
             <source>failed</source>
-            <translation type="unfinished" />
+            <translation>sikertelen</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/state_words.py" />
             <source>fresh</source>
-            <translation type="unfinished" />
+            <translation>friss</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/state_words.py" />
@@ -3576,37 +3576,37 @@
         <message>
             <location filename="../../plugin/desk/state_words.py" />
             <source>offline</source>
-            <translation type="unfinished" />
+            <translation>offline</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/state_words.py" />
             <source>queued</source>
-            <translation type="unfinished" />
+            <translation>sorban</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/state_words.py" />
             <source>reached</source>
-            <translation type="unfinished" />
+            <translation>elérve</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/state_words.py" />
             <source>removed</source>
-            <translation type="unfinished" />
+            <translation>eltávolítva</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/state_words.py" />
             <source>stale</source>
-            <translation type="unfinished" />
+            <translation>elavult</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/state_words.py" />
             <source>superseded</source>
-            <translation type="unfinished" />
+            <translation>felülírva</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/state_words.py" />
             <source>waiting</source>
-            <translation type="unfinished" />
+            <translation>vár</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/surface_action.py" />
@@ -3701,7 +3701,7 @@
         <message>
             <location filename="../../plugin/desk/tour/steps.py" />
             <source>Every command is here with each of its steps: queued, delivered, acknowledged, reached; or why it failed. A double click shows its place on the map.</source>
-            <translation>Minden parancs itt van minden lépésével: queued, delivered, acknowledged, reached; vagy hogy miért nem sikerült. Dupla kattintás megmutatja a helyét a térképen.</translation>
+            <translation>Minden parancs itt van minden lépésével: sorban, kézbesítve, nyugtázva, elérve; vagy hogy miért nem sikerült. Dupla kattintás megmutatja a helyét a térképen.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/tour/steps.py" />

@@ -11,6 +11,7 @@ from ....robot_bridge.messages import Abort, CommandReport, CommandState, Comman
 from ...language import tr
 from ..command_book import UNDER_WAY, in_words, place_of
 from ..csv_files import iso_time
+from ..state_words import COMMAND_STATES
 
 FAILED = (CommandState.ABORTED, CommandState.FAILED, CommandState.EXPIRED)
 CSV_HEAD = (
@@ -57,14 +58,19 @@ class Filter:
 def cells(report: CommandReport) -> tuple[str, str, str, str]:
     """Return a command's row: time, what, state, and how far off or why or by whom."""
     first = report.steps[0].at if report.steps else None
-    return clock(first), f"{report.robot} · {in_words(report)}", report.state.value, _details(report)
+    return (
+        clock(first),
+        f"{report.robot} · {in_words(report)}",
+        COMMAND_STATES[report.state],
+        _details(report),
+    )
 
 
 def step_cells(step: CommandStep, report: CommandReport) -> tuple[str, str, str, str]:
     """Return a step's row: time, by whom and why, state, and how far off."""
     off = _off(report) if step.state is CommandState.REACHED else ""
     because = f": {step.reason}" if step.reason else ""
-    return clock(step.at), tr("by {by}", by=step.by) + because, step.state.value, off
+    return clock(step.at), tr("by {by}", by=step.by) + because, COMMAND_STATES[step.state], off
 
 
 def summary(reports: Iterable[CommandReport]) -> str:
@@ -72,7 +78,7 @@ def summary(reports: Iterable[CommandReport]) -> str:
     states = [report.state for report in reports if report.state in UNDER_WAY]
     if not states:
         return tr("None open")
-    counts = [f"{states.count(state)} {state.value}" for state in UNDER_WAY if state in states]
+    counts = [f"{states.count(state)} {COMMAND_STATES[state]}" for state in UNDER_WAY if state in states]
     return tr("{number} open: {counts}", number=len(states), counts=", ".join(counts))
 
 

@@ -24,6 +24,7 @@ from ..command_book import MOST_COMMANDS, in_words, place_of
 from ..csv_files import write_csv
 from ..desk import Desk
 from ..small_views import shrink
+from ..state_words import COMMAND_STATES, longest
 from .entries import CSV_HEAD, Filter, Which, csv_rows, summary
 from .log_model import LogModel
 
@@ -222,7 +223,9 @@ def _tree(model: LogModel) -> QTreeView:
     view.setExpandsOnDoubleClick(False)
     view.setIndentation(14)
     shrink(view)
-    for column, widest in enumerate(("00:00:00", "", "acknowledged", tr("{metres:.2f} m off", metres=0.0))):
+    for column, widest in enumerate(
+        ("00:00:00", "", longest(COMMAND_STATES), tr("{metres:.2f} m off", metres=0.0))
+    ):
         width = view.fontMetrics().horizontalAdvance(widest)
         view.setColumnWidth(column, width + (2 * view.indentation() + 12 if column == 0 else 12))
     view.header().setStretchLastSection(False)

@@ -7,7 +7,7 @@ from qgis.PyQt.QtWidgets import QDialog, QDialogButtonBox, QLineEdit, QVBoxLayou
 
 from ...language import tr
 from ..drafts import Draft, in_brief
-from ..wrapped_text import wrapped_text
+from ..whole_text import WholeText
 
 LONGEST_WHY = 300
 """characters."""
@@ -40,10 +40,10 @@ class OverrideDialog(QDialog):
         self._override.setEnabled(False)
         rows = QVBoxLayout(self)
         found = f"{draft.in_words()}. {in_brief(draft.findings.overridable, MOST_SHOWN)}"
-        rows.addWidget(wrapped_text(found, WIDTH))
+        rows.addWidget(WholeText(found))
         rows.addWidget(self._why)
         note = tr("Your name, what was found and why go into the gateway's log. Nothing is sent yet.")
-        rows.addWidget(wrapped_text(note, WIDTH))
+        rows.addWidget(WholeText(note))
         rows.addWidget(buttons)
         self._why.textChanged.connect(lambda text: self._override.setEnabled(bool(text.strip())))
         buttons.accepted.connect(self._confirm)

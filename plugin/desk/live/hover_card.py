@@ -15,6 +15,7 @@ from ...language import tr
 from ..colours import STATE_COLOURS
 from ..command_book import in_words
 from ..picture import RobotView
+from ..state_words import COMMAND_STATES, ROBOT_STATES
 from .labels import age_in_words
 
 AWAY = QPoint(18, 14)
@@ -54,7 +55,9 @@ def card(view: RobotView, task: CommandReport | None, remaining: float | None, f
     """Return what is known of a robot as rich text; what it has not said is left out."""
     report = view.report
     colour = STATE_COLOURS[view.state].name()
-    head = f'<b>{escape(view.name)}</b> &nbsp;<span style="color:{colour}">■</span> {view.state.value}'
+    head = (
+        f'<b>{escape(view.name)}</b> &nbsp;<span style="color:{colour}">■</span> {ROBOT_STATES[view.state]}'
+    )
     rows = [
         (
             tr("last message"),
@@ -66,19 +69,19 @@ def card(view: RobotView, task: CommandReport | None, remaining: float | None, f
         )
     ]
     if view.has_pose:
-        rows.append(("place", tr("{x:.2f}, {y:.2f} m in the site", x=report.x, y=report.y)))
+        rows.append((tr("place"), tr("{x:.2f}, {y:.2f} m in the site", x=report.x, y=report.y)))
     if report.accuracy is not None:
-        rows.append(("accuracy", tr("± {accuracy:.2f} m", accuracy=report.accuracy)))
+        rows.append((tr("accuracy"), tr("± {accuracy:.2f} m", accuracy=report.accuracy)))
     if report.theta is not None:
         compass = (90.0 - math.degrees(frame.heading_to_crs(report.theta))) % 360.0
-        rows.append(("heading", f"{compass:.0f}°"))
+        rows.append((tr("heading"), f"{compass:.0f}°"))
     if report.v is not None:
-        rows.append(("speed", tr("{v:.2f} m/s", v=report.v)))
+        rows.append((tr("speed"), tr("{v:.2f} m/s", v=report.v)))
     if report.battery is not None:
-        rows.append(("battery", f"{report.battery:.0%}"))
+        rows.append((tr("battery"), f"{report.battery:.0%}"))
     if task is not None:
         left = "" if remaining is None else tr(", {remaining:.1f} m to go", remaining=remaining)
-        rows.append(("task", f"{escape(in_words(task))}: {task.state.value}{left}"))
+        rows.append((tr("task"), f"{escape(in_words(task))}: {COMMAND_STATES[task.state]}{left}"))
     if report.status:
         rows.append((tr("it says"), escape(report.status)))
     cells = "".join(f"<tr><td>{name}&nbsp;&nbsp;</td><td>{value}</td></tr>" for name, value in rows)

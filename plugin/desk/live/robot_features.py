@@ -20,6 +20,7 @@ from ....robot_bridge.sites.frame import SiteFrame
 from ...language import tr
 from ..colours import STATE_COLOURS
 from ..picture import STATES, RobotView
+from ..state_words import ROBOT_STATES
 
 NAME = tr("Robots (live)")
 FIELDS = (
@@ -88,5 +89,5 @@ def _renderer() -> QgsCategorizedSymbolRenderer:
                 "size": "1.6",
             }
         )
-        categories.append(QgsRendererCategory(state.value, symbol, state.value))
+        categories.append(QgsRendererCategory(state.value, symbol, ROBOT_STATES[state]))
     return QgsCategorizedSymbolRenderer("state", categories)

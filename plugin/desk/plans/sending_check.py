@@ -8,6 +8,7 @@ from ....robot_bridge.assignment.plan import Plan
 from ....robot_bridge.messages import QueueState, TaskState
 from ...language import tr
 from ..desk import Desk
+from ..state_words import ROBOT_STATES
 from .draft_plan import Draft
 from .plan_rows import summary
 
@@ -71,7 +72,7 @@ def _doubts(desk: Desk, robot) -> list[str]:
                 tr(
                     "{id} is {state}: it gets its queue when it is heard of again",
                     id=robot.id,
-                    state=view.state.value,
+                    state=ROBOT_STATES[view.state],
                 )
             )
     queue = desk.queues.get(robot.id)

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import time
 
-from ....robot_bridge.messages import QueueReport, QueueState, RobotState, TaskKind, TaskReport, TaskState
+from ....robot_bridge.messages import QueueReport, QueueState, RobotState, TaskKind, TaskReport
 from ...language import tr, tr_count
+from ..state_words import ROBOT_STATES, TASK_STATES
 
 KINDS = {TaskKind.DRIVE: tr("drive"), TaskKind.PLACE: tr("place cone"), TaskKind.COLLECT: tr("collect cone")}
 
@@ -26,7 +27,7 @@ def task_in_words(task: TaskReport) -> str:
 
 def state_in_words(task: TaskReport) -> str:
     """Return how far a task is, and why where there is something to say."""
-    text = tr("now") if task.state is TaskState.CURRENT else task.state.value
+    text = TASK_STATES[task.state]
     return f"{text}: {task.reason}" if task.reason else text
 
 
@@ -49,7 +50,7 @@ def queue_in_words(queue: QueueReport) -> str:
     if queue.robot_state in (RobotState.LOST, RobotState.OFFLINE):
         text += tr(
             ". The robot is {state}: it is sent nothing until it is heard again",
-            state=queue.robot_state.value,
+            state=ROBOT_STATES[queue.robot_state],
         )
     return text
 
@@ -64,7 +65,7 @@ def last_ended_in_words(queue: QueueReport) -> str:
     return tr(
         "Last: {task} {state} {time}{off}{why}",
         task=task_in_words(task),
-        state=task.state.value,
+        state=TASK_STATES[task.state],
         time=clock(task.ended_at),
         off=off,
         why=why,

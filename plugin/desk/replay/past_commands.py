@@ -1,4 +1,4 @@
-"""Commands as they were at a moment, and as marks on a time line; no I/O, no Qt."""
+"""Commands as they were at a moment, and as marks on a time line."""
 
 from __future__ import annotations
 
@@ -6,7 +6,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from ....robot_bridge.messages import Abort, CommandReport, CommandState
+from ...language import tr
 from ..command_book import UNDER_WAY, in_words
+from ..state_words import COMMAND_STATES
 
 
 @dataclass(frozen=True)
@@ -44,6 +46,12 @@ def marks(
         for step in report.steps:
             told = step.state not in UNDER_WAY or step.state is CommandState.QUEUED
             if told and since <= step.at <= until:
-                text = f"{report.robot}: {in_words(report)} · {step.state.value} by {step.by}"
+                text = tr(
+                    "{robot}: {command} · {state} by {by}",
+                    robot=report.robot,
+                    command=in_words(report),
+                    state=COMMAND_STATES[step.state],
+                    by=step.by,
+                )
                 found.append(Mark(step.at, step.state, text + (f" ({step.reason})" if step.reason else "")))
     return sorted(found, key=lambda mark: mark.at)

@@ -9,6 +9,7 @@ import numpy as np
 from ....robot_bridge.messages import CommandReport, CommandState, SetPath, SetPosEnd
 from ...language import tr
 from ...wire.sightings import STATES
+from ..state_words import COMMAND_STATES, ROBOT_STATES, longest
 
 
 @dataclass(frozen=True)
@@ -28,7 +29,12 @@ class Column:
 
 COLUMNS = (
     Column("Robot", tr("Robot"), "robot-00", tr("The robot's name")),
-    Column("State", tr("State"), "offline", tr("How far what is known of it can be trusted")),
+    Column(
+        "State",
+        tr("State"),
+        longest(ROBOT_STATES),
+        tr("How far what is known of it can be trusted"),
+    ),
     Column("Task", tr("Task"), "", tr("What it is doing, or what it says")),
     Column("Speed", tr("Speed"), "0.0 m/s", tr("Its speed, as it says"), True, False),
     Column("Batt.", tr("Batt."), "100%", tr("How full its battery is"), True),
@@ -74,7 +80,7 @@ def task_in_words(task: CommandReport | None, told: dict) -> str:
         return tr("to cone") if task.params.get("cone") else tr("to target")
     target = tr("cone") if task.params.get("cone") else tr("target")
     name = {SetPosEnd.__name__: target, SetPath.__name__: tr("route")}.get(task.op, task.op)
-    return f"{name} {task.state.value}"
+    return f"{name} {COMMAND_STATES[task.state]}"
 
 
 def number_in_words(title: str, value: float) -> str:
@@ -94,4 +100,4 @@ def number_in_words(title: str, value: float) -> str:
 
 def state_in_words(code: int) -> str:
     """Return a state by its number."""
-    return STATES[code].value
+    return ROBOT_STATES[STATES[code]]

@@ -14,6 +14,7 @@ from ..command_book import asked_at, in_words
 from ..picture import RobotView
 from ..queues.task_words import queue_in_words, task_in_words
 from ..queues.task_words import state_in_words as task_state
+from ..state_words import COMMAND_STATES, ROBOT_STATES
 
 Row = tuple[str, str]
 TIMES = ("device_time", "fix_time")
@@ -38,14 +39,16 @@ def state_rows(view: RobotView, task: CommandReport | None, off: str, position: 
     told = view.told
     heard = tr(
         "{state}, last heard {age:.1f} s ago over {link}",
-        state=view.state.value,
+        state=ROBOT_STATES[view.state],
         age=view.age,
         link=told.get("link"),
     )
     rows = [(tr("State"), heard)]
     if position:
         rows.append((tr("Position, {crs}", crs=crs), position))
-    rows.append((tr("Task"), tr("none") if task is None else f"{in_words(task)}: {task.state.value}"))
+    rows.append(
+        (tr("Task"), tr("none") if task is None else f"{in_words(task)}: {COMMAND_STATES[task.state]}")
+    )
     if off:
         rows.append((tr("Off path or target"), off))
     if told.get("status"):
@@ -82,7 +85,7 @@ def command_rows(commands: Iterable[CommandReport]) -> list[Row]:
         why = report.steps[-1].reason if report.steps else None
         off = "" if report.deviation is None else tr(", {metres:.2f} m off", metres=report.deviation)
         because = f": {why}" if why else ""
-        what = f"{in_words(report)}: {report.state.value}{off}{because}"
+        what = f"{in_words(report)}: {COMMAND_STATES[report.state]}{off}{because}"
         told = tr("{told}, by {operator}", told=what, operator=report.operator)
         rows.append((_clock(asked_at(report)), told))
     return rows

@@ -17,6 +17,7 @@ from ..colours import STATE_COLOURS, for_letters
 from ..command_book import CommandBook, in_words
 from ..glyphs import state_icon
 from ..picture import RobotPicture
+from ..state_words import COMMAND_STATES
 from .columns import COLUMNS, POSITION, TITLES, number_in_words, short_link
 from .fleet_rows import FleetRows, Rows, Which, fleet_rows
 
@@ -168,7 +169,7 @@ class RobotModel(QAbstractTableModel):
             lines.append(tr("at {x:.2f}, {y:.2f} m in the site frame", x=x, y=y))
         task = fleet.book.task_of(name)
         if task is not None:
-            lines.append(f"{in_words(task)}: {task.state.value}")
+            lines.append(f"{in_words(task)}: {COMMAND_STATES[task.state]}")
         if told.get("status"):
             lines.append(tr("it says: {text}", text=told["status"]))
         return "\n".join(lines)
