@@ -39,7 +39,7 @@ ROBOTS = 1000
 WINDOW = (1280, 800)
 EXTENT = (0.0, 0.0, 200.0, 160.0)
 PAUSES = (5.0, 40.0)
-"""Between two drops of the link, seconds."""
+"""The least and the most seconds between two drops of the link."""
 SEED = 6
 WARM_UP = 60.0
 """Seconds that do not count."""
@@ -71,10 +71,13 @@ class Sample:
 
 
 class BadNetwork:
-    """Drops the link that leads through ``proxy`` at random moments, in three ways, until it is ended."""
+    """Drops the link that leads through ``proxy``, in three ways, until it is ended.
 
-    def __init__(self, proxy: Proxy, seed: int = SEED) -> None:
-        self._proxy, self._chance = proxy, random.Random(seed)
+    ``pauses`` are the least and the most seconds between two drops.
+    """
+
+    def __init__(self, proxy: Proxy, pauses: tuple[float, float] = PAUSES) -> None:
+        self._proxy, self._pauses, self._chance = proxy, pauses, random.Random(SEED)
         self._ended = threading.Event()
         self._thread = threading.Thread(target=self._run, name="bad network")
         self.drops = {"reset": 0, "cable pulled": 0, "gateway out of reach": 0}
@@ -88,7 +91,7 @@ class BadNetwork:
         self._thread.join()
 
     def _run(self) -> None:
-        while not self._ended.wait(self._chance.uniform(*PAUSES)):
+        while not self._ended.wait(self._chance.uniform(*self._pauses)):
             how = self._chance.choice(list(self.drops))
             self.drops[how] += 1
             if how == "cable pulled":
@@ -125,16 +128,22 @@ def reloads_in(seconds: float) -> int:
     return max(1, min(RELOADS, int(seconds / SHORTEST_SHIFT) - 1))
 
 
-def endure(seconds: float, reloads: int, robots: int = ROBOTS) -> Run:
-    """Run gateway, robots, network and QGIS, and return what was seen.
+def endure(
+    seconds: float,
+    reloads: int,
+    robots: int = ROBOTS,
+    pauses: tuple[float, float] = PAUSES,
+    folder: Path = FOLDER,
+) -> Run:
+    """Run gateway, robots, network and QGIS, with all their files in ``folder``, and return what was seen.
 
     :raises StageError: when something does not come up, or QGIS does not come to its end.
     """
-    with _stage(robots) as (processes, proxy):
-        told = plan(proxy.port, seconds, reloads, robots)
+    with _stage(folder, robots) as (processes, proxy):
+        told = plan(folder, proxy.port, seconds, reloads, robots)
         display = virtual_screen(processes, *WINDOW)
-        qgis = start_qgis(processes, Profile(FOLDER / "profile", link=False), SESSION, told, display)
-        with BadNetwork(proxy) as network:
+        qgis = start_qgis(processes, Profile(folder / "profile", link=False), SESSION, told, display)
+        with BadNetwork(proxy, pauses) as network:
             entries = follow(processes, qgis, Path(str(told["journal"])), seconds + 600)
             samples, left, after, end = _watched(entries, network)
         complaints = complaints_in(processes.log("qgis"))
@@ -142,13 +151,13 @@ def endure(seconds: float, reloads: int, robots: int = ROBOTS) -> Run:
 
 
 @contextmanager
-def _stage(robots: int) -> Iterator[tuple[Processes, Proxy]]:
-    FOLDER.mkdir(parents=True, exist_ok=True)
-    for file in FOLDER.glob("fleet.db*"):
+def _stage(folder: Path, robots: int) -> Iterator[tuple[Processes, Proxy]]:
+    folder.mkdir(parents=True, exist_ok=True)
+    for file in folder.glob("fleet.db*"):
         file.unlink()
-    with Processes(FOLDER / "logs") as processes:
-        options = ["--database", f"sqlite:///{FOLDER}/fleet.db", "--port", "0"]
-        command = [sys.executable, "-m", "robot_bridge", "serve", "--site", site_with_room(FOLDER), *options]
+    with Processes(folder / "logs") as processes:
+        options = ["--database", f"sqlite:///{folder}/fleet.db", "--port", "0"]
+        command = [sys.executable, "-m", "robot_bridge", "serve", "--site", site_with_room(folder), *options]
         processes.start("gateway", command, env=MALLOC)
         port = processes.wait_for_line("gateway", r"listening on ws://\S+:(\d+)", 60).group(1)
         crowd = [sys.executable, HERE / "endurance_robots.py", "127.0.0.1", port, str(robots)]
@@ -158,11 +167,11 @@ def _stage(robots: int) -> Iterator[tuple[Processes, Proxy]]:
             yield processes, proxy
 
 
-def plan(port: int, seconds: float, reloads: int, robots: int) -> dict[str, object]:
+def plan(folder: Path, port: int, seconds: float, reloads: int, robots: int) -> dict[str, object]:
     """Return what the session inside QGIS is told."""
     frame = read_site(SITE).frame
     return {
-        "journal": str(FOLDER / "journal.jsonl"),
+        "journal": str(folder / "journal.jsonl"),
         "project": str(PROJECT),
         "gateway": f"ws://127.0.0.1:{port}/desk",
         "operator": "endurance",

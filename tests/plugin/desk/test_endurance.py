@@ -1,0 +1,49 @@
+"""QGIS Desktop with a crowd of robots for a short while; `make bench PARTS=endurance` is the long one."""
+
+from __future__ import annotations
+
+import shutil
+
+import pytest
+from benchmarks.endurance import Run, Sample, endure, faults, growth
+
+ROBOTS = 40
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory) -> Run:
+    """Two shifts of some seconds, the plugin reloaded between them, on a network that drops every link."""
+    if shutil.which("Xvfb") is None:
+        pytest.skip("there is no Xvfb; run: make setup")
+    return endure(16.0, 1, ROBOTS, pauses=(1.0, 4.0), folder=tmp_path_factory.mktemp("endurance"))
+
+
+def test_nothing_goes_wrong_and_nothing_is_left(run):
+    """No exception, no warning of QGIS, and no thread, item, action, class or object after each unloading."""
+    assert faults(run) == []
+    assert len(run.left) == 2
+
+
+def test_what_is_to_be_endured_really_happened(run):
+    assert sum(run.drops.values()) >= 2
+    assert run.samples[-1].reloads >= 1
+    assert run.end["told"]["warning"] >= 1
+
+
+def test_memory_that_grows_is_seen():
+    samples = [Sample(10.0 * k, 500.0 + k, 100.0, 1000 * k, 0, 10, 2, 24, 0) for k in range(60)]
+    assert growth(samples, 600.0, "megabytes") == pytest.approx(360.0)
+    assert growth(samples, 600.0, "in_use") == pytest.approx(0.0, abs=1e-6)
+    assert growth(samples, 600.0, "blocks") == pytest.approx(360_000.0)
+
+
+def test_a_warm_up_does_not_count_as_growth():
+    samples = [Sample(10.0 * k, min(500.0 + 50 * k, 700.0), 100.0, 0, 0, 10, 2, 24, 0) for k in range(60)]
+    assert growth(samples, 600.0, "megabytes") == pytest.approx(0.0, abs=1e-6)
+
+
+def test_whatever_is_left_is_a_fault():
+    run = Run(
+        [], [[], ["1 × docks: QgsDockWidget fleet_dock"]], [], {"exceptions": {}, "warnings": {}}, {}, []
+    )
+    assert faults(run) == ["left after unloading: 1 × docks: QgsDockWidget fleet_dock"]
