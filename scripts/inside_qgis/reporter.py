@@ -46,6 +46,7 @@ class Reporter(QObject):
     def __init__(self, path: str, parent: QObject | None = None):
         super().__init__(parent)
         self._complaints: list[str] = []
+        self._socket: QLocalSocket | None = None
         QgsApplication.messageLog().messageReceived.connect(self._logged)
         self._questions: dict[str, Callable[..., Any]] = {
             "window": _window,
@@ -67,17 +68,17 @@ class Reporter(QObject):
             raise NotHappenedError(f"QGIS cannot listen at {path}: {self._server.errorString()}")
 
     def _greet(self) -> None:
-        socket = self._server.nextPendingConnection()
-        socket.readyRead.connect(lambda: self._read(socket))
+        self._socket = self._server.nextPendingConnection()
+        self._socket.readyRead.connect(self._read)
 
-    def _read(self, socket: QLocalSocket) -> None:
-        while socket.canReadLine():
-            question = json.loads(bytes(socket.readLine()))
+    def _read(self) -> None:
+        while self._socket.canReadLine():
+            question = json.loads(bytes(self._socket.readLine()))
             try:
                 answer = {"answer": self._questions[question.pop("ask")](**question)}
             except NotHappenedError as error:
                 answer = {"error": str(error)}
-            socket.write(json.dumps(answer).encode() + b"\n")
+            self._socket.write(json.dumps(answer).encode() + b"\n")
 
     def _logged(self, text: str, tag: str, level: Qgis.MessageLevel) -> None:
         if tag.startswith(PYTHON) and level in (Qgis.MessageLevel.Warning, Qgis.MessageLevel.Critical):

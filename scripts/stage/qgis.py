@@ -26,6 +26,9 @@ checkVersion=false
 askToSaveProjectChanges=false
 networkAndProxy\\networkTimeout=1000
 
+[fonts]
+downloadMissingFonts=false
+
 [UI]
 Customization\\enabled=false
 """

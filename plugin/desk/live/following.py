@@ -53,9 +53,5 @@ def keep_in_view(canvas: QgsMapCanvas, screen: Screen, places: Points) -> bool:
 
 def show_places(canvas: QgsMapCanvas, places: Points) -> None:
     """Show the smallest part of the map that has all of (n, 2) map coordinates."""
-    extent = QgsRectangle()
-    extent.setMinimal()
-    for x, y in places.tolist():
-        extent.combineExtentWith(x, y)
-    canvas.setExtent(extent)
+    canvas.setExtent(QgsRectangle(*places.min(axis=0).tolist(), *places.max(axis=0).tolist()))
     canvas.refresh()
