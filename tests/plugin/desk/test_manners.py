@@ -10,7 +10,7 @@ import pytest
 from fleet_supervisor.plugin.desk.shortcuts import KEYS
 from fleet_supervisor.plugin.help.help_window import DOCS, HelpWindow, heading_link
 from fleet_supervisor.plugin.help.topics import CONNECTIONS, OPTIONS, START, TOPICS, topic_of
-from fleet_supervisor.plugin.locator.robot_filter import ranked
+from fleet_supervisor.plugin.locator.robot_filter import RobotFilter, ranked
 from fleet_supervisor.plugin.settings.preferences import Preferences, read_preferences, write_preferences
 from fleet_supervisor.plugin.supervisor import FleetSupervisor
 from qgis.core import (
@@ -72,6 +72,21 @@ def test_rb_and_a_name_finds_robots_goes_there_and_selects(at_desk, iface, wait,
 def test_rb_alone_lists_every_robot(at_desk, iface, wait):
     wait(lambda: QgsExpression("robot_state('r2') IS NOT NULL").evaluate())
     assert sorted(result.displayString for result in found(iface, "rb ", wait)) == ["r1", "r2"]
+
+
+def test_robots_are_looked_for_in_the_windows_thread(at_desk, iface, wait, monkeypatch):
+    """A thread of QGIS's would wait for Python while unloading, in Python, waits for that thread: for ever."""
+    threads = set()
+    fetch = RobotFilter.fetchResults
+
+    def noting(self, *given):
+        threads.add(threading.current_thread())
+        fetch(self, *given)
+
+    monkeypatch.setattr(RobotFilter, "fetchResults", noting)
+    wait(lambda: QgsExpression("robot_state('r2') IS NOT NULL").evaluate())
+    assert len(found(iface, "rb ", wait)) == 2
+    assert threads == {threading.main_thread()}
 
 
 def test_a_prefix_of_the_users_own_stays(iface, plugin):
