@@ -66,10 +66,16 @@ class DraftPanel(QWidget):
         checks = self._desk.checks
         if not checks.is_under_way:
             return _in_words(draft)
-        being = tr("{in_words}. Being checked: {share:.0%}.", in_words=draft.in_words(), share=checks.share)
         if not checks.has_order:
-            return being
-        return being + tr(" It goes out when nothing speaks against it; Esc keeps it back.")
+            return tr(
+                "{in_words}. Being checked: {share:.0%}.", in_words=draft.in_words(), share=checks.share
+            )
+        return tr(
+            "{in_words}. Being checked: {share:.0%}. It goes out when nothing speaks against it; Esc keeps "
+            "it back.",
+            in_words=draft.in_words(),
+            share=checks.share,
+        )
 
 
 def _row(actions: Sequence[QAction]) -> QHBoxLayout:

@@ -9,13 +9,19 @@ from ...robot_bridge.messages import RobotState
 from .colours import CASING, CONE, PAPER, SELECTED, STATE_COLOURS
 from .picture import STATES
 
-CELL = 36
+CELL = 32
 """Width and height of the square that a robot's drawing fits in at any heading."""
 HEADINGS = 90
 """Directions that robots are drawn in; between them nobody sees a difference."""
-MARK_SIZE = 1.4
+MARK_SIZE = 1.5625
+ARROW_SIZE = 0.95
+"""Of marks and of arrows, in cells."""
+ARROW_TURNS = 36
+"""Directions that the arrows at the border point in."""
 RING, OTHER_RING, TARGET, CONE_TARGET = range(4)
 MARKS = 4
+ICON_SCALE = 2.04
+"""From a robot's drawing to one of 64 pixels for tables."""
 
 
 def robot_atlas(pixel_ratio: float, size: float = 1.0) -> QPixmap:
@@ -69,6 +75,29 @@ def mark_atlas(pixel_ratio: float, size: float = 1.0) -> QPixmap:
     return atlas
 
 
+def arrow_atlas(pixel_ratio: float) -> QPixmap:
+    """Return the arrows at the map's border: turned as in :func:`robot_atlas`, two rows for each state, the
+    second for selected robots. They have :data:`ARROW_TURNS` columns."""
+    side = cell(pixel_ratio, ARROW_SIZE)
+    atlas = _transparent(side * ARROW_TURNS, side * 2 * len(STATES))
+    painter = QPainter(atlas)
+    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+    arrow = QPolygonF([QPointF(11, 0), QPointF(-6, 9), QPointF(-2, 0), QPointF(-6, -9)])
+    for row in range(2 * len(STATES)):
+        painter.setBrush(QBrush(STATE_COLOURS[STATES[row // 2]]))
+        for column in range(ARROW_TURNS):
+            painter.save()
+            painter.translate((column + 0.5) * side, (row + 0.5) * side)
+            painter.scale(pixel_ratio, pixel_ratio)
+            painter.rotate(column * 360.0 / ARROW_TURNS)
+            for pen in (_pen(CASING, 4.4), _pen(SELECTED if row % 2 else PAPER, 2.0)):
+                painter.setPen(pen)
+                painter.drawPolygon(arrow)
+            painter.restore()
+    painter.end()
+    return atlas
+
+
 def _transparent(width: int, height: int) -> QPixmap:
     pixmap = QPixmap(width, height)
     pixmap.fill(QColor(0, 0, 0, 0))
@@ -81,7 +110,7 @@ def state_icon(state: RobotState) -> QIcon:
     painter = QPainter(pixmap)
     painter.setRenderHint(QPainter.RenderHint.Antialiasing)
     painter.translate(32, 32)
-    painter.scale(64 / CELL * 1.15, 64 / CELL * 1.15)
+    painter.scale(ICON_SCALE, ICON_SCALE)
     painter.rotate(-90)
     draw_robot(painter, state, True)
     painter.end()

@@ -132,6 +132,13 @@ class RobotPicture:
         found = [*words, ""]
         return [found[place] for place in np.nan_to_num(places, nan=len(words)).astype(np.intp).tolist()]
 
+    def says(self, name: str, word: str) -> npt.NDArray[np.bool_]:
+        """Tell which robots' text ``name`` holds ``word``, in lower case; the empty word is in any text."""
+        places, words = self._seen.texts(name)
+        # What is not known points behind the last word.
+        holds = np.array([bool(text) and word in text.casefold() for text in words] + [False])
+        return holds[np.nan_to_num(places, nan=len(words)).astype(np.intp)]
+
     def told(self, row: int) -> dict[str, Any]:
         """Return what was told last of the robot in ``row``, as it came."""
         return self._seen.told(row)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
+from typing import NamedTuple
 
 from .thresholds import AlarmKind
 
@@ -11,8 +12,7 @@ Key = tuple[AlarmKind, str, str]
 """Kind, robot, and the other robot where there is one."""
 
 
-@dataclass(frozen=True)
-class Alarm:
+class Alarm(NamedTuple):
     """Something that holds since ``began``, or held until ``ended``; times are seconds since 1970.
 
     It stays until it is over and somebody has seen it. ``times`` counts how often it began since it was

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Iterable
-from dataclasses import replace
 
 import numpy as np
 
@@ -75,7 +74,7 @@ class AlarmBoard:
             alarm = self._alarms.get(key)
             if alarm is None or not alarm.is_new:
                 continue
-            seen = replace(alarm, acknowledged=at, by=by)
+            seen = alarm._replace(acknowledged=at, by=by)
             events.append(AlarmEvent(at, AlarmChange.ACKNOWLEDGED, seen, by))
             if alarm.ended is None:
                 self._alarms[key] = seen
@@ -121,7 +120,7 @@ class AlarmBoard:
         )
         before = self._alarms.get(alarm.key)
         if before is not None and before.is_new:
-            alarm = replace(alarm, times=before.times + 1)
+            alarm = alarm._replace(times=before.times + 1)
         self._alarms[alarm.key] = alarm
         return AlarmEvent(at, AlarmChange.BEGAN, alarm)
 
@@ -131,7 +130,7 @@ class AlarmBoard:
             alarm = self._alarms.get(key)
             if alarm is None:
                 continue
-            over = replace(alarm, ended=at)
+            over = alarm._replace(ended=at)
             events.append(AlarmEvent(at, AlarmChange.ENDED, over))
             if alarm.is_new:
                 self._alarms[key] = over

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from itertools import chain
+
 import numpy as np
 from qgis.core import QgsPointXY
-from qgis.gui import QgsVertexMarker
+from qgis.gui import QgsMapCanvas, QgsVertexMarker
 from qgis.PyQt import sip
 from qgis.PyQt.QtCore import QPoint
 from qgis.PyQt.QtGui import QColor
@@ -24,6 +26,8 @@ class RouteHandles:
     def __init__(self, desk: Desk):
         self._desk = desk
         self._marker: QgsVertexMarker | None = None
+        # Which points were placed on the map last, how, the points themselves, and where they are.
+        self._placed: tuple = (None, None, (), np.empty((0, 2)))
 
     def vertex_at(self, draft: Draft, mouse: QPoint) -> int | None:
         """Return the vertex nearest to the mouse, None where none is near.
@@ -66,10 +70,22 @@ class RouteHandles:
         self._marker.setColor(MARK)
 
     def _pixels(self, draft: Draft, which: list[int]) -> np.ndarray:
-        places = self._desk.placement().to_map(np.array([draft.points[k] for k in which]))
-        screen = self._desk.canvas.getCoordinateTransform()
-        at = (screen.transform(QgsPointXY(x, y)) for x, y in places.tolist())
-        return np.array([(point.x(), point.y()) for point in at])
+        placement = self._desk.placement()
+        if self._placed[:2] != (id(draft.points), placement):
+            flat = np.fromiter(chain.from_iterable(draft.points), np.float64).reshape(-1, 2)
+            self._placed = id(draft.points), placement, draft.points, placement.to_map(flat)
+        return _on_screen(self._placed[3][which], self._desk.canvas)
+
+
+def _on_screen(places: np.ndarray, canvas: QgsMapCanvas) -> np.ndarray:
+    """Return (n, 2) map coordinates as pixels, together: a route may have thousands of points."""
+    screen, centre = canvas.getCoordinateTransform(), canvas.center()
+    unit = canvas.mapUnitsPerPixel() * 1000.0
+    at = screen.transform(centre)
+    right = screen.transform(QgsPointXY(centre.x() + unit, centre.y()))
+    up = screen.transform(QgsPointXY(centre.x(), centre.y() + unit))
+    axes = np.array([(right.x() - at.x(), right.y() - at.y()), (up.x() - at.x(), up.y() - at.y())]) / unit
+    return (places - (centre.x(), centre.y())) @ axes + (at.x(), at.y())
 
 
 def middle(draft: Draft, vertex: int) -> tuple[float, float]:

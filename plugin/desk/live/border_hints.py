@@ -8,14 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 from qgis.PyQt.QtCore import QPointF
-from qgis.PyQt.QtGui import QBrush, QPainter, QPolygonF
+from qgis.PyQt.QtGui import QPainter
 
-from ..colours import CASING, PAPER, SELECTED, STATE_COLOURS
-from ..picture import STATES
+from ..glyphs import ARROW_SIZE, ARROW_TURNS, arrow_atlas, cell
 from .labels import Labels
 from .scene import PlacedScene
 from .screen import Screen
-from .strokes import pen
+from .sprites import Sprites
 
 Points = npt.NDArray[np.float64]
 Rows = npt.NDArray[np.intp]
@@ -23,6 +22,8 @@ Rows = npt.NDArray[np.intp]
 MARGIN = 14.0
 APART = 56.0
 """Pixels of the border that share one arrow."""
+FIND_EVERY = 0.25
+"""Seconds for which the arrows and their numbers stay as they are unless the view moves."""
 _URGENT = np.array([1, 2, 3, 0])
 """The rank of each of STATES: an arrow for several robots has the colour of the one to worry about."""
 
@@ -39,8 +40,10 @@ class Hint:
     @property
     def area(self) -> tuple[float, float, float, float]:
         """About what the arrow and its text cover: left, top, right, bottom."""
-        x, y = self.x - 24.0 * math.cos(self.turn), self.y - 24.0 * math.sin(self.turn)
-        return min(x, self.x) - 16.0, min(y, self.y) - 14.0, max(x, self.x) + 16.0, max(y, self.y) + 14.0
+        # A single robot has its name there, several their number.
+        inward, wide = (48.0, 44.0) if len(self.rows) == 1 else (24.0, 16.0)
+        x, y = self.x - inward * math.cos(self.turn), self.y - inward * math.sin(self.turn)
+        return min(x, self.x) - wide, min(y, self.y) - 14.0, max(x, self.x) + wide, max(y, self.y) + 14.0
 
 
 def hints(pixels: Points, beyond: Rows, screen: Screen) -> list[Hint]:
@@ -61,26 +64,46 @@ def hints(pixels: Points, beyond: Rows, screen: Screen) -> list[Hint]:
     return found
 
 
-def paint_hints(
-    painter: QPainter, found: list[Hint], placed: PlacedScene, labels: Labels, screen: Screen
-) -> None:
-    """Paint each arrow in its robots' colour, with their name or number."""
-    robots = placed.scene.robots
-    chosen = {placed.scene.rows[name] for name in placed.scene.chosen if name in placed.scene.rows}
-    for hint in found:
-        state = max(robots.state[hint.rows].tolist(), key=_URGENT.__getitem__)
-        edge = SELECTED if chosen.intersection(hint.rows.tolist()) else PAPER
-        painter.save()
-        painter.translate(hint.x, hint.y)
-        painter.rotate(np.degrees(hint.turn))
-        arrow = QPolygonF([QPointF(11, 0), QPointF(-6, 9), QPointF(-2, 0), QPointF(-6, -9)])
-        painter.setBrush(QBrush(STATE_COLOURS[STATES[state]]))
-        for stroke in (pen(CASING, 4.4), pen(edge, 2.0)):
-            painter.setPen(stroke)
-            painter.drawPolygon(arrow)
-        painter.restore()
-        text = robots.names[hint.rows[0]] if len(hint.rows) == 1 else str(len(hint.rows))
-        _beside(painter, labels, text, hint, screen)
+class BorderHints:
+    """Finds the arrows a few times a second, and paints them from an atlas."""
+
+    def __init__(self, labels: Labels) -> None:
+        self._labels = labels
+        self._arrows: tuple[float, Sprites] | None = None
+        self._found_for: tuple[Screen, list[str]] | None = None
+        self._found_at = -np.inf
+        self.hints: list[Hint] = []
+
+    def find(self, placed: PlacedScene, pixels: Points, seen: Rows, screen: Screen) -> None:
+        """Find the arrows for robots that are not in rows ``seen``, unless that was done just now."""
+        now, names = placed.scene.now, placed.scene.robots.names
+        is_new = self._found_for is None or self._found_for[0] != screen or self._found_for[1] != names
+        if not is_new and abs(now - self._found_at) < FIND_EVERY:
+            return
+        self._found_for, self._found_at = (screen, names), now
+        beyond = np.isfinite(pixels[:, 0])
+        beyond[seen] = False
+        self.hints = hints(pixels, np.flatnonzero(beyond), screen)
+
+    def paint(self, painter: QPainter, placed: PlacedScene, screen: Screen) -> None:
+        """Paint each arrow in its robots' colour, with their name or number."""
+        if not self.hints:
+            return
+        if self._arrows is None or self._arrows[0] != screen.ratio:
+            side = cell(screen.ratio, ARROW_SIZE)
+            self._arrows = screen.ratio, Sprites(arrow_atlas(screen.ratio), side, screen.ratio)
+        robots = placed.scene.robots
+        chosen = {placed.scene.rows[name] for name in placed.scene.chosen if name in placed.scene.rows}
+        rank = _URGENT[robots.state]
+        states = np.array([robots.state[hint.rows[rank[hint.rows].argmax()]] for hint in self.hints])
+        is_chosen = [bool(chosen) and not chosen.isdisjoint(hint.rows.tolist()) for hint in self.hints]
+        turns = np.array([hint.turn for hint in self.hints]) / (2 * np.pi)
+        column = np.round(turns * ARROW_TURNS).astype(np.intp) % ARROW_TURNS
+        at = np.array([(hint.x, hint.y) for hint in self.hints])
+        self._arrows[1].paint(painter, at, column, states * 2 + np.array(is_chosen, dtype=np.intp))
+        for hint in self.hints:
+            text = robots.names[hint.rows[0]] if len(hint.rows) == 1 else str(len(hint.rows))
+            _beside(painter, self._labels, text, hint, screen)
 
 
 def _beside(painter: QPainter, labels: Labels, text: str, hint: Hint, screen: Screen) -> None:

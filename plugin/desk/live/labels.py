@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from qgis.PyQt.QtCore import QPointF, Qt
-from qgis.PyQt.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPainterPath, QPen, QPixmap
+from qgis.PyQt.QtCore import QPointF
+from qgis.PyQt.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPixmap
 
 from ...language import tr
 from ..colours import PAPER
@@ -14,6 +14,8 @@ INK = QColor("#101418")
 MOST = 600
 """Pictures that are kept: about twice as many as fit on a screen."""
 MARGIN = 4
+CASING = 1.6
+"""Pixels of light around the letters."""
 HEIGHT = 18
 """Logical pixels that a text needs from the one below it."""
 
@@ -67,14 +69,14 @@ def _drawn(text: str, ratio: float) -> QPixmap:
     pixmap = QPixmap(math.ceil(width * ratio), math.ceil(height * ratio))
     pixmap.setDevicePixelRatio(ratio)
     pixmap.fill(QColor(0, 0, 0, 0))
-    letters = QPainterPath()
-    letters.addText(QPointF(MARGIN, MARGIN + metrics.ascent()), font, text)
     painter = QPainter(pixmap)
-    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-    painter.setPen(
-        QPen(PAPER, 3.4, Qt.PenStyle.SolidLine, Qt.PenCapStyle.RoundCap, Qt.PenJoinStyle.RoundJoin)
-    )
-    painter.drawPath(letters)
-    painter.fillPath(letters, INK)
+    painter.setFont(font)
+    painter.setPen(PAPER)
+    at = QPointF(MARGIN, MARGIN + metrics.ascent())
+    # To stroke the letters' outlines would take six times as long as to write them eight times.
+    for turn in (k * math.pi / 4 for k in range(8)):
+        painter.drawText(at + QPointF(CASING * math.cos(turn), CASING * math.sin(turn)), text)
+    painter.setPen(INK)
+    painter.drawText(at, text)
     painter.end()
     return pixmap

@@ -12,6 +12,7 @@ from qgis.PyQt.QtGui import QPainter
 from ....robot_bridge.messages import RobotState
 from ...language import tr
 from ..picture import STATES, RobotArrays
+from ..state_words import ROBOT_STATES
 from .labels import HEIGHT, MARGIN, Labels, age_in_words
 from .room import Room
 from .scene import PlacedScene
@@ -22,13 +23,15 @@ Rows = npt.NDArray[np.intp]
 
 CHOOSE_EVERY = 0.25
 """Seconds for which the same robots keep their texts, so that names do not come and go as robots pass."""
-NEW_IN_A_FRAME = 10
+NEW_IN_A_FRAME = 8
 """Pictures of names are made by so many a frame: a map full of new ones must not hold up the window."""
 BESIDE = (15.0, -12.0)
 """Where a text begins, its middle, as seen from the robot."""
 LETTER = 8.0
 """About what a letter is wide."""
-SPOT = np.array([24.0, 12.0])
+SPOT = np.array([36.0, 16.0])
+STATE_LETTERS = 14.0
+"""Letters that a robot's state and age take at most, but for hours and days."""
 _URGENT = np.array([2, 1, 0, 2])
 """The rank of each of STATES: the lost before the stale before all others."""
 
@@ -43,6 +46,7 @@ class NamesPainter:
         self._widths = np.empty(0)
         self._chosen_at = -np.inf
         self._screen: Screen | None = None
+        self._lengths = np.empty(0)
 
     def paint(
         self,
@@ -67,11 +71,11 @@ class NamesPainter:
         corners = _corners(pixels[self._named], self._widths, screen)
         new = NEW_IN_A_FRAME
         for parts, (x, y) in zip(self._written, corners.tolist(), strict=True):
+            new -= sum(not self._labels.known(text, screen.ratio) for text in parts)
+            if new < 0 and not all(self._labels.known(text, screen.ratio) for text in parts):
+                # It comes with one of the next frames.
+                continue
             for text in parts:
-                new -= not self._labels.known(text, screen.ratio)
-                if new < 0:
-                    # The others come with the next frames.
-                    return
                 picture = self._labels.picture(text, screen.ratio)
                 top = y + (HEIGHT - picture.height() / screen.ratio) / 2
                 painter.drawPixmap(QPointF(x, top), picture)
@@ -94,14 +98,13 @@ class NamesPainter:
     ) -> Rows:
         """Return the rows whose texts do not cover another's text or robot, the most urgent first."""
         robots, scene = placed.scene.robots, placed.scene
-        rank = _URGENT[robots.state[seen]] * 2
-        rank[~np.isin(seen, self._named)] += 1
-        selected = [scene.rows[name] for name in scene.chosen if name in scene.rows]
-        rank[np.isin(seen, selected)] = -1
-        letters = np.fromiter(map(len, robots.names), np.float64, len(robots.names))
-        width = LETTER * (letters[seen] + 1.0)
-        for k in np.flatnonzero(robots.state[seen]).tolist():
-            width[k] = _width(texts(robots, seen[k]))
+        rank = _URGENT[robots.state] * 2 + 1
+        rank[self._named[self._named < len(rank)]] -= 1
+        rank[[scene.rows[name] for name in scene.chosen if name in scene.rows]] = -1
+        rank = rank[seen]
+        if len(self._lengths) != len(robots.names) or self._are_others(robots):
+            self._lengths = np.fromiter(map(len, robots.names), np.float64, len(robots.names))
+        width = LETTER * (self._lengths[seen] + 1.0 + np.where(robots.state[seen] > 0, STATE_LETTERS, 0.0))
         corner = _corners(pixels[seen], width, screen)
         room = Room(screen, pixels[seen], taken)
         # Texts that urge may cover a robot; the others stand where there is none.
@@ -118,7 +121,7 @@ def texts(robots: RobotArrays, row: int) -> list[str]:
         return [robots.names[row]]
     if state is RobotState.OFFLINE:
         return [robots.names[row], tr("· offline")]
-    return [robots.names[row], f"· {state.value} {age_in_words(robots.age[row])}"]
+    return [robots.names[row], f"· {ROBOT_STATES[state]} {age_in_words(robots.age[row])}"]
 
 
 def _width(written: list[str]) -> float:

@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 from qgis.PyQt.QtGui import QPainter
 
-from .border_hints import Hint, hints, paint_hints
+from .border_hints import BorderHints, Hint
 from .draft_painting import DraftPainter
 from .labels import Labels
 from .names_painting import NamesPainter
@@ -33,10 +33,14 @@ class ScenePainter:
         self._draft = DraftPainter()
         self.robots = RobotsPainter()
         self._names = NamesPainter(self._labels)
+        self._borders = BorderHints(self._labels)
         self._circles: list = []
         self._placed: tuple | None = None
-        self.hints: list[Hint] = []
+
+    @property
+    def hints(self) -> list[Hint]:
         """The arrows at the border that were painted last."""
+        return self._borders.hints
 
     def prepare(self, placed: PlacedScene | None, screen: Screen) -> None:
         """Take in a new scene: what is drawn once for each and not for each time it is painted."""
@@ -45,32 +49,28 @@ class ScenePainter:
             self._placed = None
             return
         self._trails.extend(placed.robots, screen, placed.to_map, placed.scene.now)
-        pixels, seen = self._place(placed, screen)
-        self._circles = circles(placed, pixels, seen, screen, placed.to_map)
+        _, seen, metre = self._place(placed, screen)
+        self._circles = circles(placed, seen, metre)
 
     def paint(self, painter: QPainter, placed: PlacedScene, screen: Screen) -> None:
         """Paint the scene that was prepared last."""
-        pixels, seen = self._place(placed, screen)
+        pixels, seen, metre = self._place(placed, screen)
         self._trails.paint(painter, screen)
         paint_circles(painter, self._circles, placed, screen)
         self._plans.paint(painter, placed, pixels, screen, self.robots.marks)
         self._draft.paint(painter, placed, pixels, screen, self.robots.marks)
-        self.robots.paint(painter, placed, pixels, seen, screen)
-        self.hints = self._hints(pixels, seen, screen)
+        self.robots.paint(painter, placed, pixels, seen, metre, screen)
+        self._borders.find(placed, pixels, seen, screen)
         taken = [(x - 24.0, y, x + 24.0, y + 26.0) for x, y in self._plans.distances]
         taken += [hint.area for hint in self.hints]
         self._names.paint(painter, placed, pixels, seen, screen, taken)
-        paint_hints(painter, self.hints, placed, self._labels, screen)
+        self._borders.paint(painter, placed, screen)
 
-    def _place(self, placed: PlacedScene, screen: Screen) -> tuple[Points, npt.NDArray[np.intp]]:
-        """Return where each robot is, in pixels, and the rows of those that are seen."""
+    def _place(self, placed: PlacedScene, screen: Screen) -> tuple[Points, npt.NDArray[np.intp], Points]:
+        """Return each robot's place in pixels, the rows of those seen, and the ways of these to 1 m ahead."""
         if self._placed is None or self._placed[0] is not placed or self._placed[1] != screen:
             pixels = screen.pixels(placed.robots)
-            self._placed = placed, screen, pixels, np.flatnonzero(screen.seen(pixels, BESIDE))
+            seen = np.flatnonzero(screen.seen(pixels, BESIDE))
+            metre = screen.pixels(placed.ahead[seen]) - pixels[seen]
+            self._placed = placed, screen, pixels, seen, metre
         return self._placed[2:]
-
-    def _hints(self, pixels: Points, seen: npt.NDArray[np.intp], screen: Screen) -> list[Hint]:
-        if len(seen) == len(pixels):
-            return []
-        beyond = ~screen.seen(pixels, BESIDE) & np.isfinite(pixels[:, 0])
-        return hints(pixels, np.flatnonzero(beyond), screen)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 import numpy.typing as npt
 from qgis.PyQt.QtCore import QLineF, Qt
@@ -26,7 +24,10 @@ NOTICEABLE = 0.7
 """No robot that needs to be noticed, because it is not fresh, is drawn smaller."""
 VELOCITY_SECONDS = 2.0
 """A robot's line leads to where it will be after so long."""
-SHORTEST_VELOCITY = 6.0
+NOSE = 15.5
+"""Pixels that a robot drawn in full size reaches forward."""
+SHORTEST_VELOCITY = 4.0
+"""Pixels beyond the nose."""
 MOST_VELOCITIES = 1500
 FINE_VELOCITIES = 300
 """With more of them the lines are thin: smooth ones would take half of the frame."""
@@ -57,28 +58,44 @@ class RobotsPainter:
         return self._marks[size]
 
     def paint(
-        self, painter: QPainter, placed: PlacedScene, pixels: Points, seen: Rows, screen: Screen
+        self,
+        painter: QPainter,
+        placed: PlacedScene,
+        pixels: Points,
+        seen: Rows,
+        metre: Points,
+        screen: Screen,
     ) -> None:
-        """Paint those in rows ``seen``; ``pixels`` (n, 2) is where each robot is."""
+        """Paint those in rows ``seen``; ``pixels`` (n, 2) is where each robot is.
+
+        ``metre`` is the way of each that is seen to 1 m before it.
+        """
         marks = self.marks(screen.ratio, self.magnification)
         robots, scene = placed.scene.robots, placed.scene
-        heading = screen.pixels(placed.ahead[seen]) - pixels[seen]
-        _velocities(painter, pixels[seen], heading * robots.v[seen, None] * VELOCITY_SECONDS)
+        there = pixels[seen]
+        size = next(size for most, size in SIZES if len(seen) <= most)
+        known = np.isfinite(robots.theta[seen])
+        way = metre * np.where(known, robots.v[seen] * VELOCITY_SECONDS, 0.0)[:, None]
+        _velocities(painter, there, way, NOSE * size * self.magnification + SHORTEST_VELOCITY)
         chosen = [scene.rows[name] for name in scene.chosen if name in scene.rows]
         rings = np.full(len(chosen), OTHER_RING)
         rings[-1:] = RING
         marks.paint(painter, pixels[chosen], rings)
-        known = np.isfinite(robots.theta[seen])
-        turn = np.arctan2(heading[:, 1], heading[:, 0]) / (2 * np.pi)
+        turn = np.arctan2(metre[:, 1], metre[:, 0]) / (2 * np.pi)
         column = np.where(known, np.round(turn * HEADINGS) % HEADINGS, HEADINGS).astype(np.intp)
         is_chosen = np.zeros(len(pixels), dtype=bool)
         is_chosen[chosen] = True
-        self._drawings(painter, pixels[seen], column, robots.state[seen], is_chosen[seen])
+        self._drawings(painter, there, column, robots.state[seen], is_chosen[seen], size)
 
     def _drawings(
-        self, painter: QPainter, at: Points, column: Rows, state: Rows, chosen: npt.NDArray[np.bool_]
+        self,
+        painter: QPainter,
+        at: Points,
+        column: Rows,
+        state: Rows,
+        chosen: npt.NDArray[np.bool_],
+        size: float,
     ) -> None:
-        size = next(size for most, size in SIZES if len(at) <= most)
         worth = np.where(chosen, 1.0, np.where(state > 0, max(size, NOTICEABLE), size))
         # Those that need to be noticed lie on top.
         for wanted in sorted({size, max(size, NOTICEABLE), 1.0}):
@@ -89,24 +106,26 @@ class RobotsPainter:
             if drawn not in self._atlases:
                 atlas = robot_atlas(self._ratio, drawn)
                 self._atlases[drawn] = Sprites(atlas, cell(self._ratio, drawn), self._ratio)
-            those = those[np.argsort(state[those] % (len(STATES) - 1), kind="stable")]
+            if state[those].any():
+                those = those[np.argsort(state[those] % (len(STATES) - 1), kind="stable")]
             self._atlases[drawn].paint(painter, at[those], column[those], state[those])
 
 
-def circles(
-    placed: PlacedScene, pixels: Points, seen: Rows, screen: Screen, to_map: Callable[[Points], Points]
-) -> list[tuple[int, Points]]:
-    """Return the rows of robots whose accuracy is known and can be seen, with (m, 2) corners on the map."""
+def circles(placed: PlacedScene, seen: Rows, metre: Points) -> list[tuple[int, Points]]:
+    """Return the rows of robots whose accuracy is known and can be seen, with (m, 2) corners on the map.
+
+    ``metre`` is the way of each in rows ``seen`` to 1 m before it, in pixels.
+    """
     robots = placed.scene.robots
-    metre = np.hypot(*(screen.pixels(placed.ahead[seen]) - pixels[seen]).T)
+    length = np.hypot(metre[:, 0], metre[:, 1])
     radius = robots.accuracy[seen]
-    wide = seen[(radius * np.where(metre > 0, metre, 1.0) > SMALLEST_CIRCLE)]
+    wide = seen[(radius * np.where(length > 0, length, 1.0) > SMALLEST_CIRCLE)]
     if len(wide) > MOST_CIRCLES:
         wide = wide[np.argsort(-robots.accuracy[wide])[:MOST_CIRCLES]]
     if len(wide) == 0:
         return []
     corners = robots.xy[wide, None, :] + _CIRCLE * robots.accuracy[wide, None, None]
-    on_map = to_map(corners.reshape(-1, 2)).reshape(len(wide), CORNERS, 2)
+    on_map = placed.to_map(corners.reshape(-1, 2)).reshape(len(wide), CORNERS, 2)
     return list(zip(wide.tolist(), on_map, strict=True))
 
 
@@ -127,10 +146,10 @@ def paint_circles(
         painter.drawPolygon(outline)
 
 
-def _velocities(painter: QPainter, at: Points, way: Points) -> None:
-    """Draw a line from each robot to where it will be soon, where that is far enough to be seen."""
+def _velocities(painter: QPainter, at: Points, way: Points, shortest: float) -> None:
+    """Draw a line from each robot to where it will be soon, unless that is less than ``shortest`` pixels."""
     # What is NaN compares false.
-    long = np.flatnonzero(np.hypot(*way.T) > SHORTEST_VELOCITY)
+    long = np.flatnonzero(np.hypot(way[:, 0], way[:, 1]) > shortest)
     if len(long) == 0 or len(long) > MOST_VELOCITIES:
         return
     start, end = at[long], at[long] + way[long]

@@ -26,9 +26,10 @@ class Room:
         self._shape = int(screen.height // GRID) + 2, int(screen.width // GRID) + 2
         self._texts = np.zeros(self._shape, dtype=bool)
         x, y = np.floor(robots / GRID).astype(np.intp).T
-        inside = (x >= 0) & (y >= 0) & (x < self._shape[1]) & (y < self._shape[0])
-        count = np.zeros((self._shape[0] + 1, self._shape[1] + 1), dtype=np.intp)
-        np.add.at(count, (y[inside] + 1, x[inside] + 1), 1)
+        rows, columns = self._shape
+        inside = (x >= 0) & (y >= 0) & (x < columns) & (y < rows)
+        cells = (y[inside] + 1) * (columns + 1) + x[inside] + 1
+        count = np.bincount(cells, minlength=(rows + 1) * (columns + 1)).reshape(rows + 1, columns + 1)
         self._robots = count.cumsum(axis=0).cumsum(axis=1)
         for left, top, right, bottom in texts:
             columns = slice(max(0, int(left // GRID)), max(0, int(right // GRID) + 1))

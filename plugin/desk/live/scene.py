@@ -40,7 +40,8 @@ class Scene:
 
 @dataclass(frozen=True)
 class PlacedScene:
-    """The same in the map's CRS: (n, 2) coordinates for each part; ``ahead`` is 1 m before each robot.
+    """The same in the map's CRS: (n, 2) coordinates for each part; ``ahead`` is 1 m before each robot, or
+    along the site's x of one whose heading is not known.
 
     Robots without a place have NaN. ``to_map`` places more.
     """
@@ -75,12 +76,13 @@ class Placer:
         outline = scene.draft.outline if scene.draft else ()
         is_known = outline is self._outline
         robots = scene.robots
-        there = np.flatnonzero(np.isfinite(robots.xy).all(axis=1))
-        theta = robots.theta[there]
-        step = np.nan_to_num(np.column_stack([np.cos(theta), np.sin(theta)])) * AHEAD
+        there = np.flatnonzero(np.isfinite(robots.xy[:, 0]) & np.isfinite(robots.xy[:, 1]))
+        known_places = robots.xy[there]
+        theta = np.nan_to_num(robots.theta[there])
+        ahead = known_places + AHEAD * np.column_stack([np.cos(theta), np.sin(theta)])
         parts = [
-            robots.xy[there],
-            robots.xy[there] + step,
+            known_places,
+            ahead,
             _points(() if is_known else outline),
             _points([scene.cursor] if scene.cursor else ()),
             *[plan.points for plan in new],

@@ -65,10 +65,13 @@ class Trails:
         """Take in where the robots are: (n, 2) metres in the site frame, NaN where not known."""
         self._provide(len(xy))
         last = self._last
-        far = np.abs(xy - last[:, :2]).sum(axis=1) >= SHORTEST_STEP
         # Of a robot without samples the last one is NaN, of which no comparison is true.
-        first = np.isnan(last[:, 2]) & np.isfinite(xy).all(axis=1)
-        rows = np.flatnonzero(first | far & (now - last[:, 2] >= SHORTEST_WAIT))
+        rows = np.flatnonzero(last[:, 2] <= now - SHORTEST_WAIT)
+        away = np.abs(xy[rows] - last[rows, :2])
+        rows = rows[away[:, 0] + away[:, 1] >= SHORTEST_STEP]
+        first = np.flatnonzero(np.isnan(last[:, 2]))
+        if len(first):
+            rows = np.concatenate([rows, first[np.isfinite(xy[first]).all(axis=1)]])
         column = self._taken[rows] % self._ring.shape[1]
         last[rows] = np.column_stack([xy[rows], np.full(len(rows), now)])
         self._ring[rows, column] = last[rows]

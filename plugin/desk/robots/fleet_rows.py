@@ -14,11 +14,13 @@ from ...language import tr
 from ...wire.sightings import STATES
 from ..command_book import CommandBook
 from ..picture import RobotPicture
+from ..state_words import ROBOT_STATES
 from .columns import SHORT, task_in_words
 from .deviations import deviation
 
 Floats = npt.NDArray[np.float64]
 Rows = npt.NDArray[np.intp]
+Bools = npt.NDArray[np.bool_]
 FRESH = STATES.index(RobotState.FRESH)
 
 
@@ -82,8 +84,9 @@ class FleetRows:
         words = text.casefold().split()
         if not words:
             return rows
-        has = [all(word in whole for word in words) for whole in self._whole()]
-        return rows[np.array(has, dtype=bool)[rows]]
+        names = [name.casefold() for name in self.names]
+        has = np.logical_and.reduce([self._has(word, names) for word in words])
+        return rows[has[rows]]
 
     def sorted(self, rows: Rows, title: str, descending: bool) -> Rows:
         """Return ``rows``, which come by name, sorted by a column; what is not known comes last."""
@@ -138,14 +141,22 @@ class FleetRows:
                 texts[row] = task_in_words(task, {})
         return texts
 
-    def _whole(self) -> list[str]:
-        """Return all that a search looks through, of every robot."""
-        states = [state.value for state in STATES]
-        columns = (self.names, self.state.tolist(), self._text("Task"), self.picture.texts("link"))
-        return [
-            f"{name} {states[code]} {task} {link}".casefold()
-            for name, code, task, link in zip(*columns, strict=True)
-        ]
+    def _has(self, word: str, names: list[str]) -> Bools:
+        """Tell which robots have ``word`` in their name, state, task or link; each text is looked at once,
+        however many robots say it."""
+        has = np.fromiter((word in name for name in names), dtype=bool, count=len(names))
+        has |= np.array([word in ROBOT_STATES[state].casefold() for state in STATES])[self.state]
+        return has | self.picture.says("link", word) | self._has_task(word)
+
+    def _has_task(self, word: str) -> Bools:
+        has = self.picture.says("status", word)
+        if word in tr("stopped").casefold():
+            has |= (self.picture.column("stopped") == 1.0) & ~self.picture.says("status", "")
+        for task in self.book.under_way():
+            row = self.picture.row(task.robot)
+            if row is not None:
+                has[row] = word in task_in_words(task, {}).casefold()
+        return has
 
 
 def fleet_rows(picture: RobotPicture, book: CommandBook, moment: float) -> FleetRows:

@@ -1,0 +1,87 @@
+"""Checks of large drafts against layers full of obstacles, and what they leave of the window's time.
+
+Called by :mod:`.desk` in a process of its own.
+"""
+
+from __future__ import annotations
+
+import importlib
+import time
+from typing import Any
+
+import numpy as np
+from qgis.core import QgsFeature, QgsGeometry, QgsPointXY, QgsProject, QgsVectorLayer
+
+from .desk_canvas import CRS, Stage, open_desk
+
+LAYERS = {"obstacle": (5000, 1.0), "keepout": (500, 2.0), "road_surface": (300, 20.0)}
+"""By role how many discs there are, and their radius in metres."""
+DESK = "fleet_supervisor.plugin.desk"
+
+
+def drafts(data: str, number: int) -> None:
+    """Print of drafts of ``number`` points what checking takes, and the longest slice of it, in ms."""
+    stage = Stage(data, 100)
+    desk, _, _ = open_desk(stage)
+    random = np.random.default_rng(1)
+    for role, (count, radius) in LAYERS.items():
+        _scatter(stage, role, count, radius, random)
+    kinds = importlib.import_module(f"{DESK}.drafts")
+    editing = importlib.import_module(f"{DESK}.drafting.route_editing")
+    x, y, width, height = stage.area
+    targets = _points(random.uniform((x, y), (x + width, y + height), (number, 2)))
+    middle = np.array([x + width / 2, y + height / 2])
+    way = _points(middle + random.uniform(-1.0, 1.0, (number, 2)).cumsum(axis=0))
+    route = kinds.Draft("robot-1", kinds.ROUTE, way, legs=(1,) * number)
+    slices = _Slices()
+    result: dict[str, Any] = {
+        f"{number} targets": slices.of(stage, desk, kinds.Draft("robot-1", kinds.TARGETS, targets)),
+        f"a route of {number} points": slices.of(stage, desk, route),
+    }
+    changed = editing.moved(desk.drafts.draft, number // 2, (way[0][0], way[0][1]))
+    result["one of these points moved"] = slices.of(stage, desk, changed)
+    result["a cone"] = slices.of(stage, desk, kinds.Draft("robot-1", kinds.CONE, targets[:1]))
+    stage.end(result)
+
+
+class _Slices:
+    """Takes the time of each slice by the thread's own clock."""
+
+    def __init__(self) -> None:
+        self._kind = importlib.import_module(f"{DESK}.drafting.slices").Slices
+        self._slice = self._kind._slice
+        self._taken: list[float] = []
+        self._kind._slice = lambda slices: self._timed(slices)
+
+    def of(self, stage: Stage, desk: Any, draft: Any) -> dict[str, float]:
+        """Have a draft checked."""
+        self._taken.clear()
+        desk.put_draft(draft)
+        stage.wait(lambda: not desk.checks.is_under_way)
+        slices = list(self._taken)
+        return {"ms": sum(slices), "slices": len(slices), "longest": max(slices)}
+
+    def _timed(self, slices: Any) -> Any:
+        began = time.thread_time()
+        try:
+            return self._slice(slices)
+        finally:
+            self._taken.append((time.thread_time() - began) * 1e3)
+
+
+def _scatter(stage: Stage, role: str, count: int, radius: float, random: np.random.Generator) -> None:
+    layer = QgsVectorLayer(f"Polygon?crs={CRS}&field=name:string", role, "memory")
+    x, y, width, height = stage.area
+    features = []
+    for dx, dy in random.uniform((x, y), (x + width, y + height), (count, 2)).tolist():
+        middle = QgsPointXY(stage.origin[0] + dx, stage.origin[1] + dy)
+        feature = QgsFeature(layer.fields())
+        feature.setGeometry(QgsGeometry.fromPointXY(middle).buffer(radius, 8))
+        features.append(feature)
+    layer.dataProvider().addFeatures(features)
+    layer.setCustomProperty("fleet/role", role)
+    QgsProject.instance().addMapLayer(layer, False)
+
+
+def _points(xy: np.ndarray) -> tuple[tuple[float, float], ...]:
+    return tuple((x, y) for x, y in xy.tolist())
