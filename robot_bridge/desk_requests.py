@@ -20,6 +20,7 @@ from .messages import (
     AbortTask,
     AddOperator,
     AddTasks,
+    ChooseSite,
     ClearEmergencyStop,
     CloseRoad,
     CollectLayout,
@@ -39,6 +40,7 @@ from .messages import (
     GetQueue,
     GetRoute,
     GetSessions,
+    GetSites,
     GetSurfaces,
     GetTrajectory,
     MakeCurrent,
@@ -58,11 +60,13 @@ from .messages import (
     SetPositions,
     SetQueue,
     SetRole,
+    Sites,
     SurfaceAt,
     TakeOver,
     to_json,
 )
 from .road_traffic import road_requests
+from .served_site import SiteChoice
 from .snapshots import positions
 from .store import placements
 from .trajectories.reading import get_trajectory
@@ -199,6 +203,20 @@ async def _set_role(fleet: Fleet, request: SetRole, _caller: Caller) -> Json:
     return await account_requests.set_role(fleet.database, request)
 
 
+async def _get_sites(fleet: Fleet, _request: GetSites, _caller: Caller) -> Json:
+    return to_json(Sites(await _site_choice(fleet).offers()))
+
+
+async def _choose_site(fleet: Fleet, request: ChooseSite, _caller: Caller) -> Json:
+    return to_json(await _site_choice(fleet).choose(request.site))
+
+
+def _site_choice(fleet: Fleet) -> SiteChoice:
+    if fleet.site_choice is None:
+        raise RefusedError("this gateway serves one site, and there is no choice")
+    return fleet.site_choice
+
+
 async def _get_trajectory(fleet: Fleet, request: GetTrajectory, _caller: Caller) -> Json:
     return to_json(await get_trajectory(fleet.database, request))
 
@@ -324,6 +342,8 @@ SERVICES: dict[type[DeskRequest], Service] = {
     RotateToken: Service(Role.SUPERVISOR, _rotate_token),
     RevokeToken: Service(Role.SUPERVISOR, _revoke_token),
     SetRole: Service(Role.SUPERVISOR, _set_role),
+    GetSites: Service(Role.SUPERVISOR, _get_sites),
+    ChooseSite: Service(Role.SUPERVISOR, _choose_site),
     GetRoute: Service(Role.VIEWER, _get_route),
     GetClosures: Service(Role.VIEWER, _get_closures),
     GetConflicts: Service(Role.VIEWER, _get_conflicts),

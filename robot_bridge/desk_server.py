@@ -36,6 +36,8 @@ log = logging.getLogger(__name__)
 
 OWN = (Hello, Subscribe)
 """Requests that concern the connection itself; everything later goes by them."""
+SUBJECTS = ("robot", "session", "operator", "site", "observation", "command")
+"""Parameters that say what a request is about; of several the first."""
 UNNOTED = ("hello", "subscribe")
 """Requests that change nothing but the connection they come from."""
 
@@ -128,7 +130,7 @@ class DeskSession:
         if call.method not in DESK_REQUESTS or (harmless and code != jsonrpc.FORBIDDEN):
             return
         asked = call.params if isinstance(call.params, dict) else {}
-        names = (asked.get(name) for name in ("robot", "session", "operator", "observation", "command"))
+        names = (asked.get(name) for name in SUBJECTS)
         params = msgspec.json.encode(asked).decode()
         self._gate.journal.note(
             self._operator,

@@ -10,10 +10,8 @@ import asyncio
 import logging
 import time
 from collections import Counter
-from collections.abc import Callable, Coroutine, Iterable, Sequence
+from collections.abc import Callable, Coroutine, Iterable
 from typing import Any, Protocol
-
-from sqlalchemy import Connection
 
 from . import exchange
 from .answering import Answering
@@ -56,15 +54,14 @@ from .road_traffic.traffic_control import TrafficControl
 from .road_traffic.waiting_robots import WaitingRobots
 from .road_traffic.ways import Ways
 from .robots import Robot, Robots
-from .served_site import ServedSite
+from .served_site import ServedSite, SiteChoice
 from .snapshots import ReportRow, Snapshots
-from .store import answers, commands, facts, requests, trajectories
+from .store import answers, commands, facts, requests
 from .store import robots as stored_robots
 from .store.answers import AnswerRow
 from .store.database import Database
-from .store.rows import Row
-from .store.trajectories import Fix
 from .trajectories.recorder import Recorder
+from .trajectories.saving import Saving
 
 log = logging.getLogger(__name__)
 
@@ -88,6 +85,8 @@ class Fleet:
         stops: StopJournal | None = None,
     ) -> None:
         self.site = site
+        self.site_choice: SiteChoice | None = None
+        """the sites that supervisors may choose among, where there is a choice."""
         self._database = database
         self._clock = clock
         self.robots = Robots(site.report.stale_after, site.report.lost_after)
@@ -130,6 +129,7 @@ class Fleet:
             self.announce,
         )
         self.recorder = Recorder(lambda: self.site.settings.trajectories)
+        self._saving = Saving(database, self.robots, self.recorder, clock)
         self.observations = ObservationBook(site, database, clock, self._observation_changed)
         self._answering = Answering(
             site, database, self.robots, self._book, planner or StraightPlanner(), self.ways
@@ -138,7 +138,6 @@ class Fleet:
         self.holds = Holds()
         self.tally = Tally()
         self._database_id = ""
-        self._unsaved: set[str] = set()
         self._outboxes: dict[str, asyncio.Event] = {}
         self._listeners: set[Listener] = set()
 
@@ -189,7 +188,7 @@ class Fleet:
         # Only driving sets a robot that said Stopped in motion.
         stopped = isinstance(request, Stopped) or self.robots.get(robot).ended_in_order
         known = self.robots.heard(robot, link, now, stopped=stopped)
-        self._unsaved.add(known.name)
+        self._saving.touch(robot)
         answer, note = None, ""
         if isinstance(request, OpAck):
             self._measure(known, await self._book.acknowledged(robot, request))
@@ -218,15 +217,12 @@ class Fleet:
         """
         if outcomes or request_ids:
             rows = [row for outcome in outcomes for row in outcome.rows(acks=acks)]
-            # A request whose answer a power cut undid is there again, and is dealt with again.
-            write = self._database.jot if request_ids else self._database.run
-            # A request may have waited for long: where the robot was then must not be in memory alone.
-            fixes = self.recorder.take(self._clock()) if request_ids else []
-            try:
-                await write(exchange.finish, outcomes, rows, request_ids, fixes)
-            except Exception:
-                self.recorder.give_back(fixes)
-                raise
+            if request_ids:
+                # A request whose answer a power cut undid is there again, and is dealt with again.
+                # It may have waited for long: where the robot was then must not be in memory alone.
+                await self._saving.jot_with(exchange.finish, outcomes, rows, request_ids)
+            else:
+                await self._database.run(exchange.finish, outcomes, rows, request_ids, [])
         for outcome in outcomes:
             if outcome.answer is not None:
                 self._outbox_changed(outcome.robot)
@@ -234,7 +230,7 @@ class Fleet:
     def closed(self, robot: str) -> None:
         """Note that the robot closed its link in good order."""
         self.robots.closed(robot)
-        self._unsaved.add(robot)
+        self._saving.touch(robot)
 
     async def outbox(self, robot: str, after: int, after_urgent: int = 0) -> list[AnswerRow]:
         """Return the robot's messages as :func:`.answers.read`, without those that must not be sent now."""
@@ -332,7 +328,7 @@ class Fleet:
 
     async def save(self) -> None:
         """Store where robots are and have been since the last call, and let old commands expire."""
-        await self._save()
+        await self._saving.save()
         await self.emergency.store()
         await self._book.save_progress()
         await self._book.expire(self.site.settings.commands.expire_after_s)
@@ -342,27 +338,6 @@ class Fleet:
         self.recorder.finish()
         await self.save()
 
-    async def _save(self, *robots: str) -> None:
-        """Store where robots have been and then where they are, those of ``robots`` in any case.
-
-        In this order: a stored pose makes older ones late, and a request that is dealt with again tells one.
-        """
-        while True:
-            fixes = self.recorder.take(self._clock())
-            last, unsaved = not self.recorder.waiting, set[str]()
-            if last:
-                unsaved, self._unsaved = self._unsaved.union(robots), set()
-            try:
-                # As they are now: by the time they are written they may be further on than what is stored.
-                known = [stored_robots.row(self.robots.get(name)) for name in unsaved if name in self.robots]
-                await self._database.run(_save, known, fixes)
-            except Exception:
-                self.recorder.give_back(fixes)
-                self._unsaved |= unsaved
-                raise
-            if last:
-                return
-
     # ---------------------------------------------------------------------------------------------------
 
     async def _receive_ready(self, robot: str, link: str, request: Ready, id: int | None) -> Outcome:
@@ -371,7 +346,7 @@ class Fleet:
             log.warning("link %s: a second robot said Ready: %s", link, reason)
             return Outcome(robot, OpAck(id=id, ok=False, reason=reason, magic=request.magic))
         started = self.robots.ready(robot, request.magic, link, self._clock())
-        await self._save(robot)
+        await self._saving.save(robot)
         if started:
             await self.delivered_by_deletion(link)
             reason = f"robot {robot} started anew; sent once more"
@@ -397,8 +372,7 @@ class Fleet:
     ) -> Coroutine[Any, Any, None] | None:
         if not self.robots.observe(robot, pose, link, now):
             return None
-        self._unsaved.add(robot)
-        self.recorder.observe(Fix(robot, now, pose))
+        self._saving.observe(robot, now, pose)
         return self._book.observe(robot, pose)
 
     def _measure(self, robot: Robot, written_at: float | None) -> None:
@@ -430,8 +404,3 @@ class Fleet:
 
     def _outbox_changed(self, robot: str) -> None:
         self.outbox_event(robot).set()
-
-
-def _save(connection: Connection, robots: Sequence[Row], fixes: Sequence[Fix]) -> None:
-    stored_robots.save(connection, robots)
-    trajectories.add(connection, fixes)

@@ -26,7 +26,7 @@ from .access.tokens import TokenKind
 from .access.visitor import Visitor
 from .desk_server import DeskSession
 from .emergency.journal import StopJournal, journal_file
-from .errors import StoreError
+from .errors import BridgeError, StoreError
 from .farewell import say_farewell
 from .fleet import Fleet
 from .links.sql import SqlLink
@@ -39,8 +39,12 @@ from .road_traffic.road_planning import RoadPlanner
 from .schemas.documents import served
 from .site_maps import SiteMaps
 from .site_watch import SiteWatch, stamp_of
+from .sites.errors import SiteError
+from .sites.neighbours import other_frame
 from .sites.publication import read_site
+from .sites.site import Site
 from .status_pages import HEALTH, METRICS, StatusPages
+from .store import facts
 from .store.accounts.choice import has_accounts
 from .store.database import Database
 from .store.sole_gateway import SoleGateway
@@ -62,6 +66,7 @@ class GatewaySettings:
     """What a gateway is started with; port 0 takes any free one.
 
     ``state`` is the folder for what it notes on this computer, None for the one that the site's lies in.
+    A site that a supervisor chose goes before ``site``, unless it is to be served ``site_as_given``.
     """
 
     site: Path
@@ -70,6 +75,7 @@ class GatewaySettings:
     port: int = 8765
     tls: ServerFiles | None = None
     state: Path | None = None
+    site_as_given: bool = False
 
 
 @dataclass
@@ -185,6 +191,10 @@ async def run(settings: GatewaySettings, signals: Signals, started: Callable[[st
         sole = SoleGateway(settings.database)
         await sole.take()
         stack.push_async_callback(sole.release)
+        folder = await _site_folder(settings, database)
+        if folder != settings.site:
+            stamp = await asyncio.to_thread(stamp_of, folder)
+            site = await asyncio.to_thread(_chosen, folder, site)
         journal = await asyncio.to_thread(_journal, settings)
         gate = Gate(database, site.settings.limits, may_be_open=is_loopback(settings.host))
         await gate.open()
@@ -200,9 +210,36 @@ async def run(settings: GatewaySettings, signals: Signals, started: Callable[[st
         gate.warn()
         stack.push_async_callback(say_farewell, server, fleet)
         started(_address(server, tls is not None))
-        watch = SiteWatch(settings.site, stamp, maps, fleet, signals.reload)
+        watch = fleet.site_choice = SiteWatch(folder, stamp, maps, fleet, signals.reload)
         works = {**gateway.works(), "site": watch.run, "sole gateway": sole.hold}
         await _until_stopped(keep_all_going(works, fleet.tally), signals.stop)
+
+
+async def _site_folder(settings: GatewaySettings, database: Database) -> Path:
+    """Return the folder of the site to be served: the one that a supervisor chose, else the given one."""
+    given = settings.site.resolve()
+    if settings.site_as_given:
+        await database.run(facts.forget_site)
+    chosen = await database.run(facts.chosen_site)
+    if chosen is None or chosen == given.name:
+        return settings.site
+    log.warning("site %s is served, which a supervisor chose, and not %s", chosen, given.name)
+    return given.parent / chosen
+
+
+def _chosen(folder: Path, given: Site) -> Site:
+    """Return the site in ``folder``, chosen at a desk; raises BridgeError when it cannot be served."""
+    try:
+        site = read_site(folder)
+        why = other_frame(given.settings, site.settings)
+    except SiteError as error:
+        why = str(error)
+    if why is not None:
+        raise BridgeError(
+            f"the site that a supervisor chose cannot be served: {why}. Publish it again, or serve "
+            f"{given.id} with --site-as-given"
+        )
+    return site
 
 
 def _journal(settings: GatewaySettings) -> StopJournal | None:

@@ -1,11 +1,11 @@
-"""What the fleet needs of a site."""
+"""What the fleet needs of a site, and of the choice between several."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from typing import Protocol
 
-from .messages import ObservationReport, SiteReport
+from .messages import ObservationReport, SiteOffer, SiteReport
 from .roads.surfaces.surface import Surface
 from .sites.settings import SiteSettings
 
@@ -40,3 +40,13 @@ class ServedSite(Protocol):
 
     def show(self, objects: Sequence[ObservationReport]) -> None:
         """Draw accepted objects, and no others, on the maps from now on."""
+
+
+class SiteChoice(Protocol):
+    """The sites that may be served."""
+
+    async def offers(self) -> list[SiteOffer]:
+        """Return the sites by the names of their folders."""
+
+    async def choose(self, name: str) -> SiteReport:
+        """Serve the site in the folder ``name`` from now on; raises RefusedError saying why not."""

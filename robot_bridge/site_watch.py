@@ -7,17 +7,19 @@ import contextlib
 import logging
 from pathlib import Path
 
-from .errors import BridgeError
+from .errors import BridgeError, RefusedError
 from .exchange import Outcome
 from .fleet import Fleet
-from .messages import RobotState, SetMap
+from .messages import RobotState, SetMap, SiteOffer, SiteReport
 from .road_traffic.road_planning import check_roads
 from .site_maps import SiteMaps
 from .sites.errors import SiteError
 from .sites.geopackage import GEOPACKAGE_FILE
+from .sites.neighbours import neighbours, other_frame
 from .sites.publication import read_site
-from .sites.settings import SETTINGS_FILE
+from .sites.settings import SETTINGS_FILE, read_settings
 from .sites.site import Site
+from .store import facts
 
 log = logging.getLogger(__name__)
 
@@ -34,6 +36,8 @@ def stamp_of(folder: Path) -> Stamp:
 class SiteWatch:
     """Looks at the folder of the site every second, and at once when ``reload`` is set.
 
+    Supervisors may choose another folder beside it; the choice outlives the gateway.
+
     ``seen`` is the stamp of the folder from before the site was read. A publication is taken over whole or
     not at all: a folder that is half written, or wrong, leaves the gateway with what it serves.
     """
@@ -47,6 +51,7 @@ class SiteWatch:
         self._maps = maps
         self._fleet = fleet
         self._reload = reload
+        self._reading = asyncio.Lock()
 
     async def run(self) -> None:
         """Take over what is published, until cancelled."""
@@ -58,6 +63,30 @@ class SiteWatch:
     async def look(self, *, asked: bool = False) -> None:
         """Look once; ``asked``: read the site even if it looks the same."""
         self._reload.clear()
+        async with self._reading:
+            await self._look(asked)
+
+    async def offers(self) -> list[SiteOffer]:
+        """Return the sites that lie beside the one that is served, and that one."""
+        return await asyncio.to_thread(self._offers)
+
+    async def choose(self, name: str) -> SiteReport:
+        """Serve the site in the folder ``name`` beside this one; raises RefusedError saying why not."""
+        async with self._reading:
+            known = await asyncio.to_thread(neighbours, self._folder)
+            if name not in known:
+                raise RefusedError(
+                    f"there is no site in a folder {name!r}; choose one of: {', '.join(known)}"
+                )
+            folder = self._beside(name)
+            stamp = await asyncio.to_thread(stamp_of, folder)
+            site = await asyncio.to_thread(self._readable, folder)
+            await self._fleet.database.run(facts.choose_site, name)
+            self._folder, self._seen, self._doubtful = folder, stamp, None
+            await self._take_over(site)
+            return self._maps.report
+
+    async def _look(self, asked: bool) -> None:
         stamp = await asyncio.to_thread(stamp_of, self._folder)
         if stamp == self._seen and not asked:
             return
@@ -74,6 +103,32 @@ class SiteWatch:
             return
         self._seen = stamp
         await self._take_over(site)
+
+    def _beside(self, name: str) -> Path:
+        return self._folder.resolve().parent / name
+
+    def _offers(self) -> list[SiteOffer]:
+        return [self._offer(name) for name in neighbours(self._folder)]
+
+    def _offer(self, name: str) -> SiteOffer:
+        served = name == self._folder.resolve().name
+        try:
+            found = read_settings(self._beside(name) / SETTINGS_FILE)
+        except SiteError as error:
+            return SiteOffer(name, served, refusal=str(error))
+        refusal = None if served else other_frame(self._maps.settings, found)
+        return SiteOffer(name, served, found.id, found.name, found.version, refusal)
+
+    def _readable(self, folder: Path) -> Site:
+        """Return the site in ``folder``; raises RefusedError when it cannot be served after this one."""
+        try:
+            site = read_site(folder)
+            check_roads(site)
+        except (SiteError, BridgeError) as error:
+            raise RefusedError(f"{error}; {self._maps.report.id} is served on") from error
+        if (why := other_frame(self._maps.settings, site.settings)) is not None:
+            raise RefusedError(why)
+        return site
 
     def _check(self, site: Site) -> None:
         old, new = self._maps.settings, site.settings
@@ -94,7 +149,7 @@ class SiteWatch:
         for table in ("gateway", "limits"):
             if getattr(site.settings, table) != getattr(old, table):
                 log.warning("%s: [%s] takes effect when the gateway is started anew", SETTINGS_FILE, table)
-        if site.version != old.version:
+        if (site.id, site.version) != (old.id, old.version):
             await self._send_maps()
 
     async def _send_maps(self) -> None:

@@ -20,7 +20,7 @@ from ..messages import Command, CommandReport, CommandState, OpAck, SendPos, Set
 from ..polyline import Polyline
 from ..store import commands
 from ..store.commands import StoredCommand
-from ..store.database import Database
+from ..store.database import Database, to_its_end
 from .writing import (
     Also,
     Draft,
@@ -130,27 +130,27 @@ class CommandBook:
 
         A command whose id is known already is returned as it stands and changes nothing.
         """
-        return await _to_its_end(self._issue(orders, also))
+        return await to_its_end(self._issue(orders, also))
 
     async def lead(self, robot: str, task: str, path: SetPath, write: Callable[[Connection], None]) -> None:
         """Tell a robot the way to its target; ``write`` writes that. The target stays the command.
 
         :raises RefusedError: when ``task`` is not what the robot does any more; StoreError.
         """
-        await _to_its_end(self._lead(robot, task, path, write))
+        await to_its_end(self._lead(robot, task, path, write))
 
     async def delivered(self, sa_ids: Iterable[int]) -> None:
         """Note that the messages ``sa_ids`` have reached their robots."""
         wanted = [id for id in sa_ids if id in self._open.queued]
         if wanted:
-            await _to_its_end(self._delivered(wanted))
+            await to_its_end(self._delivered(wanted))
 
     async def acknowledged(self, robot: str, ack: OpAck) -> float | None:
         """Note a robot's OpAck: it took the message on, or (``ok`` false) will not do it, or gave it up.
 
         Return when the message was written into SA, if it was a command's and is acknowledged at first.
         """
-        return await _to_its_end(self._acknowledged(robot, ack))
+        return await to_its_end(self._acknowledged(robot, ack))
 
     def observe(self, robot: str, pose: SendPos) -> Coroutine[Any, Any, None] | None:
         """Judge the robot's acknowledged commands by where it is now.
@@ -162,18 +162,18 @@ class CommandBook:
             for command in self._open.of(robot)
             if command.arrival and (deviation := command.arrival.deviation(pose)) is not None
         ]
-        return _to_its_end(self._all_reached(reached)) if reached else None
+        return to_its_end(self._all_reached(reached)) if reached else None
 
     async def deliver_again(self, robot: str, reason: str, expire_after: float) -> None:
         """Send once more what a robot that started anew may have forgotten, unless it is too old."""
-        await _to_its_end(self._deliver_again(robot, reason, expire_after))
+        await to_its_end(self._deliver_again(robot, reason, expire_after))
 
     async def expire(self, expire_after: float) -> None:
         """End the commands that were not fetched in time: ``expire_after`` seconds, or as they say."""
         now = self._clock()
         late = [c for c in self._open.queued.values() if c.expired(now, expire_after)]
         if late:
-            await _to_its_end(self._expire([c.report.command for c in late]))
+            await to_its_end(self._expire([c.report.command for c in late]))
 
     async def save_progress(self) -> None:
         """Store how far robots have come along their paths, and acknowledgements that came too late."""
@@ -387,10 +387,3 @@ class CommandBook:
             if known is None or (known.report, known.sa_id) != (found.report, found.sa_id):
                 self._apply(self._restored(found))
                 self._outbox_changed(found.report.robot)
-
-
-async def _to_its_end(work: Coroutine[Any, Any, T]) -> T:
-    """Await ``work``, which goes on when the waiting is cancelled: what is stored must be known here, too."""
-    task = asyncio.ensure_future(work)
-    task.add_done_callback(lambda done: done.cancelled() or done.exception())
-    return await asyncio.shield(task)

@@ -49,6 +49,10 @@ def serve(
         Path | None, typer.Option(help="The gateway's certificate (PEM), for wss://.")
     ] = None,
     key: Annotated[Path | None, typer.Option(help="Its key (PEM).")] = None,
+    site_as_given: Annotated[
+        bool,
+        typer.Option("--site-as-given", help="Serve --site, whatever site a supervisor chose at a desk."),
+    ] = False,
     state: Annotated[
         Path | None,
         typer.Option(
@@ -84,6 +88,7 @@ def serve(
         port=next(number for number in (port, given.port, PORT) if number is not None),
         tls=server_files(*files),
         state=state,
+        site_as_given=site_as_given,
     )
     with asyncio.Runner(loop_factory=_loop_factory(loop)) as runner:
         runner.run(_serve(settings))

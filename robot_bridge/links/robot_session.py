@@ -99,9 +99,8 @@ class RobotSession:
             return False
         try:
             rest = self._fleet.take_pose(self.robot, NAME, pose)
-        except Exception:
-            log.exception("link websocket: robot %r: internal error in a position", self.robot)
-            return True
+        except Exception as error:
+            rest = _failed(error)
         if rest is not None:
             self._due = asyncio.create_task(self._store(rest))
         return True
@@ -178,18 +177,25 @@ class RobotSession:
     async def _receive_reply(self, reply: jsonrpc.Reply) -> None:
         if not self._admitted:
             return
-        if isinstance(reply.id, str):
-            self._fleet.emergency.answered(self.robot, reply.id, refused=reply.error is not None)
-            return
         try:
-            ack = OpAck(id=reply.id, ok=reply.error is None, reason=reply.error)
-            await self._fleet.receive(self.robot, NAME, ack, None)
+            await self._take_reply(reply)
         except StoreError as error:
             log.warning("link websocket: robot %r: %s; it will be asked again", self.robot, error)
             self._delivery.begin()
         except (MessageError, BridgeError) as error:
             log.warning("link websocket: robot %r: %s", self.robot, error)
         except Exception:
-            log.exception(
-                "link websocket: robot %r: internal error in acknowledgement %s", self.robot, reply.id
-            )
+            # There is no answer to an answer: what went wrong is between the log and whoever reads it.
+            note_unforeseen(log, f"link websocket: robot {self.robot!r}, acknowledgement {reply.id}")
+
+    async def _take_reply(self, reply: jsonrpc.Reply) -> None:
+        if isinstance(reply.id, str):
+            self._fleet.emergency.answered(self.robot, reply.id, refused=reply.error is not None)
+            return
+        ack = OpAck(id=reply.id, ok=reply.error is None, reason=reply.error)
+        await self._fleet.receive(self.robot, NAME, ack, None)
+
+
+async def _failed(error: Exception) -> None:
+    """Raise what went wrong where every other error is told of."""
+    raise error

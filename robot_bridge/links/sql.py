@@ -41,6 +41,8 @@ class SqlLink:
             while True:
                 try:
                     found = await self.poll()
+                    if not found and await wakeup.doze():
+                        found = await self.poll()
                     self._fleet.tally.beat(BEAT)
                     await wakeup.wait(found=found)
                 except StoreError as error:
@@ -82,9 +84,9 @@ class SqlLink:
     async def _finish(self, outcomes: list[Outcome], ids: list[int]) -> None:
         try:
             await self._fleet.finish(outcomes, ids, acks=True)
-        except DataRefusedError as error:
+        except DataRefusedError:
             # Nothing that the gateway writes should be refused; what is must not come back for ever.
-            log.exception("link sql: %s; these requests stay without an answer: %s", error, ids)
+            note_unforeseen(log, f"link sql: requests {ids}, which stay without an answer")
             await self._fleet.finish([], ids, acks=True)
 
     async def _deal_with(self, row: RequestRow) -> Outcome | None:

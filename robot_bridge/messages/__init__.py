@@ -149,6 +149,7 @@ from .robots import (
 )
 from .roles import Role
 from .service import Stopping
+from .sites import ChooseSite, GetSites, SiteOffer, Sites
 from .stopping import (
     AbortTask,
     ClearEmergencyStop,
@@ -184,6 +185,7 @@ __all__ = [
     "Alive",
     "Answer",
     "AuditReport",
+    "ChooseSite",
     "ClearEmergencyStop",
     "CloseRoad",
     "ClosureReport",
@@ -217,6 +219,7 @@ __all__ = [
     "GetQueue",
     "GetRoute",
     "GetSessions",
+    "GetSites",
     "GetSurface",
     "GetSurfaces",
     "GetTrajectory",
@@ -274,7 +277,9 @@ __all__ = [
     "SetSurface",
     "Share",
     "SharedTask",
+    "SiteOffer",
     "SiteReport",
+    "Sites",
     "Start",
     "Stopped",
     "Stopping",

@@ -24,6 +24,7 @@ from .queues import (
 )
 from .roads import CloseRoad, GetClosures, GetConflicts, GetRoute, OpenRoad, ResolveConflict
 from .robot_state import RobotState
+from .sites import ChooseSite, GetSites
 from .stopping import AbortTask, ClearEmergencyStop, EmergencyStop, check_override, check_reason
 from .supervision import EndSession, GetAudit, GetSessions
 from .surfaces import GetSurfaces
@@ -271,6 +272,8 @@ DeskRequest = (
     | RotateToken
     | RevokeToken
     | SetRole
+    | GetSites
+    | ChooseSite
     | GetTrajectory
     | GetSurfaces
     | SetQueue
@@ -317,6 +320,8 @@ DESK_REQUESTS: dict[str, type[DeskRequest]] = {
         RotateToken,
         RevokeToken,
         SetRole,
+        GetSites,
+        ChooseSite,
         GetTrajectory,
         GetSurfaces,
         SetQueue,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
 from enum import Enum
 from typing import Any
 
@@ -17,10 +18,18 @@ from .stopping import EmergencyReport
 def to_json(message: Any) -> dict[str, Any]:
     """Return a message as JSON values; what is None is left out, a bytes field is left to the payload."""
     return {
-        name: _plain(value)
-        for name, value in ((f.name, getattr(message, f.name)) for f in dataclasses.fields(message))
-        if value is not None and not isinstance(value, bytes)
+        name: value if type(value) in _PLAIN_ALREADY else _plain(value)
+        for name in _names(message.__class__)
+        if (value := getattr(message, name)) is not None and not isinstance(value, bytes)
     }
+
+
+_PLAIN_ALREADY = frozenset({str, int, float, bool})
+
+
+@functools.cache
+def _names(kind: type) -> tuple[str, ...]:
+    return tuple(field.name for field in dataclasses.fields(kind))
 
 
 def _plain(value: Any) -> Any:

@@ -77,6 +77,7 @@ from ..messages.roads import (
     RoadClosed,
     RouteReport,
 )
+from ..messages.sites import ChooseSite, GetSites, Sites
 from ..messages.stopping import AbortTask, ClearEmergencyStop, EmergencyReport, EmergencyStop
 from ..messages.supervision import EndSession, GetAudit, GetSessions, SessionReport
 
@@ -95,6 +96,8 @@ RESULTS: dict[type[DeskRequest], type] = {
     GetObservations: Observations,
     GetImage: Image,
     ReviewObservation: ObservationReport,
+    GetSites: Sites,
+    ChooseSite: SiteReport,
     GetSessions: Sessions,
     EndSession: SessionReport,
     GetAudit: Audit,

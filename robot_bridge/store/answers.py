@@ -9,6 +9,7 @@ from typing import NamedTuple
 from sqlalchemy import Connection, and_, bindparam, delete, insert, or_, select
 
 from ..messages import Abort, Answer, SetMap, to_json
+from .rows import Row, add_messages, delete_rows
 from .schema import sa
 
 # Built once: SQLAlchemy takes longer to build a statement than the database to do it.
@@ -21,8 +22,7 @@ _READ = (
     .where(sa.c.robot == bindparam("of"), _LATER)
     .order_by(sa.c.urgent.desc(), sa.c.id)
 )
-_ADD = insert(sa).inline()
-_REMOVE = delete(sa).where(sa.c.id.in_(bindparam("ids", expanding=True)))
+_NAMES = ("robot", "op", "params", "payload", "urgent")
 _REMOVE_OWN = delete(sa).where(sa.c.robot == bindparam("of"), sa.c.id == bindparam("one"))
 _WAITING = select(sa.c.id).where(sa.c.id.in_(bindparam("ids", expanding=True)))
 
@@ -39,15 +39,14 @@ class AnswerRow(NamedTuple):
 
 def add(connection: Connection, robot: str, answer: Answer) -> int:
     """Write an answer for ``robot``; return its id."""
-    key = connection.execute(insert(sa), _row(robot, answer)).inserted_primary_key
+    key = connection.execute(insert(sa), _named(robot, answer)).inserted_primary_key
     assert key is not None
     return int(key[0])
 
 
 def add_all(connection: Connection, rows: Sequence[tuple[str, Answer]]) -> None:
     """Write many answers, each with its robot."""
-    if rows:
-        connection.execute(_ADD, [_row(robot, answer) for robot, answer in rows])
+    add_messages(connection, sa, _NAMES, [_row(robot, answer) for robot, answer in rows])
 
 
 def add_numbered(connection: Connection, rows: Sequence[tuple[str, Answer]]) -> list[int]:
@@ -55,17 +54,17 @@ def add_numbered(connection: Connection, rows: Sequence[tuple[str, Answer]]) -> 
     if not rows:
         return []
     ids = insert(sa).returning(sa.c.id, sort_by_parameter_order=True)
-    return list(connection.scalars(ids, [_row(robot, answer) for robot, answer in rows]))
+    return list(connection.scalars(ids, [_named(robot, answer) for robot, answer in rows]))
 
 
-def _row(robot: str, answer: Answer) -> dict[str, object]:
-    return {
-        "robot": robot,
-        "op": type(answer).__name__,
-        "params": json.dumps(to_json(answer)),
-        "payload": answer.map if isinstance(answer, SetMap) else None,
-        "urgent": int(isinstance(answer, Abort) and answer.emergency),
-    }
+def _named(robot: str, answer: Answer) -> dict[str, object]:
+    return dict(zip(_NAMES, _row(robot, answer), strict=True))
+
+
+def _row(robot: str, answer: Answer) -> Row:
+    payload = answer.map if isinstance(answer, SetMap) else None
+    urgent = int(isinstance(answer, Abort) and answer.emergency)
+    return robot, type(answer).__name__, json.dumps(to_json(answer)), payload, urgent
 
 
 def read(connection: Connection, robot: str, after: int = 0, after_urgent: int = 0) -> list[AnswerRow]:
@@ -80,8 +79,7 @@ def read(connection: Connection, robot: str, after: int = 0, after_urgent: int =
 
 def remove(connection: Connection, ids: Sequence[int]) -> None:
     """Delete answers that were delivered, or that are void."""
-    if ids:
-        connection.execute(_REMOVE, {"ids": ids})
+    delete_rows(connection, sa, "id", ids)
 
 
 def remove_own(connection: Connection, robot: str, id: int) -> None:

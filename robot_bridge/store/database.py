@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Coroutine
 from typing import Any, TypeVar
 
 from sqlalchemy import URL, Connection
@@ -14,7 +14,7 @@ from . import revisions
 from .accounts.stuck import end_stuck
 from .address import open_engine, read_address, shown
 from .engines.dialect import PATIENCE_S, Mode
-from .wakeups import Listening, Polling, Wakeup
+from .wakeups import GATEWAY_CHANNEL, Dozing, Listening, Polling, Wakeup
 from .worker import Job, Worker
 
 T = TypeVar("T")
@@ -83,9 +83,17 @@ class Database:
 
     def wakeup(self, channel: str) -> Wakeup:
         """Return what tells when it is time to look for new rows; ``channel`` is one of the triggers'."""
-        if self.dialect.listens:
-            return Listening(self._engine, channel, lambda: self._worker.backend)
-        return Polling()
+        if not self.dialect.listens:
+            return Polling()
+        listening = Listening(self._engine, channel, lambda: self._worker.backend)
+        if channel != GATEWAY_CHANNEL:
+            return listening
+        return Dozing(listening, lambda: self.read(self.dialect.doze), lambda: self.read(self.dialect.rouse))
+
+    @property
+    def session(self) -> int:
+        """Return a number that changes whenever the connection is a new one."""
+        return self._worker.session
 
     @property
     def waiting(self) -> int:
@@ -121,6 +129,13 @@ class Database:
         while True:
             await asyncio.sleep(WATCH_INTERVAL_S)
             self._worker.interrupt_if_stuck()
+
+
+async def to_its_end(work: Coroutine[Any, Any, T]) -> T:
+    """Await ``work``, which goes on when the waiting is cancelled: what is stored must be known here, too."""
+    task = asyncio.ensure_future(work)
+    task.add_done_callback(lambda done: done.cancelled() or done.exception())
+    return await asyncio.shield(task)
 
 
 def _pass_over(_seconds: float) -> None:

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import uuid
 
-from sqlalchemy import Connection, insert, select
+from sqlalchemy import Connection, delete, insert, select
 
 from .schema import bridge
+
+_SITE = "site"
 
 
 def database_id(connection: Connection) -> str:
@@ -16,3 +18,20 @@ def database_id(connection: Connection) -> str:
         found = str(uuid.uuid4())
         connection.execute(insert(bridge).values(name="id", value=found))
     return str(found)
+
+
+def chosen_site(connection: Connection) -> str | None:
+    """Return the name of the folder of the site that a supervisor chose, None if none did."""
+    found: str | None = connection.scalar(select(bridge.c.value).where(bridge.c.name == _SITE))
+    return found
+
+
+def choose_site(connection: Connection, folder: str) -> None:
+    """Note which site a supervisor chose."""
+    forget_site(connection)
+    connection.execute(insert(bridge).values(name=_SITE, value=folder))
+
+
+def forget_site(connection: Connection) -> None:
+    """Forget which site a supervisor chose."""
+    connection.execute(delete(bridge).where(bridge.c.name == _SITE))

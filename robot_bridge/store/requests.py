@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
-from sqlalchemy import Connection, LargeBinary, Text, bindparam, cast, delete, func, insert, select
+from sqlalchemy import Connection, LargeBinary, Text, cast, func, select
 
+from .rows import add_messages, delete_rows
 from .schema import rr
 
 AT_ONCE = 500
@@ -15,8 +16,6 @@ AT_ONCE = 500
 _ROW = (rr.c.id, *(cast(column, Text) for column in (rr.c.robot, rr.c.op, rr.c.params)))
 # Built once: SQLAlchemy takes longer to build a statement than the database to do it.
 _READ = select(*_ROW).order_by(rr.c.id).limit(AT_ONCE)
-_REMOVE = delete(rr).where(rr.c.id.in_(bindparam("ids", expanding=True)))
-_ADD = insert(rr).inline()
 
 
 class RequestRow(NamedTuple):
@@ -47,13 +46,9 @@ def payload(connection: Connection, id: int, check_size: Callable[[int], None]) 
 
 def remove(connection: Connection, ids: Sequence[int]) -> None:
     """Delete requests that have been dealt with."""
-    if ids:
-        connection.execute(_REMOVE, {"ids": ids})
+    delete_rows(connection, rr, "id", ids)
 
 
 def add_all(connection: Connection, rows: Sequence[tuple[str, str, str, bytes | None]]) -> None:
     """Write requests (robot, op, params, payload), as a robot does: it may not read what it inserted."""
-    if rows:
-        names = ("robot", "op", "params", "payload")
-        values = [dict(zip(names, row, strict=True)) for row in rows]
-        connection.execute(_ADD, values)
+    add_messages(connection, rr, ("robot", "op", "params", "payload"), rows)

@@ -1,10 +1,11 @@
-"""Many rows into a table at once: thousands come every second, and the driver takes them as they are."""
+"""Many rows into a table or out of it at once: thousands come a second, and drivers take them as they are."""
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator, Sequence
 from functools import lru_cache
-from typing import Any
+from typing import Any, TypeVar
 
 from sqlalchemy import Connection, Table
 
@@ -12,6 +13,7 @@ TOGETHER = 100
 """rows in one statement: what the driver and the interpreter do for each is then done for all of them."""
 
 Row = tuple[Any, ...]
+T = TypeVar("T")
 
 
 def add_rows(connection: Connection, table: Table, names: Sequence[str], rows: Sequence[Row]) -> None:
@@ -24,16 +26,31 @@ def add_rows(connection: Connection, table: Table, names: Sequence[str], rows: S
         connection.exec_driver_sql(text, tuple(value for row in some for value in row))
 
 
+def add_messages(connection: Connection, table: Table, names: Sequence[str], rows: Sequence[Row]) -> None:
+    """Insert ``rows`` in their order; those with a ``payload`` each by itself.
+
+    A server takes no statement of any size, and a map may be of megabytes.
+    """
+    payload = names.index("payload")
+    for large, some in itertools.groupby(rows, lambda row: row[payload] is not None):
+        for together in ([row] for row in some) if large else [list(some)]:
+            add_rows(connection, table, names, together)
+
+
 def put_rows(connection: Connection, table: Table, names: Sequence[str], rows: Sequence[Row]) -> None:
     """Insert ``rows`` in place of those with the same value in the first of the columns ``names``."""
-    for some in _pieces(rows):
-        mark = _mark(connection)
-        text = f"DELETE FROM {table.name} WHERE {names[0]} IN ({_marks(mark, len(some))})"
-        connection.exec_driver_sql(text, tuple(row[0] for row in some))
+    delete_rows(connection, table, names[0], [row[0] for row in rows])
     add_rows(connection, table, names, rows)
 
 
-def _pieces(rows: Sequence[Row]) -> Iterator[Sequence[Row]]:
+def delete_rows(connection: Connection, table: Table, name: str, values: Sequence[Any]) -> None:
+    """Delete the rows that have one of ``values`` in column ``name``."""
+    for some in _pieces(values):
+        text = _delete(table.name, name, len(some), _mark(connection))
+        connection.exec_driver_sql(text, tuple(some))
+
+
+def _pieces(rows: Sequence[T]) -> Iterator[Sequence[T]]:
     return (rows[begin : begin + TOGETHER] for begin in range(0, len(rows), TOGETHER))
 
 
@@ -41,6 +58,11 @@ def _pieces(rows: Sequence[Row]) -> Iterator[Sequence[Row]]:
 def _insert(table: str, names: tuple[str, ...], rows: int, mark: str) -> str:
     row = f"({_marks(mark, len(names))})"
     return f"INSERT INTO {table} ({', '.join(names)}) VALUES {', '.join([row] * rows)}"
+
+
+@lru_cache
+def _delete(table: str, name: str, rows: int, mark: str) -> str:
+    return f"DELETE FROM {table} WHERE {name} IN ({_marks(mark, rows)})"
 
 
 def _mark(connection: Connection) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import logging
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable
 from typing import TYPE_CHECKING, Any, Protocol
 
 from sqlalchemy import Engine
@@ -33,6 +33,12 @@ def robot_channel(robot: str) -> str:
 class Wakeup(Protocol):
     """Tells when to look for new rows."""
 
+    async def doze(self) -> bool:
+        """Ask to be told of new rows from now on; false where nobody tells, or not yet.
+
+        When it is true, look once more before :meth:`wait`: what came before it may not be told.
+        """
+
     async def wait(self, *, found: bool) -> None:
         """Return when it is time to look again; ``found``: there was something the last time."""
 
@@ -45,6 +51,10 @@ class Polling:
 
     def __init__(self) -> None:
         self._pause = SHORTEST_S
+
+    async def doze(self) -> bool:
+        """Return false: nobody tells."""
+        return False
 
     async def wait(self, *, found: bool) -> None:
         """Return after a pause."""
@@ -67,6 +77,10 @@ class Listening:
         self._own = own
         self._news = asyncio.Event()
         self._task: asyncio.Task[None] | None = None
+
+    async def doze(self) -> bool:
+        """Return true: every new row is told of."""
+        return True
 
     async def wait(self, *, found: bool) -> None:
         """Return when something was written, or after a second."""
@@ -131,3 +145,43 @@ class Listening:
         finally:
             # A lost connection no longer knows its number, and the next one may be given the same.
             loop.remove_reader(number)
+
+
+class Dozing:
+    """Looks again and again while there is much to do, and is told of new rows when there is not.
+
+    Telling costs: PostgreSQL lets transactions that notify commit one after the other, each waiting for the
+    disk by itself. So those that write look first whether the reader is awake, by a lock that it holds only
+    while it dozes (migration 0006), and that none of them may hold while it begins to: so nothing is missed.
+    """
+
+    def __init__(
+        self,
+        listening: Listening,
+        doze: Callable[[], Awaitable[bool]],
+        rouse: Callable[[], Awaitable[None]],
+    ) -> None:
+        self._listening = listening
+        self._polling = Polling()
+        self._doze = doze
+        self._rouse = rouse
+        self._dozes = False
+
+    async def doze(self) -> bool:
+        """Begin to doze; false while somebody writes who thinks that the reader is awake."""
+        self._dozes = await self._doze()
+        return self._dozes
+
+    async def wait(self, *, found: bool) -> None:
+        """Return when something was written, or after a second; while awake, after a pause."""
+        if not self._dozes:
+            await self._polling.wait(found=found)
+            return
+        if not found:
+            await self._listening.wait(found=False)
+        self._dozes = False
+        await self._rouse()
+
+    async def close(self) -> None:
+        """End the connection."""
+        await self._listening.close()

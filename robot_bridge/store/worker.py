@@ -58,6 +58,8 @@ class Worker:
         self._lock = threading.Lock()
         self._thread: threading.Thread | None = None
         self.backend: int | None = None
+        self.session = 0
+        """how many connections there have been, the present one included."""
 
     def submit(self, job: Job) -> None:
         """Have ``job`` done; its future tells when."""
@@ -186,6 +188,7 @@ class Worker:
             connection = self._engine.connect()
             with self._lock:
                 self._connection = connection
+            self.session += 1
             self.backend = self._dialect.backend(connection)
         self._since = time.monotonic()
         return self._connection

@@ -177,6 +177,9 @@ class PostgreSqlAccounts(AccountKeeper):
         names = "|".join(_TO_NOBODY)
         for function in [*self._functions(f"({names})$"), *self._functions(_TO_GATEWAYS)]:
             self._do(f"revoke execute on function {function} from public")
+        # What robots' rows set off is done in the name of the tables' owner.
+        for function in self._functions(_TO_GATEWAYS):
+            self._do(f"grant execute on function {function} to {self._quoted(self._owner())}")
 
     def _functions(self, pattern: str) -> list[str]:
         return self._names(

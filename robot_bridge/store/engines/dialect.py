@@ -54,6 +54,13 @@ class Dialect:
         """Return the number under which notifications of this connection come, or None."""
         return None
 
+    def doze(self, connection: Connection) -> bool:
+        """Have those who write into RR tell of it from now on; false while one writes who does not."""
+        return False
+
+    def rouse(self, connection: Connection) -> None:
+        """Let those who write into RR tell nobody of it."""
+
     def interrupt(self, driver_connection: Any) -> None:
         """End the wait of another thread for a server that does not answer."""
 

@@ -23,6 +23,8 @@ CONNECT_ARGUMENTS: dict[str, Any] = {
     "keepalives_interval": 2,
     "keepalives_count": 3,
 }
+GATEWAY_DOZES = 0x666C656574
+"""The number of the lock that a gateway holds while it wants to be told of new rows ('fleet')."""
 _REPEATABLE = ("40001", "40P01")
 _LOCK_TIMEOUT = "55P03"
 
@@ -63,6 +65,17 @@ class PostgreSQL(Dialect):
         driver = connection.connection.driver_connection
         assert driver is not None
         return int(driver.info.backend_pid)
+
+    def doze(self, connection: Connection) -> bool:
+        # Taken twice the lock would have to be given back twice.
+        if not connection.info.get("dozes"):
+            text = f"select pg_try_advisory_lock({GATEWAY_DOZES})"
+            connection.info["dozes"] = connection.exec_driver_sql(text).scalar_one()
+        return bool(connection.info["dozes"])
+
+    def rouse(self, connection: Connection) -> None:
+        if connection.info.pop("dozes", False):
+            connection.exec_driver_sql(f"select pg_advisory_unlock({GATEWAY_DOZES})")
 
     def interrupt(self, driver_connection: Any) -> None:
         # A second number for the same socket: this one may be closed while the other thread uses its own.

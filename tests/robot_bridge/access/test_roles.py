@@ -55,6 +55,8 @@ LEAST = {
     "rotate_token": SUPERVISOR,
     "revoke_token": SUPERVISOR,
     "set_role": SUPERVISOR,
+    "get_sites": SUPERVISOR,
+    "choose_site": SUPERVISOR,
 }
 """Written down here once more: who changes the gateway's table has to mean it."""
 
@@ -92,6 +94,7 @@ def params(method):
         "rotate_token": {"operator": "nobody"},
         "revoke_token": {"operator": "nobody"},
         "set_role": {"operator": "nobody", "role": "supervisor"},
+        "choose_site": {"site": "nowhere"},
     }
     return known.get(method, {})
 

@@ -149,18 +149,23 @@ async def test_notifications_are_heard_again_after_a_restart(database, server, k
     async def told() -> float:
         """Return how long it takes to hear of a row."""
         await asyncio.sleep(0.1)
+        assert await wakeup.doze()
         began = time.monotonic()
         await other.run(add, "r1")
-        await wakeup.wait(found=True)
+        await wakeup.wait(found=False)
         return time.monotonic() - began
 
-    await wakeup.wait(found=False)
-    await wakeup.wait(found=False)
+    async def wait_for_nothing() -> None:
+        assert await wakeup.doze()
+        await wakeup.wait(found=False)
+
+    await wait_for_nothing()
+    await wait_for_nothing()
     assert await told() < 0.5
     server.kill()
     server.start()
     for _ in range(4):
-        await wakeup.wait(found=False)
+        await wait_for_nothing()
     assert await told() < 0.5
     await wakeup.close()
     await other.close()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+import threading
 
 import pytest
 
@@ -64,11 +65,14 @@ async def test_positions_that_are_dealt_with_again_after_a_kill_are_stored_thoug
 async def test_a_pose_is_stored_as_it_was_when_its_track_was(plugged):
     plugged.ask("r1", SendPos(1.0, 0.0, 0.0, 1.0, t=1.0))
     await plugged.link.poll()
+    go = threading.Event()
+    busy = asyncio.create_task(plugged.fleet.database.run(lambda _connection: go.wait(20)))
     saving = asyncio.create_task(plugged.fleet.save())
-    await asyncio.sleep(0)
-    # The database's thread has had no time yet.
+    while not plugged.fleet.database.waiting:
+        await asyncio.sleep(0.001)
     await plugged.fleet.receive("r1", "sql", SendPos(2.0, 0.0, 0.0, 1.0, t=2.0), None)
-    await saving
+    go.set()
+    await asyncio.gather(busy, saving)
     assert max(places(plugged)) == 1.0
     ((pose,),) = plugged.sql("select pose from robots where name = 'r1'")
     assert json.loads(pose)["x"] == 1.0

@@ -1,0 +1,110 @@
+"""Where robots are and have been, on its way into the database, in an order in which nothing is lost."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from sqlalchemy import Connection
+
+from ..messages import SendPos
+from ..robots import Robots
+from ..store import robots as stored_robots
+from ..store import trajectories
+from ..store.database import Database, to_its_end
+from ..store.rows import Row
+from ..store.trajectories import Fix
+from .recorder import Recorder
+
+
+class Saving:
+    """Stores positions, and then where robots are.
+
+    In this order: a stored pose makes older ones late, and a request that is dealt with again tells one. So
+    where robots are is written only when no position waits, and none is on its way.
+    """
+
+    def __init__(
+        self, database: Database, robots: Robots, recorder: Recorder, clock: Callable[[], float]
+    ) -> None:
+        self._database = database
+        self._robots = robots
+        self._recorder = recorder
+        self._clock = clock
+        self._unsaved: set[str] = set()
+        self._jotted: list[tuple[int, list[Fix]]] = []
+        """what a server may still forget, with the session in which it was written."""
+        self._writing = asyncio.Lock()
+
+    def observe(self, robot: str, now: float, pose: SendPos) -> None:
+        """Have the place of a robot stored."""
+        self._unsaved.add(robot)
+        self._recorder.observe(Fix(robot, now, pose))
+
+    def touch(self, robot: str) -> None:
+        """Have what is known of a robot stored anew."""
+        self._unsaved.add(robot)
+
+    async def save(self, *robots: str) -> None:
+        """Store where robots have been and are, those of ``robots`` in any case; raises StoreError."""
+        await to_its_end(self._save(robots))
+
+    async def jot_with(self, work: Callable[..., None], *arguments: Any) -> None:
+        """Do ``work(connection, *arguments, positions)`` in one transaction with the positions that wait.
+
+        A power cut may undo it; the positions are then stored again. Raises StoreError.
+        """
+        await to_its_end(self._jot_with(work, arguments))
+
+    async def _jot_with(self, work: Callable[..., None], arguments: tuple[Any, ...]) -> None:
+        async with self._writing:
+            fixes, session = self._recorder.take(self._clock()), self._database.session
+            try:
+                await self._database.jot(work, *arguments, fixes)
+            except Exception:
+                self._recorder.give_back(fixes)
+                raise
+            if fixes:
+                self._jotted.append((session, fixes))
+
+    async def _save(self, robots: Sequence[str]) -> None:
+        async with self._writing:
+            self._take_back()
+            while True:
+                fixes = self._recorder.take(self._clock())
+                last, unsaved = not self._recorder.waiting, set[str]()
+                if last:
+                    unsaved, self._unsaved = self._unsaved.union(robots), set()
+                try:
+                    # As they are now: by the time they are written they may be further on than is stored.
+                    known = [
+                        stored_robots.row(self._robots.get(name)) for name in unsaved if name in self._robots
+                    ]
+                    await self._database.run(_write, known, fixes)
+                except Exception:
+                    self._recorder.give_back(fixes)
+                    self._unsaved |= unsaved
+                    raise
+                taken_back = self._take_back()
+                # Now that this is stored for good, so is what was jotted down before in the same session.
+                self._jotted.clear()
+                if last and not taken_back:
+                    return
+
+    def _take_back(self) -> bool:
+        """Have that stored again which was jotted down in a session that has ended; tell whether any was.
+
+        The server may have died, and have forgotten it.
+        """
+        session = self._database.session
+        forgotten = [fixes for number, fixes in self._jotted if number != session]
+        self._jotted = [(number, fixes) for number, fixes in self._jotted if number == session]
+        for fixes in reversed(forgotten):
+            self._recorder.give_back(fixes)
+        return bool(forgotten)
+
+
+def _write(connection: Connection, robots: Sequence[Row], fixes: Sequence[Fix]) -> None:
+    stored_robots.save(connection, robots)
+    trajectories.add(connection, fixes)

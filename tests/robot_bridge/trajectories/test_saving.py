@@ -1,0 +1,165 @@
+"""Positions on their way into the database: none is lost, whatever fails, is cancelled or is forgotten."""
+
+from __future__ import annotations
+
+import asyncio
+import threading
+
+import pytest
+from sqlalchemy import select
+
+from robot_bridge.errors import StoreError
+from robot_bridge.messages import SendPos
+from robot_bridge.robots import Robots
+from robot_bridge.sites.settings import TrajectorySettings
+from robot_bridge.store import robots as stored_robots
+from robot_bridge.store import trajectories
+from robot_bridge.store.database import Database
+from robot_bridge.store.schema import trajectories as table
+from robot_bridge.trajectories.recorder import Recorder
+from robot_bridge.trajectories.saving import Saving
+
+EVERY = TrajectorySettings(min_distance_m=0.0, min_turn_deg=0.0, min_interval_s=0.0)
+
+
+@pytest.fixture
+async def database(tmp_path):
+    database = Database(f"sqlite:///{tmp_path}/fleet.db")
+    await database.open()
+    yield database
+    await database.close()
+
+
+class Yard:
+    """One robot whose positions are saved in ``database``."""
+
+    def __init__(self, database):
+        self.database = database
+        self.robots = Robots()
+        self.robots.ready("r1", 1, "sql", 0.0)
+        self.saving = Saving(database, self.robots, Recorder(lambda: EVERY), lambda: 100.0)
+
+    def tell(self, *times):
+        for t in times:
+            pose = SendPos(t, 0.0, 0.0, 0.0, t=t)
+            assert self.robots.observe("r1", pose, "sql", t)
+            self.saving.observe("r1", t, pose)
+
+    async def stored(self):
+        """Return the times of the stored positions, and that of the robot's own row."""
+        times = await self.database.run(
+            lambda c: list(c.scalars(select(table.c.device_time).order_by(table.c.id)))
+        )
+        known = await self.database.run(stored_robots.load)
+        return times, known[0].pose.t if known and known[0].pose else None
+
+
+@pytest.fixture
+def yard(database):
+    return Yard(database)
+
+
+@pytest.fixture
+async def busy(database):
+    """Let the database's thread wait until ``go`` is set; return that."""
+    begun, go = threading.Event(), threading.Event()
+
+    def wait(_connection):
+        begun.set()
+        go.wait(20)
+
+    waiting = asyncio.ensure_future(database.run(wait))
+    await asyncio.to_thread(begun.wait)
+    yield go
+    go.set()
+    await waiting
+
+
+async def test_what_is_being_saved_when_the_gateway_is_told_to_end_is_stored_once(yard, busy):
+    yard.tell(1.0, 2.0)
+    saving = asyncio.ensure_future(yard.saving.save())
+    await asyncio.sleep(0.05)
+    saving.cancel()
+    await asyncio.gather(saving, return_exceptions=True)
+    busy.set()
+    await yard.saving.save()
+    assert await yard.stored() == ([1.0, 2.0], 2.0)
+
+
+async def test_what_is_being_written_with_answers_when_the_gateway_is_told_to_end_is_stored_once(yard, busy):
+    yard.tell(1.0, 2.0)
+    writing = asyncio.ensure_future(yard.saving.jot_with(trajectories.add))
+    await asyncio.sleep(0.05)
+    writing.cancel()
+    await asyncio.gather(writing, return_exceptions=True)
+    busy.set()
+    await yard.saving.save()
+    assert await yard.stored() == ([1.0, 2.0], 2.0)
+
+
+async def test_where_a_robot_is_is_never_stored_before_where_it_was(yard, busy):
+    def fail(connection, fixes):
+        trajectories.add(connection, fixes)
+        raise StoreError("the disk is full")
+
+    yard.tell(1.0, 2.0)
+    writing = asyncio.ensure_future(yard.saving.jot_with(fail))
+    await asyncio.sleep(0)
+    saving = asyncio.ensure_future(yard.saving.save())
+    await asyncio.sleep(0.05)
+    busy.set()
+    with pytest.raises(StoreError, match="the disk is full"):
+        await writing
+    await saving
+    assert await yard.stored() == ([1.0, 2.0], 2.0)
+
+
+class ForgetfulServer:
+    """A database that forgets, when it is killed, what was jotted down since it stored something for good."""
+
+    def __init__(self):
+        self.session, self.kept, self.jotted = 1, [], []
+
+    async def jot(self, _work, fixes):
+        self.jotted += fixes
+
+    async def run(self, _write, _robots, fixes):
+        self.kept += [*self.jotted, *fixes]
+        self.jotted = []
+
+    def kill(self):
+        self.jotted = []
+        self.session += 1
+
+
+@pytest.mark.parametrize("killed", [False, True])
+async def test_what_a_killed_server_may_have_forgotten_is_stored_again(killed):
+    server = ForgetfulServer()
+    yard = Yard(server)
+    yard.tell(1.0, 2.0)
+    await yard.saving.jot_with(None)
+    yard.tell(3.0)
+    await yard.saving.jot_with(None)
+    if killed:
+        server.kill()
+    yard.tell(4.0)
+    await yard.saving.save()
+    server.kill()
+    await yard.saving.save()
+    assert [fix.pose.t for fix in server.kept] == [1.0, 2.0, 3.0, 4.0]
+
+
+async def test_a_server_that_is_killed_while_it_stores_is_told_again_what_it_forgot():
+    class KilledOnce(ForgetfulServer):
+        async def run(self, write, robots, fixes):
+            if self.session == 1:
+                self.kill()
+            await super().run(write, robots, fixes)
+
+    server = KilledOnce()
+    yard = Yard(server)
+    yard.tell(1.0, 2.0)
+    await yard.saving.jot_with(None)
+    yard.tell(3.0)
+    await yard.saving.save()
+    assert sorted(fix.pose.t for fix in server.kept) == [1.0, 2.0, 3.0]
