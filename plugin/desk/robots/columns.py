@@ -84,7 +84,7 @@ def task_in_words(task: CommandReport | None, told: dict) -> str:
 
 
 def number_in_words(title: str, value: float) -> str:
-    """Return a number of a column as text, nothing for one that is not known."""
+    """Return a number of a column as text that fits into it, nothing for one that is not known."""
     if np.isnan(value):
         return ""
     if title == "Speed":
@@ -92,10 +92,12 @@ def number_in_words(title: str, value: float) -> str:
     if title == "Batt.":
         return f"{value:.0%}"
     if title == "Ping":
-        return f"{value * 1000:.0f} ms"
+        return f"{value * 1000:.0f} ms" if value < 0.9995 else f"{value:.1f} s"
     if title == "Off":
         return f"{value:.2f} m" if value < 10 else f"{value:.1f} m"
-    return f"{value:.1f} s" if value < 3600 else f"{value / 3600:.1f} h"
+    if value < 99.95:
+        return f"{value:.1f} s"
+    return f"{value / 60:.0f} min" if value < 3570 else f"{value / 3600:.1f} h"
 
 
 def state_in_words(code: int) -> str:

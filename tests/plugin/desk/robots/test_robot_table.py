@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from fleet_supervisor.plugin.desk.robots.columns import COLUMNS, TITLES
+from fleet_supervisor.plugin.desk.robots.columns import COLUMNS, TITLES, number_in_words
 from fleet_supervisor.plugin.desk.robots.deviations import beside
 from fleet_supervisor.plugin.desk.robots.fleet_rows import Which
 from fleet_supervisor.plugin.desk.robots.robot_panel import WHICH
@@ -268,3 +268,24 @@ def test_ten_thousand_are_sorted_and_searched(table, at_desk, gateway, make_robo
     assert table.model().name_at(0) == f"n{int(speeds.argmax()):05}"
     type_search(at_desk, "n0777")
     assert sorted(column(table, "Robot")) == [f"n0777{k}" for k in range(10)]
+
+
+@pytest.mark.parametrize(
+    ("title", "value", "text"),
+    [
+        ("Ping", 0.0004, "0 ms"),
+        ("Ping", 0.9994, "999 ms"),
+        ("Ping", 1.019, "1.0 s"),
+        ("Off", 9.99, "9.99 m"),
+        ("Off", 10.2, "10.2 m"),
+        ("Age", 99.9, "99.9 s"),
+        ("Age", 100.0, "2 min"),
+        ("Age", 3569.0, "59 min"),
+        ("Age", 3600.0, "1.0 h"),
+        ("Age", float("nan"), ""),
+    ],
+)
+def test_a_number_is_no_longer_than_its_column_is_wide(title, value, text):
+    column = next(each for each in COLUMNS if each.title == title)
+    assert number_in_words(title, value) == text
+    assert len(text) <= len(column.widest)
