@@ -61,7 +61,8 @@ class QueueTask:
     ``theta`` is its heading there. ``path``, if given, is driven to get there and ends there. ``task`` is an
     id that the operator's side invents: given twice, done once. ``placement`` says which placed cone is
     collected. ``cone``, ``label``, ``layout`` and ``plan`` are the operator's own names, kept with what is
-    measured.
+    measured. ``after`` names tasks, of any robot's queue, that must be done before this one is sent: its
+    queue waits until they are, with those too that are only given later.
     """
 
     task: str
@@ -75,6 +76,7 @@ class QueueTask:
     layout: str | None = None
     plan: str | None = None
     placement: int | None = None
+    after: list[str] | None = None
     texts: ClassVar[Texts] = dict.fromkeys(("cone", "label", "layout", "plan"), LONGEST_LABEL)
 
     def __post_init__(self) -> None:
@@ -86,6 +88,8 @@ class QueueTask:
             raise MessageError(f"task {self.task}: placement is for what is collected, not {self.kind.value}")
         if self.path is not None:
             check_path(self.task, self.path, (self.x, self.y))
+        if self.after is not None:
+            _check_after(self.task, self.after)
 
 
 @dataclass(frozen=True)
@@ -93,8 +97,8 @@ class TaskReport:
     """A task as it stands. ``path_points`` counts its path's points; ``path`` comes when asked for.
 
     ``command`` is the command that drives it, or drove it last, after ``attempts``; ``reason`` is why it
-    failed or was given back, in the robot's or the gateway's words. ``deviation`` is metres between target
-    and robot (of a cone: between planned and as-placed).
+    failed, was given back or is not sent yet, in the robot's or the gateway's words. ``deviation`` is metres
+    between target and robot (of a cone: between planned and as-placed).
     """
 
     task: str
@@ -338,6 +342,15 @@ def check_path(task: str, path: list[tuple[float, float]], end: tuple[float, flo
         raise MessageError(
             f"task {task}: its path ends at {path[-1]} and its target is {end}; let the path end there"
         )
+
+
+def _check_after(task: str, after: list[str]) -> None:
+    if len(after) > LONGEST_QUEUE:
+        raise MessageError(f"task {task}: after names {len(after)} tasks; give {LONGEST_QUEUE} at most")
+    if task in after:
+        raise MessageError(f"task {task}: after names the task itself; it would wait for ever")
+    for one in after:
+        check_task_id(one)
 
 
 def _check_edit(robot: str, revision: int) -> None:

@@ -41,6 +41,7 @@ from ..store import queues
 from ..store.commands import StoredCommand
 from ..store.database import Database
 from .book import QueueBook
+from .precedence import Precedence
 from .settling import QueueSettling
 
 log = logging.getLogger(__name__)
@@ -67,6 +68,7 @@ class QueueDriving:
         self._commands = commands
         self._book = book
         self._settling = QueueSettling(site, commands, book, database, clock)
+        self._precedence = Precedence(book, database)
         self._database = database
         self._clock = clock
         self._due: set[str] = set()
@@ -200,8 +202,9 @@ class QueueDriving:
         if self._robots.get(queue.robot).state in AWAY:
             await self._wait_for_robot(queue)
             return
-        if (other := self.waits_for(queue.robot, head.id)) is not None:
-            await self._wait(queue, f"waits for {other}")
+        if (why := await self._why_not_yet(queue.robot, head)) is not None:
+            if head.reason != why:
+                await self._book.save(queue, life.waits(queue, why))
             return
         busy, own = self._commands.busy_with(queue.robot), {task.command for task in queue.tasks}
         try:
@@ -214,10 +217,13 @@ class QueueDriving:
         except RefusedError as error:
             await self._book.save(queue, life.held(queue, str(error), self._clock()))
 
-    async def _wait(self, queue: Queue, reason: str) -> None:
-        """Let operators know why the next task is not sent yet."""
-        if queue.tasks[0].reason != reason:
-            await self._book.save(queue, life.waits(queue, reason))
+    async def _why_not_yet(self, robot: str, head: QueuedTask) -> str | None:
+        """Return why what comes next is not sent yet, None when it may be; raises StoreError."""
+        other = self.waits_for(robot, head.id)
+        if other is not None:
+            return f"waits for {other}"
+        # What was begun is not given up because of what another robot does.
+        return None if head.is_current else await self._precedence.waits_for(robot, head.task)
 
     async def _wait_for_robot(self, queue: Queue) -> None:
         away = self._clock() - self._robots.get(queue.robot).received_at

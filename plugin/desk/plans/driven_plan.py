@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -19,7 +19,7 @@ from ..desk import Desk
 from ..placement_book import MOST_ASKED
 from .closed_ways import closed_ways
 from .draft_plan import Draft, DraftPlan, PlanningError
-from .progress import Progress, Trouble, behind, cones_under_way, situation_of, trouble_of
+from .progress import Progress, Trouble, behind, cones_under_way, situation_of, trouble_of, under_way
 from .sending import (
     Sending,
     Step,
@@ -31,7 +31,7 @@ from .sending import (
     paused_at,
 )
 from .sending_check import after_sending
-from .task_rows import sent_stops, tasks_of
+from .task_rows import SentStop, sent_stops, tasks_of
 
 _REPLANNING_S = 2.0
 """How long a new plan for what is left may take at most: robots stand meanwhile."""
@@ -137,7 +137,7 @@ class DrivenPlan(QObject):
                     cones=", ".join(sorted(given_up)),
                 )
             )
-        tasks = _tasks(offer)
+        tasks = _tasks(offer, under_way(progress))
         away = [one.robot.id for one in offer.plan.robots if one.lost]
         progress.forget(
             task
@@ -305,8 +305,8 @@ class DrivenPlan(QObject):
         self._take_queues([one.robot for one in self._desk.queues])
 
 
-def _tasks(draft: Draft) -> dict[str, list[QueueTask]]:
+def _tasks(draft: Draft, now: Mapping[str, SentStop] | None = None) -> dict[str, list[QueueTask]]:
     try:
-        return tasks_of(draft.plan, draft.name, draft.facts)
+        return tasks_of(draft.plan, draft.name, draft.facts, under_way=now)
     except MessageError as error:
         raise PlanningError(tr("The plan cannot be sent: {error}", error=error)) from error

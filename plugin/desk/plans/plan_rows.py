@@ -131,6 +131,8 @@ def _row(
         state = "" if found is None else _WORDS[found]
         if found in (TaskState.FAILED, TaskState.SKIPPED) and progress.why_not(stop.id):
             state += f": {progress.why_not(stop.id)}"
+        if found is TaskState.WAITING and progress.waits_for(stop.id):
+            state += f": {progress.waits_for(stop.id)}"
         placed = progress.placed.get(stop.id)
         deviation = None if placed is None else placed.deviation
     return StopRow(robot, number, trip, stop, clock(stop.arrival_s, began), state, deviation)

@@ -78,6 +78,11 @@ class Progress:
         found = self._newest(target)
         return (found.reason or "") if found is not None and found.state in _GIVEN_UP else ""
 
+    def waits_for(self, target: str) -> str:
+        """Return why a cone that is in a queue is not begun yet, nothing where it is only not its turn."""
+        found = self._newest(target)
+        return (found.reason or "") if found is not None and found.state is TaskState.WAITING else ""
+
     def is_finished(self, plan: Plan) -> bool:
         """Tell whether every cone of ``plan`` is done or left out."""
         out = {one.target.id for one in plan.left_out}
@@ -190,9 +195,14 @@ def behind(progress: Progress) -> list[Stop]:
     return [one.stop for task, one in progress.stops.items() if _is_behind(progress, task)]
 
 
+def under_way(progress: Progress) -> dict[str, SentStop]:
+    """Return what each robot is at, by the robot."""
+    return {robot: progress.stops[task] for robot, task in current_tasks(progress).items()}
+
+
 def cones_under_way(progress: Progress) -> set[str]:
     """Return the cones that robots are at."""
-    return {progress.stops[task].stop.id for task in current_tasks(progress).values()}
+    return {one.stop.id for one in under_way(progress).values()}
 
 
 def _loaded(robot: Robot, plan: Plan, progress: Progress, name: str) -> Robot:

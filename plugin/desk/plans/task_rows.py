@@ -30,15 +30,39 @@ def tasks_of(
     name: str,
     facts: Mapping[str, ConeFacts],
     new_id: Callable[[], str] = lambda: str(uuid.uuid4()),
+    under_way: Mapping[str, SentStop] | None = None,
 ) -> dict[str, list[QueueTask]]:
     """Return the tasks of each robot that is not lost, in their order; ``name`` is the plan's own.
 
+    A cone comes after all cones of lower stages that other robots see to, also those that they are at
+    (``under_way``, by the robot).
+
     :raises MessageError: naming a task that no gateway would take.
     """
+    staying = [one for one in plan.robots if not one.lost]
+    ids = {one.robot.id: [new_id() for _ in one.stops] for one in staying}
+    stages = {target.id: target.stage for target in plan.targets}
+    staged = [
+        (one.robot.id, stages[stop.id], task)
+        for one in staying
+        for stop, task in zip(one.stops, ids[one.robot.id], strict=True)
+        if stop.is_target
+    ]
+    now = [under_way[one.robot.id] for one in staying if under_way and one.robot.id in under_way]
+    staged += [(one.robot, stages[one.stop.id], one.task) for one in now if one.stop.is_target]
+
+    def after(robot: str, stop: Stop) -> list[str] | None:
+        if not stop.is_target:
+            return None
+        before = [task for by, stage, task in staged if by != robot and stage < stages[stop.id]]
+        return before or None
+
     return {
-        one.robot.id: [_task(stop, name, facts, new_id()) for stop in one.stops]
-        for one in plan.robots
-        if not one.lost
+        one.robot.id: [
+            _task(stop, name, facts, task, after(one.robot.id, stop))
+            for stop, task in zip(one.stops, ids[one.robot.id], strict=True)
+        ]
+        for one in staying
     }
 
 
@@ -50,7 +74,9 @@ def sent_stops(one: RobotPlan, tasks: list[QueueTask]) -> list[SentStop]:
     ]
 
 
-def _task(stop: Stop, name: str, facts: Mapping[str, ConeFacts], task: str) -> QueueTask:
+def _task(
+    stop: Stop, name: str, facts: Mapping[str, ConeFacts], task: str, after: list[str] | None
+) -> QueueTask:
     path = [*stop.path[:-1], (stop.x, stop.y)]
     if not stop.is_target:
         label = f"{_LABELS[stop.kind]} {stop.id}"
@@ -60,5 +86,5 @@ def _task(stop: Stop, name: str, facts: Mapping[str, ConeFacts], task: str) -> Q
     theta = known.theta if stop.kind == COLLECT else stop.theta
     return QueueTask(
         task, stop.x, stop.y, theta, _KINDS[stop.kind], path, known.cone, stop.id, known.layout, name,
-        known.placement,
+        known.placement, after,
     )  # fmt: skip

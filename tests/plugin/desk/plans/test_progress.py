@@ -3,10 +3,19 @@
 from __future__ import annotations
 
 import itertools
+from dataclasses import replace
 
 import pytest
 from fleet_supervisor.plugin.desk.plans.cone_source import ConeFacts
-from fleet_supervisor.plugin.desk.plans.progress import Progress, Trouble, situation_of, trouble_of
+from fleet_supervisor.plugin.desk.plans.draft_plan import Draft
+from fleet_supervisor.plugin.desk.plans.plan_rows import rows_of
+from fleet_supervisor.plugin.desk.plans.progress import (
+    Progress,
+    Trouble,
+    situation_of,
+    trouble_of,
+    under_way,
+)
 from fleet_supervisor.plugin.desk.plans.task_rows import sent_stops, tasks_of
 from fleet_supervisor.robot_bridge.assignment.editing import replanned_by_hand
 from fleet_supervisor.robot_bridge.assignment.job import Job, Robot, Store, Target
@@ -163,3 +172,61 @@ def test_a_task_that_ended_while_the_desk_was_away_is_not_open_any_more(driven):
     driven.tell("r1", [CURRENT])
     driven.tell("r1", [DONE, DONE, CURRENT], ended_known=0)
     assert driven.progress.state_of("c1") is DONE and driven.progress.state_of("c3") is CURRENT
+
+
+# --- stages ------------------------------------------------------------------------------------------------
+
+
+class Staged(Driven):
+    """The same robots; cones c3 and d3 come after all others."""
+
+    def __init__(self):
+        super().__init__()
+        late = {"c3", "d3"}
+        targets = tuple(replace(one, stage=int(one.id in late)) for one in self.plan.targets)
+        self.plan = replace(self.plan, targets=targets)
+        numbers = itertools.count(1)
+        self.tasks = tasks_of(self.plan, "plan-1", self.facts, lambda: f"late-{next(numbers):04d}")
+
+
+def test_a_cone_comes_after_those_of_lower_stages_that_other_robots_see_to():
+    tasks = Staged().tasks
+    ids = {task.cone: task.task for theirs in tasks.values() for task in theirs}
+    after = {task.cone: task.after for theirs in tasks.values() for task in theirs}
+    assert after["c3"] == [ids["d1"], ids["d2"]]
+    assert after["d3"] == [ids["c1"], ids["c2"]]
+    assert {after[cone] for cone in ("c1", "c2", "d1", "d2")} == {None}
+
+
+def test_a_new_plan_waits_for_what_a_robot_is_at_already():
+    staged = Staged()
+    for one in staged.plan.robots:
+        staged.progress.sent(sent_stops(one, staged.tasks[one.robot.id]))
+    report = staged.tell("r2", [CURRENT])
+    now = under_way(staged.progress)
+    assert now["r2"].task == report.tasks[0].task
+    robots = [
+        replace(one, trips=tuple(replace(trip, stops=trip.stops[1:]) for trip in one.trips))
+        if one.robot.id == "r2"
+        else one
+        for one in staged.plan.robots
+    ]
+    rest = replace(staged.plan, robots=tuple(robots))
+    tasks = tasks_of(rest, "plan-1", staged.facts, under_way=now)
+    (last,) = [task for task in tasks["r1"] if task.cone == "c3"]
+    (second,) = [task for task in tasks["r2"] if task.cone == "d2"]
+    assert last.after == [second.task, report.tasks[0].task]
+
+
+def test_the_table_says_what_a_cone_waits_for():
+    staged = Staged()
+    for one in staged.plan.robots:
+        staged.progress.sent(sent_stops(one, staged.tasks[one.robot.id]))
+    (waiting,) = [task for task in staged.tasks["r1"] if task.cone == "c3"]
+    report = staged.task("r1", 2, WAITING, reason="waits for cone d1 of r2")
+    assert report.task == waiting.task
+    staged.progress.take_queue(QueueReport("r1", 1, QueueState.RUNNING, RobotState.FRESH, [report], []))
+    draft = Draft(staged.plan, None, staged.facts, "plan-1")
+    states = {row.stop.id: row.state for row in rows_of(draft, staged.progress)["r1"]}
+    assert states["c3"] == "in the queue: waits for cone d1 of r2"
+    assert states["c1"] == ""
