@@ -278,3 +278,46 @@ def test_the_fields_open_when_the_gateway_asks_for_a_token(plugin, bridge, wait)
     button.setChecked(False)
     panel.show_link(LinkStatus(Phase.FAILED, "no", wants_token=True), None, 0.0)
     assert not button.isChecked()
+
+
+# --- what each role may -----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("role", "stops", "clears"),
+    [("viewer", False, False), ("operator", True, False), ("supervisor", True, True)],
+)
+def test_each_role_reaches_as_far_as_it_may_and_is_told_where_it_ends(
+    plugin, iface, bridge, wait, role, stops, clears
+):
+    window, answers = plugin.window, []
+    desk = window.desk
+    token = bridge.run("operators", "add", role.title(), "--role", role)
+    desk.open_link(bridge.url, role.title(), Credentials(token, str(bridge.ca)))
+    wait(lambda: desk.link.phase is Phase.CONNECTED and desk.site is not None, 10)
+    desk.answered.connect(answers.append)
+
+    def error_of(action) -> str:
+        before = len(answers)
+        action()
+        wait(lambda: len(answers) > before, 10, what="the answer")
+        return str(answers[-1].error or "")
+
+    def draw_and_send():
+        desk.select("nobody")
+        window.actions.cone.trigger()
+        iface.canvas.mapTool().take((100.0, 80.0))
+        wait(lambda: not desk.checks.is_under_way)
+        window.actions.send.trigger()
+
+    refused = f"{role.title()} is {role}, and this takes"
+    assert (refused in error_of(draw_and_send)) is not stops
+    assert (refused in error_of(window.actions.abort_all.trigger)) is not stops
+    assert (refused in error_of(window.actions.emergency.trigger)) is not stops
+    assert (desk.emergency is not None and desk.emergency.in_force) is stops
+    stop = desk.emergency.stop if stops else "none"
+    error = error_of(lambda: desk.clear_emergency(stop, "all is well again"))
+    assert (f"{refused} supervisor" in error) is not clears
+    wait(lambda: any(refused in text for text in iface.texts()) is not clears)
+    if clears:
+        wait(lambda: not desk.emergency.in_force)

@@ -89,6 +89,23 @@ def test_a_target_too_near_to_that_of_another_robot_is_refused_and_that_one_name
     assert "Not to be sent" not in cone.told
 
 
+def test_a_target_too_near_to_the_end_of_another_robots_route_is_refused(cone, gateway):
+    from fleet_supervisor.robot_bridge.messages import CommandState
+
+    gateway._queue("elsewhere", "r2", "SetPath", {"points": [[20.0, 20.0], [70.0, 55.0]]})
+    gateway.step("elsewhere", CommandState.DELIVERED, "r2")
+    cone.wait(lambda: len(cone.window.desk.book) == 1)
+    cone.click((70, 55.5))
+    assert "m from the end of the route of r2 at 70.00, 55.00" in cone.told
+    cone.click((20, 20))
+    assert "Not to be sent" not in cone.told
+    # What has come to its end is nobody's target any more.
+    gateway.step("elsewhere", CommandState.REACHED, "r2")
+    cone.wait(lambda: cone.window.desk.book.task_of("r2") is None)
+    cone.click((70, 55.5))
+    assert "Not to be sent" not in cone.told
+
+
 def test_a_draft_is_looked_at_once_more_when_it_is_sent(cone, gateway):
     from fleet_supervisor.robot_bridge.messages import CommandState
 
