@@ -1,174 +1,168 @@
-"""Finds what an operator cannot read or reach: texts that do not fit, widgets that others cover or clip."""
+"""Finds what a window shows only in part: words that do not fit on what bears them."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
-from qgis.gui import QgsMessageBarItem
 from qgis.PyQt.QtCore import QSize, Qt
 from qgis.PyQt.QtWidgets import (
     QAbstractButton,
-    QAbstractScrollArea,
-    QApplication,
     QComboBox,
+    QGroupBox,
     QHeaderView,
     QLabel,
     QLineEdit,
+    QPushButton,
+    QScrollArea,
     QStyle,
     QStyleOptionComboBox,
     QTabBar,
-    QTableView,
-    QTextEdit,
+    QToolBar,
+    QToolButton,
     QWidget,
 )
-from qgis.utils import iface
 
-OURS = "fleet_"
-SLACK = 1
-"""Pixels that styles round by."""
+ROUNDING = 2
+"""Pixels that styles differ by in what they ask for and what they need."""
+HEADER_EDGE = 4
+"""Pixels beside the words of a column's head."""
 
 
-def what_is_cut_off() -> list[str]:
-    """Return what is wrong with each visible part of the plugin, in words; an empty list when nothing is."""
+def too_large(window: QWidget, room: QSize) -> list[str]:
+    """Return what of a window needs more than ``room``."""
+    needs = window.minimumSizeHint().expandedTo(window.size())
+    if needs.width() <= room.width() and needs.height() <= room.height():
+        return []
+    return [f"{_named(window)} needs {needs.width()} × {needs.height()} pixels"]
+
+
+def cut_off(window: QWidget) -> list[str]:
+    """Return, in words, each visible part of ``window`` that is too small for what it says."""
     found = []
-    for widget in _shown():
-        found += [f"{_name(widget)}: {fault}" for fault in _faults(widget)]
-    found += _beyond_the_screen(iface.mainWindow())
-    for item in iface.messageBar().findChildren(QgsMessageBarItem):
-        found += [f"message bar: {fault}" for fault in _cut_message(item)]
+    for part in [window, *window.findChildren(QWidget)]:
+        if part.isVisible() and part.window() is window.window():
+            found += [f"{_named(part)}: {why}" for why in (*_faults(part), *_beyond_its_view(part))]
     return found
 
 
-def _shown() -> Iterator[QWidget]:
-    """The plugin's docks, dialogs and panels with all that is in them."""
-    tops = [widget for widget in QApplication.allWidgets() if _is_top(widget)]
-    for top in tops:
-        yield from (part for part in [top, *top.findChildren(QWidget)] if part.isVisible())
+def _faults(part: QWidget) -> Iterator[str]:
+    if isinstance(part, QTabBar):
+        yield from _of_tabs(part)
+    elif isinstance(part, QHeaderView):
+        yield from _of_heads(part)
+    elif isinstance(part, QComboBox):
+        yield from _of_choices(part)
+    elif isinstance(part, QLabel):
+        yield from _of_label(part)
+    elif isinstance(part, QGroupBox):
+        yield from _if_narrow(part.title(), part.width(), part.minimumSizeHint().width())
+    elif isinstance(part, QLineEdit):
+        yield from _of_line(part)
+    elif isinstance(part, QAbstractButton) and not _may_shrink(part):
+        yield from _if_narrow(part.text(), part.width(), _needed(part))
 
 
-def _is_top(widget: QWidget) -> bool:
-    return widget.objectName().startswith(OURS) and widget.isVisible() and not _is_inside_ours(widget)
+def _beyond_its_view(part: QWidget) -> Iterator[str]:
+    """Tell of a part that ends beyond what it is scrolled in, where that is not scrolled sideways."""
+    view = part.parentWidget()
+    while view is not None and not isinstance(view.parentWidget(), QScrollArea):
+        view = view.parentWidget()
+    if view is not None and view.parentWidget().viewport() is view and not _is_scrolled(view.parentWidget()):
+        right = part.mapTo(view, part.rect().topRight()).x()
+        if right > view.width():
+            yield f"it ends {right - view.width()} pixels beyond what shows it"
 
 
-def _is_inside_ours(widget: QWidget) -> bool:
-    parent = widget.parentWidget()
-    return parent is not None and (parent.objectName().startswith(OURS) or _is_inside_ours(parent))
+def _is_scrolled(area: QScrollArea) -> bool:
+    return area.horizontalScrollBarPolicy() != Qt.ScrollBarPolicy.ScrollBarAlwaysOff
 
 
-def _faults(widget: QWidget) -> Iterator[str]:
-    if _text_does_not_fit(widget):
-        yield f"{_text(widget)!r} does not fit into {_size(widget.size())}, it takes {_size(_wanted(widget))}"
-    if isinstance(widget, QHeaderView):
-        yield from _cut_heads(widget)
-    if isinstance(widget, QTableView):
-        yield from _cut_cells(widget)
-    if _has_something_to_read(widget) and not _scrolls(widget):
-        seen = widget.visibleRegion().boundingRect()
-        if seen.width() < widget.width() - SLACK or seen.height() < widget.height() - SLACK:
-            yield f"{_text(widget)!r} is seen only in part: {_size(seen.size())} of {_size(widget.size())}"
+def _needed(button: QAbstractButton) -> int:
+    """Return the width for a button's icon and words, without what only looks roomy."""
+    hint = button.sizeHint().width()
+    if isinstance(button, QPushButton):
+        words = button.fontMetrics().size(Qt.TextFlag.TextShowMnemonic, button.text()).width()
+        icon = 0 if button.icon().isNull() else button.iconSize().width() + 4
+        return min(hint, words + icon + 8)
+    return hint
 
 
-def _text_does_not_fit(widget: QWidget) -> bool:
-    if isinstance(widget, QLineEdit):
-        # What is being typed may be longer than its field.
-        return not widget.hasFocus() and _wanted(widget).width() > widget.width() + SLACK
-    if isinstance(widget, QTabBar):
-        return _wanted(widget).width() > widget.width() + SLACK
-    if not isinstance(widget, (QLabel, QAbstractButton, QComboBox)) or not _text(widget):
-        return False
-    wanted = _wanted(widget)
-    return wanted.width() > widget.width() + SLACK or wanted.height() > widget.height() + SLACK
-
-
-def _wanted(widget: QWidget) -> QSize:
-    """Return the size that the whole of a widget's text takes."""
-    if isinstance(widget, QLabel) and widget.wordWrap():
-        return QSize(widget.width(), widget.heightForWidth(widget.width()))
-    if isinstance(widget, QComboBox):
-        return _wanted_by_combo(widget)
-    if isinstance(widget, QLineEdit):
-        # A field keeps two pixels left and right of its text.
-        return QSize(widget.fontMetrics().horizontalAdvance(_text(widget)) + 4, 0)
-    if isinstance(widget, QAbstractButton):
-        return QSize(widget.minimumSizeHint().width(), widget.minimumSizeHint().height())
-    return widget.sizeHint()
-
-
-def _wanted_by_combo(combo: QComboBox) -> QSize:
-    option = QStyleOptionComboBox()
-    combo.initStyleOption(option)
-    room = combo.style().subControlRect(
-        QStyle.ComplexControl.CC_ComboBox, option, QStyle.SubControl.SC_ComboBoxEditField, combo
+def _may_shrink(button: QAbstractButton) -> bool:
+    """Tell whether it is one of a toolbar, which has a menu for what does not fit, or has no words."""
+    return isinstance(button.parentWidget(), (QToolBar, QHeaderView)) or (
+        isinstance(button, QToolButton)
+        and button.toolButtonStyle() == Qt.ToolButtonStyle.ToolButtonIconOnly
+        and not button.icon().isNull()
     )
-    text = combo.fontMetrics().horizontalAdvance(combo.currentText())
-    return QSize(combo.width() + text - room.width(), 0)
 
 
-def _beyond_the_screen(window: QWidget) -> Iterator[str]:
-    screen = QApplication.primaryScreen().geometry()
-    if not screen.contains(window.frameGeometry()):
-        yield f"the window is {_size(window.size())}, beyond the screen of {_size(screen.size())}"
+def _if_narrow(text: str, has: int, needs: int) -> Iterator[str]:
+    if text and has + ROUNDING < needs:
+        yield f"{text!r} needs {needs} pixels and has {has}"
 
 
-def _cut_message(item: QgsMessageBarItem) -> Iterator[str]:
-    for text in item.findChildren(QTextEdit):
-        if text.isVisible() and text.document().size().height() > text.viewport().height() + SLACK:
-            yield f"{text.toPlainText()!r} does not fit into {_size(text.viewport().size())}"
+def _of_label(label: QLabel) -> Iterator[str]:
+    text = label.text()
+    if not text or (label.pixmap() is not None and not label.pixmap().isNull()):
+        return
+    if label.wordWrap():
+        needs = label.heightForWidth(label.width())
+        if label.height() + ROUNDING < needs:
+            yield f"{text!r} needs a height of {needs} pixels and has {label.height()}"
+    elif label.sizePolicy().horizontalPolicy() != label.sizePolicy().Policy.Ignored or not label.toolTip():
+        # What gives way on purpose says all of it in its tool tip.
+        yield from _if_narrow(text, label.width(), label.sizeHint().width())
 
 
-def _cut_heads(header: QHeaderView) -> Iterator[str]:
-    model = header.model()
-    for number in range(header.count()):
-        if header.isSectionHidden(number) or header.orientation() != Qt.Orientation.Horizontal:
-            continue
-        text = str(model.headerData(number, header.orientation()) or "")
-        if header.fontMetrics().horizontalAdvance(text) > header.sectionSize(number):
-            yield f"the head {text!r} does not fit into {header.sectionSize(number)} px"
+def _of_line(line: QLineEdit) -> Iterator[str]:
+    hint = line.placeholderText()
+    if hint and not line.text() and not line.toolTip():
+        margins = line.textMargins()
+        frame = 2 * line.style().pixelMetric(QStyle.PixelMetric.PM_DefaultFrameWidth, None, line) + 4
+        yield from _if_narrow(
+            hint,
+            line.width() - frame - margins.left() - margins.right(),
+            line.fontMetrics().horizontalAdvance(hint),
+        )
 
 
-def _cut_cells(table: QTableView) -> Iterator[str]:
-    model = table.model()
-    beside = 2 * (table.style().pixelMetric(QStyle.PixelMetric.PM_FocusFrameHMargin) + 1)
-    for row in range(model.rowCount()):
-        for column in range(model.columnCount()):
-            index, width = model.index(row, column), table.columnWidth(column)
-            text = str(index.data() or "")
-            wanted = table.fontMetrics().horizontalAdvance(text) + beside if text else 0
-            if index.data(Qt.ItemDataRole.DecorationRole) is not None:
-                wanted += table.style().pixelMetric(QStyle.PixelMetric.PM_SmallIconSize) + beside
-            if 0 < width < wanted:
-                yield f"the cell {text!r} does not fit into {width} px, it takes {wanted} px"
+def _of_choices(box: QComboBox) -> Iterator[str]:
+    option = QStyleOptionComboBox()
+    option.initFrom(box)
+    option.editable, option.frame = box.isEditable(), box.hasFrame()
+    field = box.style().subControlRect(
+        QStyle.ComplexControl.CC_ComboBox, option, QStyle.SubControl.SC_ComboBoxEditField, box
+    )
+    words = box.fontMetrics().horizontalAdvance(box.currentText())
+    icon = 0 if box.itemIcon(box.currentIndex()).isNull() else box.iconSize().width() + 4
+    if box.toolTip() != box.currentText():
+        yield from _if_narrow(box.currentText(), field.width(), words + icon)
 
 
-def _has_something_to_read(widget: QWidget) -> bool:
-    return isinstance(widget, (QLabel, QAbstractButton, QComboBox, QLineEdit)) and bool(_text(widget))
+def _of_tabs(bar: QTabBar) -> Iterator[str]:
+    last = bar.tabRect(bar.count() - 1).right() if bar.count() else 0
+    if last > bar.width():
+        yield f"its tabs need {last} pixels and have {bar.width()}"
+    for tab in range(bar.count()):
+        words = bar.fontMetrics().size(Qt.TextFlag.TextShowMnemonic, bar.tabText(tab)).width()
+        yield from _if_narrow(bar.tabText(tab), bar.tabRect(tab).width(), words)
 
 
-def _scrolls(widget: QWidget) -> bool:
-    parent = widget.parentWidget()
-    if parent is None:
-        return False
-    return isinstance(parent, QAbstractScrollArea) or _scrolls(parent)
+def _of_heads(heads: QHeaderView) -> Iterator[str]:
+    model = heads.model()
+    if model is None or heads.orientation() != Qt.Orientation.Horizontal:
+        return
+    for section in range(heads.count()):
+        text = str(model.headerData(section, heads.orientation(), Qt.ItemDataRole.DisplayRole) or "")
+        if not heads.isSectionHidden(section):
+            words = heads.fontMetrics().horizontalAdvance(text) + HEADER_EDGE
+            yield from _if_narrow(text, heads.sectionSize(section), words)
 
 
-def _text(widget: QWidget) -> str:
-    if isinstance(widget, QComboBox):
-        return widget.currentText()
-    if isinstance(widget, QTabBar):
-        return ", ".join(widget.tabText(number) for number in range(widget.count()))
-    if isinstance(widget, QLineEdit):
-        return widget.displayText() or widget.placeholderText()
-    text = getattr(widget, "text", None)
-    return str(text()) if callable(text) else ""
-
-
-def _name(widget: QWidget) -> str:
-    if widget.objectName() and not widget.objectName().startswith("qt_"):
-        return widget.objectName()
-    parent = widget.parentWidget()
-    kind = type(widget).__name__
-    return f"{kind} in {_name(parent)}" if parent is not None else kind
-
-
-def _size(size: QSize) -> str:
-    return f"{size.width()} × {size.height()}"
+def _named(part: QWidget) -> str:
+    """Return a widget's object name, or that of what it lies in."""
+    name = part.objectName()
+    above = part.parentWidget()
+    while not name.startswith("fleet") and above is not None:
+        name, above = above.objectName(), above.parentWidget()
+    return f"{type(part).__name__} in {name}" if name != part.objectName() else name

@@ -32,8 +32,8 @@ from qgis.PyQt.QtWidgets import (
 )
 from qgis.utils import iface, plugins
 
-from .cut_off import what_is_cut_off
 from .desk_view import DeskView, NotHappenedError
+from .out_of_sight import what_is_out_of_sight
 
 PLUGIN = "fleet_supervisor"
 PYTHON = "Python"
@@ -59,7 +59,7 @@ class Reporter(QObject):
             "desk": _desk,
             "map": _map,
             "time": _time,
-            "cut_off": what_is_cut_off,
+            "out_of_sight": what_is_out_of_sight,
             "complaints": lambda: self._complaints,
         }
         self._server = QLocalServer(self)

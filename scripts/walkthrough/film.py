@@ -30,7 +30,7 @@ class Film:
 
         :raises StageError: when a part of the plugin cannot be read or reached, or something raised.
         """
-        if faults := [*self._operator.cut_off(), *self._operator.complaints()]:
+        if faults := [*self._operator.out_of_sight(), *self._operator.complaints()]:
             raise StageError(f"in the picture {name!r}: " + "; ".join(faults))
         self._shots += 1
         path = self._folder / f"operator-{self._shots:02d}-{name}.png"

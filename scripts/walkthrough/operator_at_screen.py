@@ -86,9 +86,9 @@ class OperatorAtScreen:
         """Return what QGIS's temporal controller shows, and whether it plays."""
         return dict(self._window.ask("time"))
 
-    def cut_off(self) -> list[str]:
+    def out_of_sight(self) -> list[str]:
         """Return what of the plugin cannot be read or reached."""
-        return list(self._window.ask("cut_off"))
+        return list(self._window.ask("out_of_sight"))
 
     def complaints(self) -> list[str]:
         """Return the exceptions that QGIS logged."""

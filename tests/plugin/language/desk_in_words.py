@@ -1,6 +1,6 @@
 """Opens what the plugin shows, in one language and look, and tells what is cut off.
 
-python desk_in_words.py LANGUAGE RESULT.json [--theme NAME] [--pictures FOLDER]
+PYTHONPATH=scripts python desk_in_words.py LANGUAGE RESULT.json [--theme NAME] [--pictures FOLDER]
 
 LANGUAGE is a locale such as hu, or ``stretched``. In a process of its own: constants of modules take their
 language when they are imported. RESULT.json has, by the name of each part, what is wrong with it.
@@ -18,7 +18,7 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
-from cut_off import cut_off, too_large
+from inside_qgis.cut_off import cut_off, too_large
 from qgis.core import QgsApplication, QgsProject, QgsSettings
 from qgis.PyQt.QtCore import QCoreApplication, QEvent, QSettings, QSize
 from qgis.PyQt.QtTest import QTest

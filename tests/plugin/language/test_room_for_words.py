@@ -7,11 +7,13 @@ imported.
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+from inside_qgis.cut_off import cut_off, too_large
 from qgis.PyQt.QtCore import QSize, QStringListModel, Qt
 from qgis.PyQt.QtWidgets import (
     QComboBox,
@@ -42,10 +44,12 @@ def beside():
     ("language", "theme"),
     [("stretched", None), ("hu", "Night Mapping"), ("ca", "Blend of Gray"), ("es", None)],
 )
-def test_nothing_is_cut_off_on_the_smallest_screen(language, theme, tmp_path):
+def test_nothing_is_cut_off_on_the_smallest_screen(language, theme, tmp_path, root):
     result = tmp_path / "faults.json"
     command = [sys.executable, str(HERE / "desk_in_words.py"), language, str(result)]
-    ran = subprocess.run([*command, *(["--theme", theme] if theme else [])], capture_output=True, text=True)
+    command += ["--theme", theme] if theme else []
+    env = {**os.environ, "PYTHONPATH": str(root / "scripts")}
+    ran = subprocess.run(command, env=env, capture_output=True, text=True)
     assert ran.returncode == 0, ran.stderr
     assert json.loads(result.read_text(encoding="utf-8")) == {}
 
@@ -130,13 +134,13 @@ def of_heads() -> QHeaderView:
         of_heads,
     ],
 )
-def test_what_is_too_small_for_its_words_is_found(qgis_app, beside, make):
+def test_what_is_too_small_for_its_words_is_found(qgis_app, make):
     window = too_narrow(make())
-    assert beside("cut_off").cut_off(window)
+    assert cut_off(window)
     window.close()
 
 
-def test_what_ends_beyond_its_view_is_found(qgis_app, beside):
+def test_what_ends_beyond_its_view_is_found(qgis_app):
     area = QScrollArea()
     area.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
     content = QWidget()
@@ -145,12 +149,12 @@ def test_what_ends_beyond_its_view_is_found(qgis_app, beside):
     area.setWidget(content)
     area.resize(200, 50)
     area.show()
-    assert any("beyond" in fault for fault in beside("cut_off").cut_off(area))
+    assert any("beyond" in fault for fault in cut_off(area))
     area.close()
 
 
-def test_a_window_that_needs_more_than_the_screen_is_found(qgis_app, beside):
+def test_a_window_that_needs_more_than_the_screen_is_found(qgis_app):
     window = QDialog()
     window.setMinimumSize(1300, 100)
-    assert beside("cut_off").too_large(window, QSize(1280, 800))
-    assert not beside("cut_off").too_large(window, QSize(1300, 800))
+    assert too_large(window, QSize(1280, 800))
+    assert not too_large(window, QSize(1300, 800))
