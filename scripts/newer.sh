@@ -105,10 +105,15 @@ install_packages() {
     printf '#!/bin/sh\nexit 101\n' >"$PLACE/usr/sbin/policy-rc.d" # no service starts in there
     chmod 755 "$PLACE/usr/sbin/policy-rc.d"
     quietly "dpkg" inside dpkg --configure -a # what a run that was stopped left half installed
-    quietly "apt-get update" inside apt-get update -q
+    apt_install >>"$PLACE.log" 2>&1 || { # the package lists may be old
+        quietly "apt-get update" inside apt-get update -q
+        quietly "apt-get install" apt_install
+    }
+}
+
+apt_install() {
     # shellcheck disable=SC2086 - one word for each package
-    quietly "apt-get install" inside DEBIAN_FRONTEND=noninteractive apt-get install -y -q \
-        --no-install-recommends $PACKAGES
+    inside DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends $PACKAGES
 }
 
 # What git knows of this tree, changes that are not committed included; the environment in there stays.
