@@ -3,9 +3,9 @@
 The views are those of a locked account, and keep rows apart by ``user()``, which is who connected;
 ``current_user()`` would be the locked account. A trigger writes the robot's name into its requests.
 
-The view of SA is bound to the index on ``robot``: a robot's own condition would else be tried on other
-robots' rows too before the view's, and a warning such as *Truncated incorrect INTEGER value: ...* would show
-it what they hold.
+A robot's own condition may be tried on other robots' rows before the view's, and a warning such as *Truncated
+incorrect INTEGER value: ...* would show it what they hold. So the view of SA shows nothing but the number of
+a row that is another's. It is bound to the index on ``robot`` besides, which MariaDB 11 forgets in a DELETE.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from .keeper import (
     AccountKeeper,
 )
 
-_VERSION = "robots' side of the fleet, version 1"
+_VERSION = "robots' side of the fleet, version 2"
 _LONGEST_DATABASE = 40
 _SERVER_OWN = (
     "root",
@@ -62,11 +62,7 @@ class MariaDbAccounts(AccountKeeper):
         )
 
     def prepare(self) -> None:
-        side = self._text(self.robots_database())
-        found = self._names(
-            f"select schema_comment from information_schema.schemata where schema_name = {side}"
-        )
-        if found == [_VERSION]:
+        if self._prepared() == [_VERSION]:
             return
         if len(self._database()) > _LONGEST_DATABASE:
             raise AccountError(
@@ -90,8 +86,17 @@ class MariaDbAccounts(AccountKeeper):
         )
 
     def renew_rights(self) -> None:
+        if self._prepared():
+            self.prepare()
         for name in self.gateways():
             self._grant_tables(self._account(name))
+
+    def _prepared(self) -> list[str]:
+        """Return of which version the robots' side is, nothing when there is none."""
+        side = self._text(self.robots_database())
+        return self._names(
+            f"select schema_comment from information_schema.schemata where schema_name = {side}"
+        )
 
     def _exists(self, name: str) -> bool:
         found = self._connection.execute(text("select 1 from mysql.user where User = :name"), {"name": name})
@@ -219,7 +224,13 @@ create or replace definer = {keeper} sql security definer view {side}.rr as
     select robot, op, params, payload from {base}.rr where robot = {me} and binary robot = binary {me}
 
 create or replace definer = {keeper} sql security definer view {side}.sa as
-    select id, robot, op, params, payload, created_at, urgent
+    select id,
+        if(binary robot = binary {me}, robot, null) as robot,
+        if(binary robot = binary {me}, op, null) as op,
+        if(binary robot = binary {me}, params, null) as params,
+        if(binary robot = binary {me}, payload, null) as payload,
+        if(binary robot = binary {me}, created_at, null) as created_at,
+        if(binary robot = binary {me}, urgent, null) as urgent
     from {base}.sa force index (ix_sa_robot) where robot = {me} and binary robot = binary {me}
 
 create or replace definer = {keeper} procedure {base}.end_stuck_robots(seconds int) sql security definer
