@@ -7,6 +7,7 @@ from fleet_supervisor.plugin.desk.drafting import slices
 from fleet_supervisor.plugin.desk.drafting.keepout_check import KeepoutCheck
 from fleet_supervisor.plugin.desk.drafting.obstacle_check import ObstacleCheck
 from fleet_supervisor.plugin.desk.drafting.surface_check import SurfaceCheck
+from fleet_supervisor.plugin.errors import NotSentError
 from qgis.core import QgsFeature, QgsGeometry
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
@@ -53,6 +54,8 @@ def test_the_panel_says_that_it_is_checked_and_nothing_goes_out_before(slow, lay
     assert slow.window.desk.checks.is_under_way
     assert ". Being checked: " in slow.told
     assert not slow.window.actions.override.isEnabled()
+    with pytest.raises(NotSentError, match="it has not been checked to its end"):
+        slow.window.desk.orders.send(slow.drafts.draft)
     slow.key(ENTER)
     assert "It goes out when nothing speaks against it; Esc keeps it back." in slow.told
     assert slow.gateway.asked("send") == []
