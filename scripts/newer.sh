@@ -93,6 +93,7 @@ build_root() {
 
 mount_all() {
     mount -t proc proc "$PLACE/proc"
+    mount --rbind /sys "$PLACE/sys" # a systemd that a test starts asks there for its control groups
     mount --rbind /dev "$PLACE/dev"
     mount -t tmpfs shm "$PLACE/dev/shm"
     if [ -d ../shared ]; then

@@ -24,6 +24,7 @@ projections\\unknownCrsBehavior=NoAction
 [qgis]
 checkVersion=false
 askToSaveProjectChanges=false
+warnOldProjectVersion=false
 networkAndProxy\\networkTimeout=1000
 
 [fonts]

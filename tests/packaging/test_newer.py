@@ -22,7 +22,7 @@ ENTERS_NAMESPACES = (
     and subprocess.run(["unshare", "--mount", "--pid", "--fork", "true"], check=False).returncode == 0
 )
 needs_namespaces = pytest.mark.skipif(not ENTERS_NAMESPACES, reason="namespaces and mounts need root")
-FOLDERS = "proc dev tmp usr/sbin etc/ssl/certs"
+FOLDERS = "proc sys dev tmp usr/sbin etc/ssl/certs"
 
 
 @pytest.fixture
