@@ -125,13 +125,14 @@ class Pulse:
 
 
 def _where(frame: FrameType | None) -> str:
-    """Return what Qt called in the plugin, and the innermost place in it; QGIS where it is not in it."""
-    ours = []
+    """Return what Qt called in the plugin, and the innermost place in it, else who else was at work."""
+    ours, is_script = [], False
     while frame is not None:
         module = frame.f_globals.get("__name__", "")
+        is_script = is_script or module.startswith("inside_qgis.")
         if module.startswith(f"{PACKAGE}."):
             ours.append(f"{module.removeprefix(f'{PACKAGE}.plugin.')}.{frame.f_code.co_name}")
         frame = frame.f_back
     if not ours:
-        return "QGIS"
+        return "the operator's script" if is_script else "QGIS"
     return ours[0] if len(ours) == 1 else f"{ours[-1]} › {ours[0]}"
