@@ -326,8 +326,8 @@ machine: {load:.1f}.
 Over the last {last:.0f} of {minutes:.0f} minutes the process grew by {megabytes:+.0f} MB an hour; what was in
 use of it, and not free to be used again, by {in_use:+.0f} MB an hour, and what Python had for its objects by
 {blocks:+,.0f} pieces an hour. With the plugin unloaded {first_unloaded:.0f} MB were in use after the first
-time and {last_unloaded:.0f} MB after the last. Loading and unloading alone costs half a megabyte each time: what
-PyQt keeps of classes that are derived from Qt's, which no plugin can give back.
+time and {last_unloaded:.0f} MB after the last. Loading and unloading alone, without a link, costs half a
+megabyte each time; a part of it PyQt keeps, which gives back nothing of a class that is derived from Qt's.
 
 {wrong}
 
