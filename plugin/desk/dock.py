@@ -73,8 +73,8 @@ class FleetDock(QgsDockWidget):
         split.setChildrenCollapsible(False)
         split.addWidget(self._upper(actions))
         split.addWidget(self._lower())
-        split.setStretchFactor(0, 3)
-        split.setStretchFactor(1, 2)
+        split.setStretchFactor(0, 1)
+        split.setStretchFactor(1, 1)
         # The banner and the buttons that stop robots are outside of it: they are seen on every screen.
         rows.addWidget(TallContent(split), 1)
         stops = QHBoxLayout()
