@@ -21,12 +21,16 @@ from .savings import TripLimits
 _UNIT = 0.1
 _NO_WAY = 10**8
 """Decimetres or tenths of a second of a way that there is not."""
-_NEIGHBOURS = 40
+_NEIGHBOURS = 20
+_MOST_CHANGES = 15
+"""How many targets a step takes out of a plan at most before it is made good again; fewer make more steps."""
 _ATTEMPTS = 4
 _LEAST_PATIENCE, _PATIENCE = 500, 150
 """Steps without anything better after which few targets are taken to be solved, and more for each of them."""
-_HISTORY = 20
+_HISTORY = 50
 """How many steps back a plan may be as bad as; attempts, not a long memory, lead out of dead ends."""
+_STEPS_BETWEEN_PENALTIES = 100
+"""Steps after which what is over the limits costs more or less, so that about two thirds keep to them."""
 
 
 def load_pyvrp() -> Any:
@@ -88,7 +92,7 @@ def _solved(pyvrp: Any, data: Any, start: Any, clock: _Clock, targets: int, seed
             _Stop(clock, patience),
             seed,
             collect_stats=False,
-            params=_params(pyvrp),
+            params=_params(pyvrp, data),
             initial_solution=start,
         ).best
 
@@ -121,15 +125,30 @@ class _Stop:
         return self._clock.over or self._since > self._patience
 
 
-def _params(pyvrp: Any) -> Any:
+def _params(pyvrp: Any, data: Any) -> Any:
     from pyvrp.IteratedLocalSearch import IteratedLocalSearchParams
-    from pyvrp.search import NeighbourhoodParams
+    from pyvrp.search import NeighbourhoodParams, PerturbationParams
 
     return pyvrp.SolveParams(
         ils=IteratedLocalSearchParams(history_length=_HISTORY, exhaustive_on_best=False),
+        penalty=pyvrp.PenaltyParams(
+            solutions_between_updates=_STEPS_BETWEEN_PENALTIES, max_penalty=_longest_round(data)
+        ),
         # On one-way roads what is near one way is not near the other.
         neighbourhood=NeighbourhoodParams(num_neighbours=_NEIGHBOURS, symmetric_proximity=False),
+        perturbation=PerturbationParams(max_perturbations=_MOST_CHANGES),
     )
+
+
+def _longest_round(data: Any) -> float:
+    """Return the decimetres of the longest way from the store to a target and back, as far as ways lead.
+
+    To be over a limit need not cost more than a trip of its own; where it costs far more, as by PyVRP's
+    default, only plans within the limits are tried, and few of them lead on to better ones.
+    """
+    metres = data.distance_matrix(0)
+    rounds = metres[0, 1:] + metres[1:, 0]
+    return float(max(rounds[rounds < _NO_WAY].max(initial=0), 1))
 
 
 def _data(pyvrp: Any, days: Days, targets: list[int], limits: TripLimits, trips: int) -> Any:

@@ -110,6 +110,8 @@ class _Search:
     def _length(self, slot: Slot, trip: Trip) -> float:
         if not trip:
             return 0.0
+        if not self._days.job.stores:
+            return self._days.cost(slot[0], [trip]).metres
         metres = self._days.trip_metres(trip)
         if slot[1] > 0:
             return metres

@@ -11,12 +11,14 @@ from .by_pyvrp import trips_by_pyvrp
 from .days import Day, Days, Trip
 from .improving import improved
 from .savings import TripLimits, saving_pairs, trips_by_savings
-from .scheduling import BALANCED, Aim, Score, scheduled
+from .scheduling import BALANCED, LEAST_DISTANCE, Aim, Score, scheduled
 
 _SLACK = 1.05
 """By how much trips may be longer than an even share of the work."""
-_FIRST_SHARE, _LAST_SHARE = 0.12, 0.95
-"""Of the time: until when the first plan is made better, and until when PyVRP may work on its trips."""
+_FIRST_SHARE = 0.05
+"""Of the time: until when the first plan is made better before PyVRP works on its trips."""
+_LAST_SHARE = {BALANCED: 0.85, LEAST_DISTANCE: 0.97}
+"""Of the time: until when PyVRP may work. It shortens trips; to share them out evenly is left to do then."""
 
 
 @dataclass(frozen=True)
@@ -63,31 +65,43 @@ def solved_stage(
     first = _improved(days, first, targets, aim, lambda: over(share))
     if not effort.use_pyvrp or first.left or not others:
         return first
-    seconds = effort.seconds * _LAST_SHARE - (time.perf_counter() - begun)
+    seconds = effort.seconds * _LAST_SHARE[aim.objective] - (time.perf_counter() - begun)
     trips = _trips(first.plan, set(others))
     second = _by_pyvrp(days, trips, begin, aim, limits, seconds, effort)
     if second is None:
-        return first
+        return _improved(days, first, targets, aim, lambda: over(1.0))
     second = _improved(days, second, targets, aim, lambda: over(1.0))
     return min(first, second, key=lambda answer: answer.rank)
 
 
 def _on_board(days: Days, targets: Sequence[int], start: Sequence[Day]) -> list[Day]:
-    """Return the days with the cones that are aboard from the start given to the nearest targets."""
+    """Return the days with the cones that are aboard from the start given to the nearest targets.
+
+    Of all robots the one goes next that has the shortest way to a target.
+    """
     plan = [[list(trip) for trip in day] for day in start]
     left = {place for place in targets if days.places_cone[place]}
-    for robot, day in enumerate(plan):
-        while len(day) == 1 and days.job.robots[robot].aboard > 0:
-            away = days.metres[day[0][-1] if day[0] else robot]
-            for place in sorted(left, key=away.__getitem__):
-                longer = [[*day[0], place]]
-                if days.fits(robot, longer[0], True) and days.cost(robot, longer).metres < math.inf:
-                    break
-            else:
-                break
-            left.remove(place)
-            day[:] = longer
+    loaded = [robot for robot, one in enumerate(days.job.robots) if one.aboard and len(plan[robot]) == 1]
+    ways = {robot: _next_on_board(days, robot, plan[robot], left) for robot in loaded}
+    while found := {robot: way for robot, way in ways.items() if way is not None}:
+        robot = min(found, key=found.__getitem__)
+        _, place = found[robot]
+        plan[robot][0].append(place)
+        left.remove(place)
+        for other, (_, its) in found.items():
+            if its == place:
+                ways[other] = _next_on_board(days, other, plan[other], left)
     return plan
+
+
+def _next_on_board(days: Days, robot: int, day: Day, left: set[int]) -> tuple[float, int] | None:
+    """Return the nearest place of ``left`` that ``robot`` can serve next with what is aboard, and how far."""
+    away = days.metres[day[0][-1] if day[0] else robot]
+    for place in sorted(left, key=lambda one: (away[one], one)):
+        longer = [[*day[0], place]]
+        if days.fits(robot, longer[0], True) and days.cost(robot, longer).metres < math.inf:
+            return away[place], place
+    return None
 
 
 def _first(days: Days, targets: list[int], start: list[Day], aim: Aim) -> tuple[Answer, TripLimits]:
@@ -153,7 +167,7 @@ def _by_pyvrp(
     effort: Effort,
 ) -> Answer | None:
     def progress(share: float) -> None:
-        effort.progress(_FIRST_SHARE + (_LAST_SHARE - _FIRST_SHARE) * share)
+        effort.progress(_FIRST_SHARE + (_LAST_SHARE[aim.objective] - _FIRST_SHARE) * share)
 
     found = trips_by_pyvrp(days, trips, limits, seconds, progress, effort.seed)
     if found is None:

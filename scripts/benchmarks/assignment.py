@@ -30,18 +30,21 @@ CONES, ROBOTS, CAPACITY = 200, 5, 8
 SHORT_S, LONG_S = 2.0, 10.0
 GOAL = 1.005
 SEEDS = (1, 2, 3)
+RUNS = 5
+GROUPS, SPREAD = 10, 15.0
+"""places around which cones stand together, and the metres by which they do."""
 
 TEXT = """\
 {cones} cones, room for {room}, {robots} robots that begin at the one store; metres of all robots, and how many
-times what PyVRP alone finds in {long:g} s, with its own defaults, in the same run. Load of the machine: {load}
-(1 min, at the end).
+times what PyVRP alone finds in {long:g} s, with its own defaults, in the same run. Ours in {short:g} s is of {runs} runs
+with seeds of their own; all other columns are one run each. Load of the machine: {load} (1 min, at the end).
 
-| | nearest neighbour | Clarke and Wright | preview | ours, {short:g} s | PyVRP alone, {short:g} s | PyVRP alone, {long:g} s |
-|---|---|---|---|---|---|---|
+| | nearest neighbour | Clarke and Wright | preview | ours, {short:g} s: median | ours, {short:g} s: worst | PyVRP alone, {short:g} s | PyVRP alone, {long:g} s |
+|---|---|---|---|---|---|---|---|
 {metres}
 
-The preview took {preview}; all distances on the track's roads took {matrix:.2f} s. On average ours is {mean:.4f}
-times PyVRP's in {long:g} s (goal: {goal}).
+The preview took {preview}; all distances on the track's roads took {matrix:.2f} s. Of all {count} runs ours is
+{median:.4f} times PyVRP's in {long:g} s at the median (goal: {goal}), {worst:.4f} times at worst.
 
 Balanced, the last robot finishes at (seconds; 10 s for each cone, 30 s at each visit to the store):
 
@@ -66,40 +69,51 @@ class Case:
 def measure(data: Path) -> Part:
     """Measure on made-up places, on the roads of ZalaZONE's track, and on a public instance."""
     load_pyvrp()
-    cases = [_made_up(seed) for seed in SEEDS]
+    cases = [*(_made_up(seed) for seed in SEEDS), _in_groups(SEEDS[0])]
     begun = time.perf_counter()
     cases.append(_on_the_track(data))
     matrix_s = time.perf_counter() - begun
     rows, ends, ratios, previews, plans = [], [], [], [], []
     for case in cases:
         seconds, preview = _planned(case, "distance", PREVIEW)
-        _, ours = _planned(case, "distance", PYVRP)
+        ours = [_planned(case, "distance", PYVRP, seed)[1] for seed in range(RUNS)]
+        metres = [plan.metres for plan in ours]
         found = [
-            _nearest_neighbour(case), _savings(case), preview.metres, ours.metres,
+            _nearest_neighbour(case), _savings(case), preview.metres, float(np.median(metres)), max(metres),
             _pyvrp_alone(case, SHORT_S), _pyvrp_alone(case, LONG_S),
         ]  # fmt: skip
         rows.append(_row(case.name, [f"{one:.0f} ({one / found[-1]:.4f})" for one in found]))
-        ratios.append(ours.metres / found[-1])
+        ratios += [one / found[-1] for one in metres]
         previews.append(seconds)
         even = [_planned(case, "balanced", method)[1] for method in (PREVIEW, PYVRP)]
-        ends.append(_row(case.name, [*(f"{one.end_s:.0f}" for one in even), f"{_even_share(ours):.0f}"]))
-        plans += [preview, ours, *even]
+        shortest = min(ours, key=lambda plan: plan.metres)
+        ends.append(_row(case.name, [*(f"{one.end_s:.0f}" for one in even), f"{_even_share(shortest):.0f}"]))
+        plans += [preview, *ours, *even]
     short, quick = _instance(PYVRP), _instance(PREVIEW)
     faults = sum(bool(check_plan(plan)) for plan in plans)
-    mean = float(np.mean(ratios))
+    median = float(np.median(ratios))
     text = TEXT.format(
         cones=CONES, room=CAPACITY, robots=ROBOTS, short=SHORT_S, long=LONG_S,
         load=f"{os.getloadavg()[0]:.1f}", metres="\n".join(rows), ends="\n".join(ends),
-        preview=f"{min(previews):.2f} to {max(previews):.2f} s", matrix=matrix_s, mean=mean, goal=GOAL,
+        preview=f"{min(previews):.2f} to {max(previews):.2f} s", matrix=matrix_s, goal=GOAL,
+        runs=RUNS, count=len(ratios), median=median, worst=max(ratios),
         optimum=e_n51_k5.OPTIMUM, instance=short, instance_preview=quick, faults=faults, plans=len(plans),
     )  # fmt: skip
-    return Part("Assignment of cones", text, failed=mean > GOAL or faults > 0)
+    return Part("Assignment of cones", text, failed=median > GOAL or faults > 0)
 
 
 def _made_up(seed: int) -> Case:
     places = np.random.default_rng(seed).uniform(0, 300, (CONES, 2))
     job = _job(places, (150.0, 150.0))
     return Case(f"field of 300 m, seed {seed}", job, StraightTravel(job))
+
+
+def _in_groups(seed: int) -> Case:
+    random = np.random.default_rng(seed)
+    groups = random.uniform(30, 270, (GROUPS, 2))
+    places = groups[random.integers(GROUPS, size=CONES)] + random.normal(0, SPREAD, (CONES, 2))
+    job = _job(places, (150.0, 150.0))
+    return Case(f"{GROUPS} groups in 300 m", job, StraightTravel(job))
 
 
 def _on_the_track(data: Path) -> Case:
@@ -128,9 +142,9 @@ def _job(places: np.ndarray, store: tuple[float, float]) -> Job:
     )
 
 
-def _planned(case: Case, objective: str, method: str) -> tuple[float, Plan]:
+def _planned(case: Case, objective: str, method: str, seed: int = 0) -> tuple[float, Plan]:
     begun = time.perf_counter()
-    plan = assign(case.job, case.travel, Wanted(objective, method, SHORT_S))
+    plan = assign(case.job, case.travel, Wanted(objective, method, SHORT_S, seed))
     return time.perf_counter() - begun, plan
 
 

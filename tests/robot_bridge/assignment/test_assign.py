@@ -284,6 +284,7 @@ def test_a_public_instance_is_solved_to_its_optimum() -> None:
     )
     travel = StraightTravel(job)
     travel.metres = e_n51_k5.rounded(travel.metres)
-    plan = assign(job, travel, Wanted("distance", PYVRP, 12.0))
+    # It ends early; the limit is for machines that have much else to do.
+    plan = assign(job, travel, Wanted("distance", PYVRP, 60.0))
     assert plan.metres == e_n51_k5.OPTIMUM
     assert assign(job, travel, Wanted("distance", PREVIEW, 20.0)).metres < 1.12 * e_n51_k5.OPTIMUM
