@@ -5,7 +5,7 @@ from __future__ import annotations
 from qgis.core import QgsProject
 from qgis.gui import QgisInterface, QgsMapTool
 from qgis.PyQt.QtCore import QObject, Qt
-from qgis.PyQt.QtWidgets import QToolBar
+from qgis.PyQt.QtWidgets import QMainWindow, QToolBar
 
 from ..errors import FleetError
 from ..language import tr
@@ -76,7 +76,7 @@ class DeskWindow(QObject):
         self.notices.withdraw()
         for action in self.actions.all():
             self._iface.removePluginMenu(MENU, action)
-        window = self._iface.mainWindow()
+        window: QMainWindow = self._iface.mainWindow()
         window.removeToolBar(self.toolbar)
         self.toolbar.deleteLater()
         self._iface.removeDockWidget(self.dock)
