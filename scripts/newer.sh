@@ -92,6 +92,7 @@ build_root() {
 }
 
 mount_all() {
+    mount --bind "$PLACE" "$PLACE" # programs that make namespaces want the root folder to be a mount
     mount -t proc proc "$PLACE/proc"
     mount --rbind /sys "$PLACE/sys" # a systemd that a test starts asks there for its control groups
     mount --rbind /dev "$PLACE/dev"

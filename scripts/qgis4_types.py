@@ -3,6 +3,8 @@
 The stubs (qgis-stubs, and those that PyQt6 brings) are made of the bindings: what they do not have, QGIS 4
 has not, and what they want an int for takes no float. Of what mypy says only that counts: how the plugin's
 own parts fit together is not asked here, nor whether QGIS may answer None.
+
+    python scripts/qgis4_types.py
 """
 
 from __future__ import annotations
@@ -16,6 +18,8 @@ import tempfile
 from pathlib import Path
 
 PACKAGE = "fleet_supervisor"
+PROGRAMS = ("resources/styles", "resources/sample_site")
+"""Folders of programs that use QGIS beside the plugin."""
 _MOVED = {"QtWidgets": "from PyQt6.QtGui import QAction, QActionGroup, QShortcut\n"}
 """What qgis.PyQt keeps where Qt 5 had it."""
 _LINE = re.compile(r"(?P<place>[^:]+:\d+): error: (?P<text>.*)  \[(?P<code>[a-z-]+)\]")
@@ -45,12 +49,15 @@ _WORKS = (
 )
 
 
-def complaints(root: Path, modules: list[str], folders: list[Path], cache: Path) -> list[str]:
+def complaints(root: Path, *further: Path) -> list[str]:
     """Return ``file:line: text`` of what QGIS 4 on Qt 6 does not have or does not take.
 
-    ``root`` is the plugin's folder, whose package ``plugin`` is looked at; ``modules`` are further ones that
-    lie in ``folders``; ``cache`` is a folder in which mypy keeps what it knows of the stubs.
+    Looked at are the plugin whose folder is ``root``, the programs beside it, and the modules in ``further``
+    folders. What mypy knows of the stubs it keeps below ``root``, in build.
     """
+    folders = [*(root / folder for folder in PROGRAMS), *further]
+    modules = [path.stem for folder in folders for path in sorted(folder.glob("*.py"))]
+    cache = root / "build" / "mypy-qgis4"
     with tempfile.TemporaryDirectory() as place:
         (Path(place) / PACKAGE).symlink_to(root, target_is_directory=True)
         _lay_out_stubs(Path(place))
@@ -129,3 +136,9 @@ def _installed(package: str) -> Path:
         if (Path(folder) / package).is_dir():
             return Path(folder) / package
     raise RuntimeError(f"{sys.executable} has no {package}: run make setup")
+
+
+if __name__ == "__main__":
+    found = complaints(Path(__file__).resolve().parents[1])
+    print("\n".join(found) or "QGIS 4 on Qt 6 has all that is asked of it")
+    sys.exit(bool(found))

@@ -33,7 +33,7 @@ def newer(root, tmp_path):
     started = []
 
     def start(given: dict[str, str], **environment: str) -> subprocess.Popen[str]:
-        stand_ins = {"id": "echo 0", "debootstrap": "exit 9", "chroot": "exit 9", **given}
+        stand_ins = {"id": "echo 0", "git": "", "debootstrap": "exit 9", "chroot": "exit 9", **given}
         for name, text in stand_ins.items():
             (programs / name).write_text(f"#!/bin/sh\n{text}\n", encoding="utf-8")
             (programs / name).chmod(0o755)
