@@ -19,6 +19,6 @@ def other_frame(served: SiteSettings, other: SiteSettings) -> str | None:
     x, y = other.origin
     return (
         f"{other.id} has another frame ({other.crs}, origin {x:.12g}, {y:.12g}, "
-        f"rotation {other.rotation_deg:g}°) than {served.id}, and positions of the one are wrong in the other; start a gateway on it, with a "
-        "database of its own"
+        f"rotation {other.rotation_deg:g}°) than {served.id}, and positions of the one are wrong in the "
+        "other; start a gateway on it, with a database of its own"
     )

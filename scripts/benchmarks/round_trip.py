@@ -48,8 +48,8 @@ A request (`Stopped`) and its OpAck. A real gateway with everything running on t
 operator who watches; its robots, a thread and a connection each with the rights of a robot's account, run in
 one other process on the same machine, as does the database server, which waits for the disk at every commit
 that is asked of it durably. PostgreSQL tells robots that there is something new (NOTIFY), and the gateway
-when it has nothing to do. On SQLite the robots look after {sqlite:g} ms, on MariaDB after {mariadb:g} ms, then
-less and less often, and the gateway every 0.3 ms to 20 ms, on PostgreSQL too while requests come. Each figure
+when it has nothing to do. On SQLite the robots look after {sqlite:g} ms, on MariaDB after {mariadb:g} ms,
+then less and less often, and the gateway every 0.3 ms to 20 ms, on PostgreSQL too while requests come. Each figure
 is of {seconds:g} s.
 
 *Robots not waiting for the disk* begin their sessions on PostgreSQL with `set synchronous_commit = off`, as
