@@ -10,6 +10,7 @@ from plugin_files import ROOT
 sys.path.insert(0, str(ROOT))
 
 from benchmarks.page import Part, with_part
+from stage.processes import leave_on_signals
 
 DATA = ROOT.parent / "shared" / "data"
 PAGE = ROOT / "docs" / "benchmarks.md"
@@ -32,6 +33,7 @@ def main() -> int:
     """Measure the parts that are asked for; return 1 if one of them found something wrong."""
     if not DATA.is_dir():
         sys.exit(f"bench: the real data is not on this machine: {DATA} does not exist")
+    leave_on_signals()
     wanted = sys.argv[1:] or PARTS
     unknown = sorted(set(wanted) - set(PARTS))
     if unknown:

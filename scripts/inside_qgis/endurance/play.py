@@ -9,6 +9,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Generator
 from dataclasses import dataclass
+from typing import ClassVar
 
 from qgis.PyQt.QtCore import QTimer
 
@@ -38,6 +39,9 @@ Script = Generator["float | Until", None, None]
 class Player:
     """Goes through ``script``; ``done`` is called with None at its end, or with what went wrong."""
 
+    under_way: ClassVar[list[Player]] = []
+    """Between two steps nothing else holds a player, and Python would take it for garbage."""
+
     def __init__(self, script: Script, done: Callable[[Exception | None], None]) -> None:
         self._script, self._done = script, done
         self._until: Until | None = None
@@ -48,7 +52,12 @@ class Player:
 
     def begin(self) -> None:
         """Do the first step as soon as QGIS has time."""
+        self.under_way.append(self)
         self._timer.start(0)
+
+    def _end(self, error: Exception | None) -> None:
+        self.under_way.remove(self)
+        self._done(error)
 
     def _go_on(self) -> None:
         try:
@@ -58,9 +67,9 @@ class Player:
             self._until = None
             wanted = next(self._script)
         except StopIteration:
-            self._done(None)
+            self._end(None)
         except Exception as error:
-            self._done(error)
+            self._end(error)
         else:
             self._wait(wanted)
 

@@ -178,9 +178,7 @@ def work(session: Session) -> None:
             session.failed(_in_words(error))
         end()
 
-    # Kept by the session for as long as QGIS runs.
-    session.player = Player(endurance.script(), done)
-    session.player.begin()
+    Player(endurance.script(), done).begin()
 
 
 def _in_words(error: Exception) -> str:

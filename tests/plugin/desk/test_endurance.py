@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import gc
 import shutil
 
 import pytest
 from benchmarks.endurance import Run, Sample, endure, faults, growth
+from inside_qgis.endurance.play import Player
 
 ROBOTS = 40
 
@@ -47,3 +49,17 @@ def test_whatever_is_left_is_a_fault():
         [], [[], ["1 × docks: QgsDockWidget fleet_dock"]], [], {"exceptions": {}, "warnings": {}}, {}, []
     )
     assert faults(run) == ["left after unloading: 1 × docks: QgsDockWidget fleet_dock"]
+
+
+def test_a_script_that_nobody_holds_is_played_to_its_end(qgis_app, wait):
+    ended, steps = [], []
+
+    def script():
+        for step in range(3):
+            steps.append(step)
+            yield 0.02
+
+    Player(script(), ended.append).begin()
+    wait(lambda: (gc.collect(), ended)[1], what="the script's end")
+    assert (steps, ended) == ([0, 1, 2], [None])
+    assert Player.under_way == []
