@@ -75,7 +75,7 @@ def test_rb_alone_lists_every_robot(at_desk, iface, wait):
 
 
 def test_robots_are_looked_for_in_the_windows_thread(at_desk, iface, wait, monkeypatch):
-    """A thread of QGIS's would wait for Python while unloading, in Python, waits for that thread: for ever."""
+    """A thread of QGIS's would wait for Python while unloading, in Python, waits for that thread."""
     threads = set()
     fetch = RobotFilter.fetchResults
 
