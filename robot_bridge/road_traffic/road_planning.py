@@ -14,7 +14,7 @@ from ..errors import RefusedError
 from ..messages import RouteReport, SurfaceMetres
 from ..planning import Planned, Point
 from ..roads.centrelines import Floats
-from ..roads.dense import Driving, dense_path
+from ..roads.dense import DensePath, Driving, dense_path
 from ..roads.errors import NoRouteError, OffNetworkError, RoadsError
 from ..roads.joining import with_ends
 from ..roads.route import Route
@@ -175,12 +175,10 @@ class RoadPlanner:
         if isinstance(found, str):
             note = f"the path is a straight line and not along roads: {found}" if found else ""
             return Planned([start, goal], note)
-        points, widths = with_ends(found, start, goal)
-        return Planned(_rounded(dense_path(points, widths, self._how()).points, start, goal))
+        return Planned(_rounded(self._dense(found, start, goal).points, start, goal))
 
     def _reported(self, route: Route, start: Point, goal: Point) -> RouteReport:
-        points, widths = with_ends(route, start, goal)
-        dense = dense_path(points, widths, self._how())
+        dense = self._dense(route, start, goal)
         metres: dict[str, float] = {}
         for surface, length in zip(route.surfaces, route.lengths.tolist(), strict=True):
             metres[surface] = metres.get(surface, 0.0) + length
@@ -193,6 +191,11 @@ class RoadPlanner:
             off_goal=round(route.off_goal, 2),
             engine=route.engine,
         )
+
+    def _dense(self, route: Route, start: Point, goal: Point) -> DensePath:
+        how = self._how()
+        points, widths = with_ends(route, start, goal, how.turning_radius)
+        return dense_path(points, widths, how)
 
     def _how(self) -> Driving:
         if self._driving is not None:

@@ -12,15 +12,16 @@ from .route import Route, stretch
 Place = tuple[float, float]
 
 
-def with_ends(route: Route, start: Place, goal: Place) -> tuple[Floats, Floats]:
+def with_ends(route: Route, start: Place, goal: Place, turning_radius: float) -> tuple[Floats, Floats]:
     """Return the points from ``start`` to ``goal`` and the width of road along each piece.
 
-    Who stands beside the middle of a road joins it aslant, not square.
+    Who stands beside the middle of a road joins it aslant, not square: so far ahead that an arc of
+    ``turning_radius`` metres has room.
     """
     stations = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(route.points, axis=0).T))])
     half = (route.widths[0] / 2, route.widths[-1] / 2)
     ahead, behind = (
-        min(off, route.metres / 3) if off <= wide else 0.0
+        min(max(off, math.sqrt(turning_radius * off)), route.metres / 3) if off <= wide else 0.0
         for off, wide in zip((route.off_start, route.off_goal), half, strict=True)
     )
     middle = stretch(route.points, ahead, route.metres - behind)

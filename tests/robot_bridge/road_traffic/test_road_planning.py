@@ -97,6 +97,15 @@ def test_who_stands_beside_the_middle_of_a_road_joins_it_aslant(sample):
     assert points[np.argmin(np.abs(points[:, 0] - 12.0)), 1] == pytest.approx(0.0, abs=0.3)
 
 
+@pytest.mark.parametrize("aside", [0.01, 0.08, 0.3, 1.0, 2.0])
+def test_a_place_beside_the_middle_of_a_straight_road_is_no_tight_corner(sample, aside):
+    site = with_roads(sample, [(0, 0), (50, 0)])
+    report = RoadPlanner(lambda: site, Driving(turning_radius=3.0)).route((10.0, aside), (40.0, -aside))
+    assert report.tight == []
+    assert report.points[0] == (10.0, aside)
+    assert report.points[-1] == (40.0, -aside)
+
+
 def test_directions_closures_and_bridges_of_the_published_roads_are_honoured(sample):
     square = [(0, 0), (50, 0), (50, 50), (0, 50), (0, 0)]
 
