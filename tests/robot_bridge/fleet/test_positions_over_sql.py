@@ -65,11 +65,19 @@ async def test_positions_that_are_dealt_with_again_after_a_kill_are_stored_thoug
 async def test_a_pose_is_stored_as_it_was_when_its_track_was(plugged):
     plugged.ask("r1", SendPos(1.0, 0.0, 0.0, 1.0, t=1.0))
     await plugged.link.poll()
-    go = threading.Event()
-    busy = asyncio.create_task(plugged.fleet.database.run(lambda _connection: go.wait(20)))
+    began, go = threading.Event(), threading.Event()
+
+    def hold(_connection):
+        began.set()
+        go.wait(20)
+
+    busy = asyncio.create_task(plugged.fleet.database.run(hold))
+    # What comes before the database has begun is done with it as one piece of work.
+    assert await asyncio.to_thread(began.wait, 20)
     saving = asyncio.create_task(plugged.fleet.save())
-    while not plugged.fleet.database.waiting:
-        await asyncio.sleep(0.001)
+    async with asyncio.timeout(20):
+        while not plugged.fleet.database.waiting:
+            await asyncio.sleep(0.001)
     await plugged.fleet.receive("r1", "sql", SendPos(2.0, 0.0, 0.0, 1.0, t=2.0), None)
     go.set()
     await asyncio.gather(busy, saving)
