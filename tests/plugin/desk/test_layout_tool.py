@@ -46,6 +46,8 @@ def slalom(entry, iface):
 def move(iface, x, y):
     # What the mouse does over a window that is not shown yet is lost.
     assert QTest.qWaitForWindowExposed(iface.canvas.window(), 5000)
+    # A canvas that is still given its size has other metres to its pixels afterwards.
+    QTest.qWait(50)
     # A mouse that is there already does not move.
     QTest.mouseMove(iface.canvas.viewport(), iface.pixel(x + 3, y + 3))
     QTest.mouseMove(iface.canvas.viewport(), iface.pixel(x, y))

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import contextlib
 
+import psycopg
 import pytest
+from sqlalchemy import make_url
 from yards import GATEWAY, MINE, OTHER, SECRET, RefusedError
 
 from robot_bridge.store.accounts.keeper import (
@@ -14,6 +16,7 @@ from robot_bridge.store.accounts.keeper import (
     MOST_PAYLOADS,
     MOST_WAITING,
 )
+from robot_bridge.store.engines.postgresql import GATEWAY_DOZES
 
 POSTGRESQL = [
     "select * from rr",
@@ -253,7 +256,13 @@ def test_what_a_robot_sees_of_the_server_names_no_secret_and_nobodys_statements(
 
 
 def test_what_a_robot_notifies_wakes_the_gateway_and_tells_it_nothing(postgresql):
-    with postgresql.session(MINE) as session:
+    parts = make_url(postgresql.url)
+    where = {"host": parts.host, "port": parts.port, "user": parts.username, "password": parts.password}
+    with (
+        psycopg.connect(**where, dbname=parts.database, autocommit=True) as gateway,
+        postgresql.session(MINE) as session,
+    ):
+        gateway.execute(f"select pg_advisory_lock({GATEWAY_DOZES})")
         session.run("select pg_notify('rr', 'delete everything')")
         session.run("listen rr")
         session.run("insert into rr (op) values ('Alive')")

@@ -136,7 +136,7 @@ def test_a_rejected_object_is_on_no_map_and_a_review_can_be_revised(seen, dock, 
     assert objects_on_map(loop) == {}
     click(dock.reviewed)
     choose(dock, number)
-    assert "rejected by anna" in dock.form.about.text()
+    assert "State: rejected, by anna." in dock.form.about.text()
     click(dock.form.accept)
     operator.wait(
         "the other way", lambda: operator.desk.observations.get(number).state is ObservationState.ACCEPTED, 5
