@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import time
 
-from qgis.PyQt.QtCore import QAbstractTableModel, QModelIndex, QObject, Qt
+from qgis.PyQt.QtCore import QModelIndex, QObject, Qt
 from qgis.PyQt.QtGui import QFont
 
 from ...language import tr
+from ..row_model import RowModel
 from .alarm import Alarm
 from .colours import colour_of
 from .words import KINDS, state_in_words
@@ -15,26 +16,14 @@ from .words import KINDS, state_in_words
 COLUMNS = (tr("Since"), tr("Alarm"), tr("State"))
 
 
-class AlarmModel(QAbstractTableModel):
+class AlarmModel(RowModel):
     """One row for each alarm, in the order in which they are given."""
 
     def __init__(self, parent: QObject | None = None):
-        super().__init__(parent)
-        self._alarms: list[Alarm] = []
-
-    def rowCount(self, parent: QModelIndex | None = None) -> int:
-        return 0 if parent is not None and parent.isValid() else len(self._alarms)
-
-    def columnCount(self, parent: QModelIndex | None = None) -> int:
-        return 0 if parent is not None and parent.isValid() else len(COLUMNS)
-
-    def headerData(self, section: int, orientation: Qt.Orientation, role: int = 0) -> object:
-        if orientation == Qt.Orientation.Horizontal and role == Qt.ItemDataRole.DisplayRole:
-            return COLUMNS[section]
-        return None
+        super().__init__(COLUMNS, parent)
 
     def data(self, index: QModelIndex, role: int = 0) -> object:
-        alarm = self._alarms[index.row()]
+        alarm = self.rows[index.row()]
         if role == Qt.ItemDataRole.DisplayRole:
             return (time_of_day(alarm.began), alarm.text, state_in_words(alarm))[index.column()]
         if role == Qt.ItemDataRole.ToolTipRole:
@@ -50,22 +39,15 @@ class AlarmModel(QAbstractTableModel):
 
     def show_alarms(self, alarms: list[Alarm]) -> None:
         """Show these; rows that stay the same alarms keep their selection."""
-        if [alarm.key for alarm in alarms] == [alarm.key for alarm in self._alarms]:
-            self._alarms = alarms
-            if alarms:
-                self.dataChanged.emit(self.index(0, 0), self.index(len(alarms) - 1, len(COLUMNS) - 1))
-            return
-        self.beginResetModel()
-        self._alarms = alarms
-        self.endResetModel()
+        self.show_rows(alarms, lambda alarm: alarm.key)
 
     def alarm_at(self, row: int) -> Alarm:
         """Return the alarm in ``row``."""
-        return self._alarms[row]
+        return self.rows[row]
 
     def rows_of(self, keys: set) -> list[int]:
         """Return the rows of alarms by their keys."""
-        return [row for row, alarm in enumerate(self._alarms) if alarm.key in keys]
+        return [row for row, alarm in enumerate(self.rows) if alarm.key in keys]
 
 
 def tip(alarm: Alarm) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from qgis.PyQt.QtCore import QAbstractTableModel, QModelIndex, QObject, Qt
+from qgis.PyQt.QtCore import QModelIndex, QObject, Qt
 from qgis.PyQt.QtWidgets import (
     QDialog,
     QDialogButtonBox,
@@ -18,6 +18,7 @@ from ...errors import FleetError
 from ...language import tr
 from ...settings.preferences import export_path
 from ..csv_files import iso_time, write_csv
+from ..row_model import RowModel
 from .alarm import AlarmEvent
 from .alarm_model import time_of_day
 from .words import CHANGES, KINDS, who
@@ -81,37 +82,23 @@ class AlarmLogDialog(QDialog):
             self.export(path)
 
 
-class EventModel(QAbstractTableModel):
+class EventModel(RowModel):
     """One row for each event."""
 
     def __init__(self, parent: QObject | None = None):
-        super().__init__(parent)
-        self._events: list[AlarmEvent] = []
-
-    def rowCount(self, parent: QModelIndex | None = None) -> int:
-        return 0 if parent is not None and parent.isValid() else len(self._events)
-
-    def columnCount(self, parent: QModelIndex | None = None) -> int:
-        return 0 if parent is not None and parent.isValid() else len(COLUMNS)
-
-    def headerData(self, section: int, orientation: Qt.Orientation, role: int = 0) -> object:
-        if orientation == Qt.Orientation.Horizontal and role == Qt.ItemDataRole.DisplayRole:
-            return COLUMNS[section]
-        return None
+        super().__init__(COLUMNS, parent)
 
     def data(self, index: QModelIndex, role: int = 0) -> object:
         if role not in (Qt.ItemDataRole.DisplayRole, Qt.ItemDataRole.ToolTipRole):
             return None
-        event = self._events[index.row()]
+        event = self.rows[index.row()]
         alarm = event.alarm
         what = CHANGES[event.change], KINDS[alarm.kind], who(alarm), alarm.text
         return (time_of_day(event.at), *what, event.by)[index.column()]
 
     def show_events(self, events: list[AlarmEvent]) -> None:
         """Show these, in this order."""
-        self.beginResetModel()
-        self._events = events
-        self.endResetModel()
+        self.show_rows(events)
 
 
 def _csv_row(event: AlarmEvent) -> tuple[object, ...]:

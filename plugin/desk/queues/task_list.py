@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from qgis.PyQt.QtCore import QAbstractTableModel, QMimeData, QModelIndex, Qt, pyqtSignal
+from qgis.PyQt.QtCore import QMimeData, QModelIndex, Qt, pyqtSignal
 from qgis.PyQt.QtGui import QFont, QKeyEvent
 from qgis.PyQt.QtWidgets import QAbstractItemView, QHeaderView, QTreeView, QWidget
 
 from ....robot_bridge.messages import TaskReport, TaskState
 from ...language import tr
 from ..colours import WRONG, for_letters
+from ..row_model import RowModel
 from ..small_views import shrink
 from .task_words import state_in_words, task_in_words
 
@@ -17,40 +18,26 @@ MIME = "application/x-fleet-task"
 NUMBER, TASK, STATE = range(3)
 
 
-class TaskModel(QAbstractTableModel):
+class TaskModel(RowModel):
     """One row for each task. A drop changes nothing here: it is asked for, and told by the gateway."""
 
     move_wanted = pyqtSignal(str, object)
     """A task, and the one that it shall stand before or None for the end."""
 
     def __init__(self, parent: QWidget | None = None):
-        super().__init__(parent)
-        self.tasks: list[TaskReport] = []
+        super().__init__(COLUMNS, parent)
+
+    @property
+    def tasks(self) -> list[TaskReport]:
+        """The tasks, first to last."""
+        return self.rows
 
     def show_tasks(self, tasks: list[TaskReport]) -> None:
         """Show these tasks."""
-        if [task.task for task in tasks] == [task.task for task in self.tasks]:
-            self.tasks = tasks
-            if tasks:
-                self.dataChanged.emit(self.index(0, 0), self.index(len(tasks) - 1, STATE))
-            return
-        self.beginResetModel()
-        self.tasks = tasks
-        self.endResetModel()
-
-    def rowCount(self, parent: QModelIndex | None = None) -> int:
-        return 0 if parent is not None and parent.isValid() else len(self.tasks)
-
-    def columnCount(self, parent: QModelIndex | None = None) -> int:
-        return 0 if parent is not None and parent.isValid() else len(COLUMNS)
-
-    def headerData(self, section: int, orientation: Qt.Orientation, role: int = 0) -> object:
-        if orientation == Qt.Orientation.Horizontal and role == Qt.ItemDataRole.DisplayRole:
-            return COLUMNS[section]
-        return None
+        self.show_rows(tasks, lambda task: task.task)
 
     def data(self, index: QModelIndex, role: int = 0) -> object:
-        task, column = self.tasks[index.row()], index.column()
+        task, column = self.rows[index.row()], index.column()
         if role == Qt.ItemDataRole.DisplayRole:
             return (str(index.row() + 1), task_in_words(task), state_in_words(task))[column]
         if role == Qt.ItemDataRole.ToolTipRole:
@@ -68,7 +55,7 @@ class TaskModel(QAbstractTableModel):
         if not index.isValid():
             return Qt.ItemFlag.ItemIsDropEnabled
         flags = Qt.ItemFlag.ItemIsEnabled | Qt.ItemFlag.ItemIsSelectable
-        if self.tasks[index.row()].state is not TaskState.CURRENT:
+        if self.rows[index.row()].state is not TaskState.CURRENT:
             flags |= Qt.ItemFlag.ItemIsDragEnabled
         return flags
 
@@ -80,29 +67,29 @@ class TaskModel(QAbstractTableModel):
 
     def mimeData(self, indexes: list[QModelIndex]) -> QMimeData:
         mime = QMimeData()
-        mime.setData(MIME, self.tasks[indexes[0].row()].task.encode())
+        mime.setData(MIME, self.rows[indexes[0].row()].task.encode())
         return mime
 
     def dropMimeData(
         self, data: QMimeData, action: Qt.DropAction, row: int, column: int, parent: QModelIndex
     ) -> bool:
         task = bytes(data.data(MIME)).decode()
-        if task not in [one.task for one in self.tasks]:
+        if task not in [one.task for one in self.rows]:
             # Dragged from before the robot was another, or the task was done.
             return False
         at = parent.row() if row < 0 and parent.isValid() else row
-        self.want_at(task, len(self.tasks) if at < 0 else at)
+        self.want_at(task, len(self.rows) if at < 0 else at)
         # Not True: the view would take out the row that it takes for moved.
         return False
 
     def want_at(self, task: str, row: int) -> None:
         """Ask for a task to stand in front of what is in ``row`` now; nothing where it stands there."""
-        first = 1 if self.tasks and self.tasks[0].state is TaskState.CURRENT else 0
+        first = 1 if self.rows and self.rows[0].state is TaskState.CURRENT else 0
         row = max(first, row)
-        here = next(k for k, one in enumerate(self.tasks) if one.task == task)
+        here = next(k for k, one in enumerate(self.rows) if one.task == task)
         if here < first or row in (here, here + 1):
             return
-        before = self.tasks[row].task if row < len(self.tasks) else None
+        before = self.rows[row].task if row < len(self.rows) else None
         self.move_wanted.emit(task, before)
 
 
