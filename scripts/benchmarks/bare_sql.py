@@ -15,6 +15,7 @@ from collections.abc import Sequence
 from typing import Any
 from urllib.parse import urlsplit
 
+from robot_bridge.store.engines.postgresql import GATEWAY_DOZES
 from robot_bridge.store.wakeups import LONGEST_S, SHORTEST_S
 
 from .sql_robots import Ear, where
@@ -116,6 +117,8 @@ class PostgreSQL(Server):
         connection = psycopg.connect(
             **where(url), dbname=urlsplit(url).path[1:], autocommit=True, options=options
         )
+        # Robots notify only where somebody dozes: this loop always does.
+        connection.execute(f"select pg_advisory_lock({GATEWAY_DOZES})")
         self.ear = Ear(connection, "rr")
         return connection
 
