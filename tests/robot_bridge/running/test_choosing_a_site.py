@@ -121,9 +121,7 @@ def test_what_cannot_be_served_is_refused_and_the_site_stays(bridge, site, says)
 def test_a_gateway_does_not_start_with_another_site_than_the_chosen_one(bridge, sites):
     bridge.desk().ask("choose_site", {"site": "south"})
     shutil.rmtree(sites / "south")
-    with pytest.raises(
-        StageError, match=r"a supervisor chose cannot be served.*--site-as-given"
-    ):
+    with pytest.raises(StageError, match=r"a supervisor chose cannot be served.*--site-as-given"):
         restart(bridge)
     restart(bridge, "--site-as-given")
     assert bridge.desk().site["id"] == "sample"
