@@ -19,6 +19,7 @@ from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import QAbstractButton, QDockWidget, QLineEdit, QTableView, QWidget
 
 from .desk_view import DeskView, NotHappenedError
+from .mouse import move_mouse
 
 POLL_MS = 50
 SMALLEST = 0
@@ -88,7 +89,7 @@ class OperatorAtDesk(DeskView):
         place = self._on_canvas(QgsPointXY(x, y), crs)
         if not self.canvas.viewport().rect().contains(place):
             raise NotHappenedError(f"({x}, {y}) is outside the map that is shown, so it cannot be clicked")
-        QTest.mouseMove(self.canvas.viewport(), place)
+        move_mouse(self.canvas.viewport(), place)
         self._click(self.canvas.viewport(), place)
 
     def show_map(self, extent: tuple[float, float, float, float], crs: str) -> None:

@@ -23,6 +23,7 @@ from qgis.PyQt.QtWidgets import (
 )
 from qgis.utils import iface
 
+from ..mouse import move_mouse
 from ..operator_at_desk import NotHappenedError, OperatorAtDesk
 
 LIVE_LAYER = "Robots (live)"
@@ -75,7 +76,7 @@ class Shift:
         """Zoom, turn, and go back; a card shows under the mouse."""
         for _ in range(3):
             self._canvas.zoomByFactor(0.6)
-            QTest.mouseMove(self._canvas.viewport(), self._somewhere())
+            move_mouse(self._canvas.viewport(), self._somewhere())
             yield 0.7
         self._canvas.setRotation(self._chance.uniform(5, 350))
         self._canvas.refresh()
@@ -92,7 +93,7 @@ class Shift:
         QTest.mousePress(view, LEFT, Qt.KeyboardModifier.NoModifier, begin)
         try:
             for part in (0.3, 0.6, 1.0):
-                QTest.mouseMove(view, begin + (end - begin) * part)
+                move_mouse(view, begin + (end - begin) * part, LEFT)
                 yield 0.05
         finally:
             QTest.mouseRelease(view, LEFT, Qt.KeyboardModifier.NoModifier, end)
@@ -124,7 +125,7 @@ class Shift:
             yield 0.2
         self._operator.choose("fleet_road_route")
         for _ in range(5):
-            QTest.mouseMove(self._canvas.viewport(), self._somewhere())
+            move_mouse(self._canvas.viewport(), self._somewhere())
             yield 0.3
         self._click_map()
         yield 0.3
@@ -283,7 +284,7 @@ class Shift:
 
     def _click_map(self) -> None:
         at = self._somewhere()
-        QTest.mouseMove(self._canvas.viewport(), at)
+        move_mouse(self._canvas.viewport(), at)
         QTest.mouseClick(self._canvas.viewport(), LEFT, Qt.KeyboardModifier.NoModifier, at)
 
     def _somewhere(self) -> QPoint:

@@ -21,6 +21,7 @@ from fleet_supervisor.robot_bridge.messages import (
     SiteReport,
     to_json,
 )
+from inside_qgis.mouse import move_mouse
 from qgis.core import QgsCoordinateReferenceSystem, QgsLocator, QgsProject, QgsRectangle, QgsSettings
 from qgis.gui import QgsMapCanvas, QgsMapToolPan, QgsMessageBar
 from qgis.PyQt import sip
@@ -302,6 +303,10 @@ class Window(QMainWindow):
         at = self.canvas.getCoordinateTransform().transform(ORIGIN[0] + x, ORIGIN[1] + y)
         return QPoint(round(at.x()), round(at.y()))
 
+    def hover(self, x, y) -> None:
+        """Move the mouse to there over the map."""
+        move_mouse(self.canvas.viewport(), self.pixel(x, y))
+
     def click(self, x, y, button=Qt.MouseButton.LeftButton) -> None:
         QTest.mouseClick(self.canvas.viewport(), button, Qt.KeyboardModifier.NoModifier, self.pixel(x, y))
         wait_until(self.is_settled, what="the check of the draft")
@@ -315,6 +320,8 @@ def iface(qgis_app):
     window.resize(1280, 800)
     window.show()
     window.activateWindow()
+    # Before that, a canvas may still be given its size.
+    assert QTest.qWaitForWindowExposed(window, 20_000)
     QApplication.processEvents()
     window.look_at(0, 0, 120, 100)
     yield window

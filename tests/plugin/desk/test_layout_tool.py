@@ -43,17 +43,6 @@ def slalom(entry, iface):
     return entry.tool
 
 
-def move(iface, x, y):
-    # What the mouse does over a window that is not shown yet is lost.
-    assert QTest.qWaitForWindowExposed(iface.canvas.window(), 5000)
-    # A canvas that is still given its size has other metres to its pixels afterwards.
-    QTest.qWait(50)
-    # A mouse that is there already does not move.
-    QTest.mouseMove(iface.canvas.viewport(), iface.pixel(x + 3, y + 3))
-    QTest.mouseMove(iface.canvas.viewport(), iface.pixel(x, y))
-    QApplication.processEvents()
-
-
 def turn(iface, notches, modifiers=NONE):
     viewport = iface.canvas.viewport()
     place = QPointF(iface.pixel(40, 50))
@@ -84,19 +73,19 @@ def no_layer():
 
 
 def test_the_layout_is_under_the_cursor_and_goes_with_it(slalom, iface):
-    move(iface, 40, 50)
+    iface.hover(40, 50)
     pixel = iface.canvas.mapUnitsPerPixel()
     assert slalom.preview().shape == (7, 2)
     # Gates and cones to the east of the cursor, which is where the layout begins.
     assert slalom.preview()[2] - ORIGIN == pytest.approx((46, 50), abs=2 * pixel)
     before = slalom.preview()
-    move(iface, 60, 30)
+    iface.hover(60, 30)
     assert slalom.preview() - before == pytest.approx(np.tile((20, -20), (7, 1)), abs=2 * pixel)
     assert no_layer()
 
 
 def test_the_wheel_turns_it_and_leaves_the_scale(slalom, iface):
-    move(iface, 40, 50)
+    iface.hover(40, 50)
     scale = iface.canvas.scale()
     turn(iface, 2)
     assert slalom.heading == 120
@@ -116,7 +105,7 @@ def test_ctrl_and_the_wheel_zoom_as_with_every_tool(slalom, iface):
 
 def test_a_click_places_it_into_a_layer_and_another_one_beside_it(slalom, iface):
     pixel = iface.canvas.mapUnitsPerPixel()
-    move(iface, 40, 50)
+    iface.hover(40, 50)
     iface.click(40, 50)
     made = cones()
     assert len(made) == 7
@@ -160,7 +149,7 @@ def test_a_map_without_true_metres_is_refused_with_what_to_do(slalom, iface):
 
 
 def test_a_right_click_a_drag_and_a_move_place_nothing(slalom, iface):
-    move(iface, 40, 50)
+    iface.hover(40, 50)
     iface.click(40, 50, Qt.MouseButton.RightButton)
     viewport = iface.canvas.viewport()
     QTest.mousePress(viewport, Qt.MouseButton.LeftButton, NONE, iface.pixel(40, 50))
@@ -172,14 +161,14 @@ def test_escape_and_another_tool_take_the_preview_away(slalom, iface):
     def bands():
         return [item for item in iface.canvas.items() if isinstance(item, QgsRubberBand) and item.isVisible()]
 
-    move(iface, 40, 50)
+    iface.hover(40, 50)
     assert len(bands()) == 1
     QTest.keyClick(iface.canvas, Qt.Key.Key_Escape)
     assert slalom.preview().shape == (0, 2)
     assert bands() == []
     assert iface.canvas.mapTool() is not slalom
     iface.canvas.setMapTool(slalom)
-    move(iface, 50, 50)
+    iface.hover(50, 50)
     pan = QgsMapToolPan(iface.canvas)
     iface.canvas.setMapTool(pan)
     assert bands() == []
@@ -194,7 +183,7 @@ def test_the_plugin_has_an_entry_for_each_layout_and_leaves_none(iface):
     names = {one.objectName() for one in entry.menu().actions()}
     assert names == {f"fleet_cone_layout_{name}" for name in LAYOUTS}
     next(one for one in entry.menu().actions() if one.objectName().endswith("fs_skidpad")).trigger()
-    move(iface, 40, 50)
+    iface.hover(40, 50)
     assert len(iface.canvas.mapTool().preview()) == 82
     loaded.unload()
     QApplication.sendPostedEvents(None, QEvent.Type.DeferredDelete)
@@ -245,7 +234,7 @@ def test_every_dimension_has_a_field_with_its_unit_and_the_standards_value(entry
 
 def test_a_dimension_that_is_typed_is_what_is_shown_and_placed(entry, fields, iface):
     shown = fields("slalom")
-    move(iface, 40, 50)
+    iface.hover(40, 50)
     type_into(shown["count"], "3")
     type_into(shown["spacing"], "5")
     type_into(entry.dimensions.heading, "180")
@@ -258,7 +247,7 @@ def test_a_dimension_that_is_typed_is_what_is_shown_and_placed(entry, fields, if
 
 def test_what_cannot_be_is_said_and_not_placed(entry, fields, iface):
     shown = fields("iso3888_1")
-    move(iface, 40, 50)
+    iface.hover(40, 50)
     before = entry.tool.layout
     type_into(shown["vehicle_width"], "0")
     assert entry.dimensions.problem.isVisible()

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import pytest
+from inside_qgis.mouse import move_mouse
 from qgis.core import QgsFeature, QgsGeometry, QgsProject, QgsVectorLayer
 from qgis.gui import QgsRubberBand
 from qgis.PyQt.QtCore import QPoint, Qt
 from qgis.PyQt.QtTest import QTest
-from qgis.PyQt.QtWidgets import QApplication, QLabel, QToolButton, QToolTip
+from qgis.PyQt.QtWidgets import QLabel, QToolButton, QToolTip
 
 NONE = Qt.KeyboardModifier.NoModifier
 
@@ -98,7 +99,7 @@ def test_dragging_neither_moves_nor_sends(cone, iface, gateway):
     before = cone.desk.drafts.draft
     view = iface.canvas.viewport()
     QTest.mousePress(view, Qt.MouseButton.LeftButton, NONE, iface.pixel(70, 55))
-    QTest.mouseMove(view, iface.pixel(75, 60))
+    move_mouse(view, iface.pixel(75, 60), Qt.MouseButton.LeftButton)
     QTest.mouseRelease(view, Qt.MouseButton.LeftButton, NONE, iface.pixel(90, 70))
     assert cone.desk.drafts.draft == before
     assert gateway.asked("send") == []
@@ -273,8 +274,7 @@ def test_a_route_of_one_point_is_not_sent_and_says_what_is_missing(route, iface,
 
 def test_the_next_leg_follows_the_mouse(route, iface):
     iface.click(40, 30)
-    QTest.mouseMove(iface.canvas.viewport(), iface.pixel(80, 70))
-    QApplication.processEvents()
+    iface.hover(80, 70)
     assert route.desk.drafts.cursor == pytest.approx((80, 70), abs=0.3)
     assert len(route.desk.drafts.draft.points) == 1
 
@@ -352,7 +352,7 @@ def test_the_way_to_the_mouse_goes_with_the_robot_and_with_the_tool(cone, iface,
     way = {"points": [[50, 40], [60, 40], [70, 55]], "metres": 28.0, "seconds": 20.0}
     gateway.answers["get_route"] = lambda _: {"result": way}
     for place in ((60, 50), (70, 55)):
-        QTest.mouseMove(iface.canvas.viewport(), iface.pixel(*place))
+        iface.hover(*place)
     wait(lambda: 3 in bands(iface), what="the way")
     assert "28" in QToolTip.text()
     if how == "another robot":

@@ -77,13 +77,6 @@ def ready(entry, layer):
     return entry
 
 
-def move(iface, x, y):
-    # A mouse that is there already does not move.
-    QTest.mouseMove(iface.canvas.viewport(), iface.pixel(x + 3, y + 3))
-    QTest.mouseMove(iface.canvas.viewport(), iface.pixel(x, y))
-    QApplication.processEvents()
-
-
 def test_a_click_says_surface_name_and_coordinates(ready, iface):
     iface.click(50, 50)
     ((text, complaint),) = iface.said
@@ -100,7 +93,7 @@ def test_a_click_says_surface_name_and_coordinates(ready, iface):
 
 def test_the_tool_tip_goes_with_the_cursor(ready, iface):
     for (x, y), text in {(50, 50): "asphalt", (25, 25): "slippery", (80, 80): "no road surface"}.items():
-        move(iface, x, y)
+        iface.hover(x, y)
         assert QToolTip.text() == text
 
 

@@ -7,6 +7,7 @@ import time
 
 import pytest
 
+from robot_bridge.emergency import stops
 from robot_bridge.errors import RefusedError, StoreError
 from robot_bridge.messages import ClearEmergencyStop, EmergencyStop, MessageError, Send
 
@@ -55,7 +56,9 @@ async def two(yard):
 
 
 @pytest.fixture
-def control(two):
+def control(two, monkeypatch):
+    # What is said of a disk that takes its time has a test of its own.
+    monkeypatch.setattr(stops, "STORED_WITHIN", 60.0)
     return Control(two)
 
 
@@ -314,8 +317,9 @@ async def test_a_stop_that_cannot_be_stored_is_in_force_and_on_its_way_and_store
     assert Control(two).report.in_force
 
 
-async def test_a_database_that_does_not_answer_delays_no_stop(two, control):
+async def test_a_database_that_does_not_answer_delays_no_stop(two, control, monkeypatch):
     await two.ready("r1", magic=1)
+    monkeypatch.setattr(stops, "STORED_WITHIN", 1.0)
     frozen = asyncio.ensure_future(two.database.run(lambda connection: time.sleep(2.5)))
     await asyncio.sleep(0.05)
     began = time.monotonic()

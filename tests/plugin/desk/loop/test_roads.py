@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 from fleet_supervisor.robot_bridge.messages import CommandState
+from inside_qgis.mouse import move_mouse
 from qgis.core import QgsPointXY, QgsProject
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
@@ -27,7 +28,7 @@ def at_roads(loop, operator):
 
 def move_to(operator, x, y):
     e, n = operator.desk.site.origin
-    QTest.mouseMove(operator.canvas.viewport(), operator._on_canvas(QgsPointXY(e + x, n + y), CRS))
+    move_mouse(operator.canvas.viewport(), operator._on_canvas(QgsPointXY(e + x, n + y), CRS))
 
 
 def preview(operator):

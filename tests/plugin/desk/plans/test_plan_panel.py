@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import itertools
+import time
 from dataclasses import replace
 
 import pytest
 from fleet_supervisor.plugin.desk.cone_store import ConeStore
 from fleet_supervisor.plugin.sites.roles import ROAD_CENTRELINE, set_role
 from fleet_supervisor.plugin.wire.outbox import Answer, Order
+from fleet_supervisor.robot_bridge.assignment import solving
 from fleet_supervisor.robot_bridge.layouts.cone import Cone
 from fleet_supervisor.robot_bridge.messages import to_json
 from qgis.core import (
@@ -74,7 +77,20 @@ def test_a_preview_gives_each_robot_the_cones_near_to_it_and_sends_nothing(panel
     assert "Not sent yet: 6 cones, 2 robots" in panel.bar.text.text()
 
 
-def test_a_good_plan_is_made_with_progress_and_can_be_given_up(panel, wait):
+@pytest.fixture
+def endless(monkeypatch):
+    """Called, it lets no stage be solved any more: six cones would be, before anybody can give up."""
+
+    def stage(days, targets, start, aim, effort):
+        for step in itertools.count(1):
+            effort.progress(min(step / 1000, 1.0))
+            time.sleep(0.01)
+
+    return lambda: monkeypatch.setattr(solving, "solved_stage", stage)
+
+
+def test_a_good_plan_is_made_with_progress_and_can_be_given_up(panel, wait, endless):
+    endless()
     panel.form.seconds.setValue(60.0)
     press(panel, "fleet_plan_solve")
     wait(lambda: panel.drafts.task is not None and panel.drafts.task.progress() > 0, 20, "progress")
@@ -258,8 +274,9 @@ def test_a_plan_that_is_driven_is_not_thrown_away_by_another_preview(panel, gate
     assert panel.driven.driven is None and "No plan" in panel.bar.text.text()
 
 
-def test_unloading_takes_panel_layers_and_tasks_away(panel, plugin, wait, iface):
+def test_unloading_takes_panel_layers_and_tasks_away(panel, plugin, wait, iface, endless):
     planned(panel, wait)
+    endless()
     panel.form.seconds.setValue(60.0)
     press(panel, "fleet_plan_solve")
     task = panel.drafts.task
