@@ -12,6 +12,10 @@ from qgis.core import QgsProject, QgsTemporalNavigationObject
 from qgis.gui import QgsMapCanvas, QgsTemporalControllerWidget
 from qgis.PyQt.QtCore import QPoint, Qt
 from qgis.PyQt.QtTest import QTest
+from stage.desk_wire import ask
+from stage.processes import Processes
+
+from tests.plugin.desk.loop.conftest import Loop
 
 LAYER = "Trajectories (replay)"
 
@@ -23,20 +27,49 @@ def dock(plugin, iface):
     return iface.findChild(object, "fleet_replay_dock")
 
 
+@pytest.fixture(scope="module")
+def drive(tmp_path_factory, root):
+    """A gateway at which r1 has driven 20 m to a target while r2 stood, and when that began.
+
+    One for all: what is replayed is not changed by that.
+    """
+    folder = tmp_path_factory.mktemp("drive")
+    with Processes(folder / "logs") as processes:
+        loop = Loop(processes, root / "resources" / "sample_site", folder)
+        loop.start_gateway()
+        loop.start_robot("r1", (20, 8, 0))
+        loop.start_robot("r2", (20, 84, 0))
+        until(lambda: len(asked(loop, "get_positions")["robots"]) == 2)
+        # There is something to show a pixel of the time line before the command, too.
+        time.sleep(2)
+        began = time.time()
+        cone = {"x": 40.0, "y": 8.0, "cone": True}
+        asked(loop, "send", command="first-drive", robot="r1", op="SetPosEnd", params=cone)
+        until(lambda: asked(loop, "get_commands", robot="r1")["commands"][0]["state"] == "reached")
+        # The gateway stores once a second.
+        time.sleep(2.5)
+        yield loop, began
+
+
+def asked(loop, method, **params):
+    (answer,) = ask(loop.address, (method, params))
+    return answer
+
+
+def until(true, seconds=60):
+    end = time.monotonic() + seconds
+    while not true():
+        assert time.monotonic() < end
+        time.sleep(0.1)
+
+
 @pytest.fixture
-def driven(loop, operator, dock):
-    """r1 has driven 20 m to a target; r2 stands."""
-    loop.start_robot("r1", (20, 8, 0))
-    loop.start_robot("r2", (20, 84, 0))
+def driven(drive, operator, dock):
+    """The desk at the gateway of that drive; r2 is selected. When the drive began."""
+    loop, began = drive
     operator.connect_to(loop, ["r1", "r2"])
-    # There is something to show a pixel of the time line before the command, too.
-    QTest.qWait(2000)
-    began = time.time()
-    operator.set_cone("r1", 40.0, 8.0)
-    operator.wait_for_state("r1", "SetPosEnd", CommandState.REACHED)
+    operator.wait("the commands", lambda: operator.sent_to("r1"), 15)
     operator.select("r2")
-    # The gateway stores once a second.
-    QTest.qWait(2500)
     return began
 
 
