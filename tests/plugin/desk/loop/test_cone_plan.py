@@ -156,9 +156,9 @@ def test_three_robots_place_a_lane_change_and_two_go_on_when_one_is_killed(
     assert not planner.dock.drafts.draft.meetings, planner.dock.bar.trouble.text()
     assert not len(operator.desk.queues), "nothing is sent before the operator says so"
     planner.send()
-    operator.wait("cones being placed", lambda: len(planner.done) >= 4, 60)
+    operator.wait("cones being placed", lambda: len(planner.done) >= 4, 120)
     of_r1 = {stop.id for stop in plan.robot("r1").stops}
-    operator.wait("two cones of r1", lambda: len(planner.done & of_r1) >= 2, 60)
+    operator.wait("two cones of r1", lambda: len(planner.done & of_r1) >= 2, 120)
     robots["r1"].send_signal(signal.SIGKILL)
     operator.wait("r1 being missed", lambda: "r1" in planner.dock.driven.trouble.away, 20)
     left = of_r1 - planner.done
@@ -171,7 +171,7 @@ def test_three_robots_place_a_lane_change_and_two_go_on_when_one_is_killed(
     assert not offer.meetings, planner.dock.bar.trouble.text()
     assert operator.desk.queues.get("r1").tasks, "nothing is taken over before the operator confirms"
     planner.press("fleet_plan_confirm")
-    operator.wait("every cone being placed", lambda: planner.done == cones, 90)
+    operator.wait("every cone being placed", lambda: planner.done == cones, 240)
     operator.wait("quiet", lambda: not planner.dock.driven.busy, 10)
 
     planner.dock.tabs.setCurrentWidget(planner.dock.placed)
@@ -213,7 +213,7 @@ def test_a_lost_robots_cones_are_taken_over_without_a_question_when_that_is_swit
     planner.send()
     operator.wait("r1 being under way", lambda: planner.tasks_of("r1"), 20)
     robots["r1"].send_signal(signal.SIGKILL)
-    operator.wait("every cone being placed", lambda: planner.done == cones, 90)
+    operator.wait("every cone being placed", lambda: planner.done == cones, 240)
     operator.wait("quiet", lambda: not planner.dock.driven.busy, 10)
     assert planner.dock.driven.driven.plan.robot("r1").lost
     assert {one.robot for one in operator.desk.placements} <= {"r1", "r2"}
@@ -230,5 +230,5 @@ def test_a_lost_robots_cones_are_taken_over_without_a_question_when_that_is_swit
     stops = [stop for _, stop in planner.dock.drafts.draft.plan.all_stops() if stop.is_target]
     assert {stop.kind for stop in stops} == {"collect"} and len(stops) == len(cones)
     planner.send()
-    operator.wait("all of it being collected", lambda: len(planner.done) == len(cones), 90)
+    operator.wait("all of it being collected", lambda: len(planner.done) == len(cones), 240)
     assert all(one.collected_at is not None for one in operator.desk.placements)
