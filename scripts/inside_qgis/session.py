@@ -10,10 +10,11 @@ from pathlib import Path
 
 from qgis.core import QgsApplication, QgsProject
 from qgis.PyQt.QtCore import QTimer
-from qgis.utils import iface, unloadPlugin
+from qgis.PyQt.QtTest import QTest
+from qgis.utils import iface
 
 from .desk_view import NotHappenedError
-from .operator_at_desk import OperatorAtDesk
+from .operator_at_desk import POLL_MS, OperatorAtDesk
 
 PLAN_VARIABLE = "FLEET_DEMO_PLAN"
 
@@ -84,7 +85,12 @@ def start(work: Callable[[Session], None]) -> None:
 
 
 def end() -> None:
-    """Take the plugin out and end QGIS."""
-    unloadPlugin("fleet_supervisor")
+    """Leave QGIS by its own menu, as a user does: it closes the project and takes the plugin out.
+
+    Left by ``QgsApplication.exit`` it takes its window apart with the project open, and QGIS 3.44 crashes.
+    It would ask about changes that are not saved and about tasks that run, and nobody is there to answer.
+    """
     QgsProject.instance().setDirty(False)
-    QgsApplication.exit(0)
+    while QgsApplication.taskManager().countActiveTasks():
+        QTest.qWait(POLL_MS)
+    iface.actionExit().trigger()
