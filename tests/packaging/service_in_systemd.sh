@@ -12,6 +12,8 @@ mount -t proc proc "$root/proc"
 mount -t tmpfs tmpfs "$root/run"
 mount --rbind /dev "$root/dev"
 mount --rbind /sys "$root/sys"
+# systemd 258 works with version 2 of control groups only, whichever this system uses.
+mount -t cgroup2 cgroup2 "$root/sys/fs/cgroup"
 ip link set lo up
 
 make -s -C "$repository" install-service DESTDIR="$root" PREFIX=/opt/robot-bridge PROGRAM=no

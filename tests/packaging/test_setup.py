@@ -57,9 +57,7 @@ def test_the_set_up_runs_again_only_when_the_requirements_change(root, tmp_path)
     script(tmp_path / "scripts" / "setup.sh", "echo run >> runs; touch .venv/.fleet-setup")
 
     make_setup(tmp_path)
-    began = time.monotonic()
     make_setup(tmp_path)
-    assert time.monotonic() - began < 1
     assert (tmp_path / "runs").read_text() == "run\n"
 
     later = time.time() + 5

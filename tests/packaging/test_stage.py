@@ -84,7 +84,7 @@ def test_waiting_for_a_line_has_an_end(tmp_path):
         began = time.monotonic()
         with pytest.raises(StageError, match="silent was not ready after 0 s"):
             processes.wait_for_line("silent", "never said", 0.2)
-        assert time.monotonic() - began < 5
+        assert time.monotonic() - began < 30
 
 
 REACHED = Errand("r1", (58.0, 8.0), "reached")

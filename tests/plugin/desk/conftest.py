@@ -28,6 +28,7 @@ from qgis.PyQt import sip
 from qgis.PyQt.QtCore import QCoreApplication, QEvent, QPoint, Qt
 from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import QAction, QApplication, QLabel, QMainWindow
+from stage.patience import BUSY
 from websockets.asyncio.server import serve
 from websockets.exceptions import ConnectionClosed
 
@@ -210,10 +211,10 @@ def gateway(site):
 
 
 def wait_until(true, seconds: float = 5.0, what: str = "the condition") -> None:
-    """Let Qt work until ``true()`` holds."""
-    end = time.monotonic() + seconds
+    """Let Qt work until ``true()`` holds; ``seconds`` are an idle machine's."""
+    end = time.monotonic() + BUSY * seconds
     while not true():
-        assert time.monotonic() < end, f"{what} did not come within {seconds} s"
+        assert time.monotonic() < end, f"{what} did not come within {BUSY * seconds:g} s"
         QTest.qWait(10)
 
 

@@ -459,7 +459,7 @@ def test_unloading_leaves_nothing_twice(iface, gateway, make_robot, wait):
         assert [kind for kind in before if during[kind] <= before[kind]] == []
         began = time.monotonic()
         plugin.unload()
-        assert time.monotonic() - began < 1.0
+        assert time.monotonic() - began < 4.0
         assert plugin.window is None
         assert left_behind(iface) == before
     assert iface.canvas.mapTool() is before_tool
@@ -477,7 +477,7 @@ def test_unloading_while_a_gateway_hangs_does_not_hang(iface, gateway, wait):
     plugin.unload()
     took = time.monotonic() - began
     release.set()
-    assert took < 1.0
+    assert took < 4.0
 
 
 def test_a_group_with_layers_of_the_users_own_is_left_to_the_user(iface, plugin, gateway, wait):

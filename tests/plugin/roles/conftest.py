@@ -10,6 +10,7 @@ from fleet_supervisor.plugin.sites.roles import LayerExpressions, LayerSetup, ke
 from qgis.core import QgsCoordinateReferenceSystem, QgsProject
 from qgis.PyQt.QtCore import QCoreApplication, QEvent
 from qgis.PyQt.QtWidgets import QApplication
+from stage.patience import BUSY
 
 CRS = "EPSG:32633"
 
@@ -44,9 +45,9 @@ def wait():
     """Let events pass until ``true()``."""
 
     def until(true, seconds=10.0):
-        end = time.monotonic() + seconds
+        end = time.monotonic() + BUSY * seconds
         while not true():
-            assert time.monotonic() < end, f"not within {seconds:g} s"
+            assert time.monotonic() < end, f"not within {BUSY * seconds:g} s"
             QApplication.processEvents()
             time.sleep(0.005)
 

@@ -150,4 +150,4 @@ def test_requests_and_answers_on_postgresql_do_not_wait_for_a_poll(bridge, accou
             assert notice.payload == ""
             assert robot.execute("select op from sa").fetchall() == [("OpAck",)]
     # A fallback poll comes once a second; this machine may be busy.
-    assert sorted(times)[10] < 0.3, times
+    assert sorted(times)[10] < 0.7, times

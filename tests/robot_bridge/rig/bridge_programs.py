@@ -14,16 +14,17 @@ from typing import Any
 
 from bridge_wires import Desk, RobotWire
 from database_client import DatabaseClient
+from stage.patience import BUSY
 from stage.processes import Processes
 
 RUNS = itertools.count(1)
 
 
 def wait_until(condition: Callable[[], Any], seconds: float = 10.0, what: str = "") -> Any:
-    """Return what ``condition`` returns once that is true; fail after ``seconds``."""
-    until = time.monotonic() + seconds
+    """Return what ``condition`` returns once that is true; fail after ``seconds`` of an idle machine."""
+    until = time.monotonic() + BUSY * seconds
     while not (found := condition()):
-        assert time.monotonic() < until, f"not within {seconds:g} s: {what or condition}"
+        assert time.monotonic() < until, f"not within {BUSY * seconds:g} s: {what or condition}"
         time.sleep(0.02)
     return found
 

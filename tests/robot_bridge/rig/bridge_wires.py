@@ -10,6 +10,7 @@ from collections.abc import Callable
 from typing import Any
 from urllib.parse import urlsplit
 
+from stage.patience import BUSY
 from tls_wire import plain_end
 from websockets.sync.client import connect
 
@@ -59,11 +60,11 @@ class Wire:
         self.connection.send(json.dumps(frame if params is None else {**frame, "params": params}))
 
     def until(self, condition: Callable[[], Any], seconds: float = 10.0) -> Any:
-        """Listen until ``condition`` is true and return what it returned."""
-        until = time.monotonic() + seconds
+        """Listen until ``condition`` is true and return it; ``seconds`` are an idle machine's."""
+        until = time.monotonic() + BUSY * seconds
         while not (found := condition()):
             left = until - time.monotonic()
-            assert left > 0, f"did not come about within {seconds:g} s; {self.state()}"
+            assert left > 0, f"did not come about within {BUSY * seconds:g} s; {self.state()}"
             try:
                 self._hear(json.loads(self.connection.recv(min(left, 0.1))))
             except TimeoutError:

@@ -13,6 +13,7 @@ from qgis.gui import QgsMapCanvas, QgsTemporalControllerWidget
 from qgis.PyQt.QtCore import QPoint, Qt
 from qgis.PyQt.QtTest import QTest
 from stage.desk_wire import ask
+from stage.patience import BUSY
 from stage.processes import Processes
 
 from tests.plugin.desk.loop.conftest import Loop
@@ -57,7 +58,7 @@ def asked(loop, method, **params):
 
 
 def until(true, seconds=60):
-    end = time.monotonic() + seconds
+    end = time.monotonic() + BUSY * seconds
     while not true():
         assert time.monotonic() < end
         time.sleep(0.1)
