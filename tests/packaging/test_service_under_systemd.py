@@ -30,10 +30,11 @@ class World:
         self._root = root
 
     def do(self, *words: str) -> str:
-        first = Path(f"/proc/{self._process.pid}/task/{self._process.pid}/children").read_text().split()
-        if not first:
-            return ""
-        inside = ["nsenter", "-t", first[0], "-m", "-p", "-n", "chroot", str(self._root), *words]
+        pid = self._process.pid
+        # --root: a namespace of mounts begins at the machine's root folder, and these tests may run in a chroot.
+        # The one of processes is systemd's; the process that unshare left here has not entered it.
+        spaces = [f"--target={pid}", "--mount", "--net", "--root", f"--pid=/proc/{pid}/ns/pid_for_children"]
+        inside = ["nsenter", *spaces, "chroot", str(self._root), *words]
         return subprocess.run(inside, capture_output=True, text=True, check=False, timeout=30).stdout
 
     def fact(self, name: str) -> str:
