@@ -31,8 +31,8 @@ class World:
 
     def do(self, *words: str) -> str:
         pid = self._process.pid
-        # --root: a namespace of mounts begins at the machine's root folder, and these tests may run in a chroot.
-        # The one of processes is systemd's; the process that unshare left here has not entered it.
+        # --root: a namespace of mounts begins at the machine's own root folder, not at that of a chroot.
+        # The namespace of processes is its child's: unshare itself stays outside.
         spaces = [f"--target={pid}", "--mount", "--net", "--root", f"--pid=/proc/{pid}/ns/pid_for_children"]
         inside = ["nsenter", *spaces, "chroot", str(self._root), *words]
         return subprocess.run(inside, capture_output=True, text=True, check=False, timeout=30).stdout
