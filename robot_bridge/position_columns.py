@@ -69,7 +69,8 @@ def packed(head: PositionColumns, columns: Iterable[npt.NDArray[np.float64]]) ->
 
 def _since(now: float, times: Iterable[float], count: int) -> npt.NDArray[np.float64]:
     """Return the seconds since ``times``, not below 0, in whole milliseconds."""
-    return np.round(np.maximum(now - np.fromiter(times, np.float64, count), 0.0), 3)
+    since: npt.NDArray[np.float64] = np.maximum(now - np.fromiter(times, np.float64, count), 0.0)
+    return since.round(3)
 
 
 def _pose_at(robot: Robot) -> float:

@@ -81,7 +81,7 @@ def near_obstacles(cones: Sequence[Cone], obstacles: Sequence[Shape], distance: 
     for obstacle in obstacles:
         away = np.min([_away(points, ring) for ring in obstacle.rings], axis=0)
         inside = _inside(points, obstacle.rings) if obstacle.area else np.zeros(len(cones), bool)
-        for k in np.flatnonzero(inside | (away < distance - 1e-9)):
+        for k in np.flatnonzero(inside | (away < distance - 1e-9)).tolist():
             how = "is inside" if inside[k] else f"is {away[k]:.2f} m from"
             findings.append(
                 _finding(

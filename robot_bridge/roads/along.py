@@ -60,7 +60,7 @@ def _runs(network: Network, places: Floats, among: NDArray[np.bool_] | None, roo
     low, high = (reduce.reduceat(edges.xy, edges.first[:-1], axis=0) for reduce in (np.minimum, np.maximum))
     run_low, run_high = (reduce.reduceat(places, begins, axis=0) for reduce in (np.minimum, np.maximum))
     meets = (run_low[:, None] <= high + room) & (run_high[:, None] >= low - room)
-    near = np.flatnonzero(meets.all(axis=2).any(axis=1)).tolist()
+    near = np.flatnonzero(np.any(np.all(meets, axis=2), axis=1)).tolist()
     # The box of a bent edge holds much that is far from it.
     boxes = _segment_boxes(edges, room)
     return [runs[k] for k in near if _is_any_in(places[runs[k]], boxes)]

@@ -35,7 +35,8 @@ def outside_border(table: SegmentTable, limits: Limits) -> Iterator[Finding]:
     border = table.robot_map.border
     low = np.array([border.x_min, border.y_min]) - SAME_PLACE
     high = np.array([border.x_max, border.y_max]) + SAME_PLACE
-    inside = ((table.a >= low) & (table.a <= high) & (table.b >= low) & (table.b <= high)).all(axis=1)
+    within = (table.a >= low) & (table.a <= high) & (table.b >= low) & (table.b <= high)
+    inside: NDArray[Any] = np.all(within, axis=1)
     for row, segments in _by_obstacle(table, ~inside):
         yield Finding(
             Kind.OUTSIDE,

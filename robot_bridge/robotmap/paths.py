@@ -47,7 +47,8 @@ def paths_of(a: NDArray[Any], b: NDArray[Any], counts: NDArray[Any]) -> Paths:
 
 def step_counts(forms: NDArray[Any], counts: NDArray[Any]) -> NDArray[Any]:
     """Return how many steps the path of each obstacle has, (K,) int64."""
-    return np.where(forms == LOOSE, np.maximum(2 * counts - 1, 0), counts - (forms == RING))
+    steps: NDArray[Any] = np.where(forms == LOOSE, np.maximum(2 * counts - 1, 0), counts - (forms == RING))
+    return steps
 
 
 def segments_of(paths: Paths, counts: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:

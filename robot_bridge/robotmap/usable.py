@@ -75,7 +75,7 @@ def inspected(outlines: Outlines) -> Inspection:
 def touching(low: NDArray[Any], high: NDArray[Any], border: Border) -> NDArray[Any]:
     """Tell which boxes, from ``low`` to ``high``, (n, 2) each, touch the border's rectangle, (n,) bool."""
     corner_low, corner_high = (border.x_min, border.y_min), (border.x_max, border.y_max)
-    touches: NDArray[Any] = ((high >= corner_low) & (low <= corner_high)).all(axis=1)
+    touches: NDArray[Any] = np.all((high >= corner_low) & (low <= corner_high), axis=1)
     return touches
 
 

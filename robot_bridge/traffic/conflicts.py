@@ -86,7 +86,8 @@ class Surroundings:
     def conflicts(self, movement: Movement) -> list[Conflict]:
         """Return the conflicts of ``movement`` with the others, soonest first."""
         box, boxes = self._windows.boxes(movement, movement.radius), self._boxes
-        touch = (boxes[:, :, :2] <= box[:, 2:]).all(axis=2) & (boxes[:, :, 2:] >= box[:, :2]).all(axis=2)
+        meet = (boxes[:, :, :2] <= box[:, 2:]) & (boxes[:, :, 2:] >= box[:, :2])
+        touch: NDArray[np.bool_] = np.all(meet, axis=2)
         found: list[Conflict] = []
         for number in np.flatnonzero(touch.any(axis=1)).tolist():
             windows = np.flatnonzero(touch[number])

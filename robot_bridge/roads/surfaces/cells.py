@@ -171,10 +171,11 @@ def _cut(grid: Grid, a: Floats, b: Floats) -> tuple[_Pieces, _Sides]:
     column = begin[of] + step
     rest = step < count[of] - 1
     y = np.empty(len(of))
-    sides = _Sides(of[rest], column[rest], _height(a, b, of[rest], (column[rest] + 1) * grid.side))
+    side: Floats = np.multiply(column[rest] + 1, grid.side)
+    sides = _Sides(of[rest], column[rest], _height(a, b, of[rest], side))
     y[rest] = sides.y
     x0, y0, x1, y1 = a[of, 0], a[of, 1], b[of, 0], b[of, 1]
-    x1[rest], y1[rest] = (column[rest] + 1) * grid.side, y[rest]
+    x1[rest], y1[rest] = side, y[rest]
     later = np.flatnonzero(step > 0)
     x0[later], y0[later] = x1[later - 1], y1[later - 1]
     return _Pieces(of, column, x0, y0, x1, y1), sides

@@ -69,7 +69,7 @@ def _in_cells(grid: Grid, a: NDArray[Any], b: NDArray[Any]) -> tuple[NDArray[Any
     """Return the lower and the upper end of each segment, (n, 2) each, in cells from the grid's corner."""
     origin = (grid.x_min, grid.y_min)
     ends = [(end.reshape(-1, 2) - origin) / grid.resolution for end in (a, b)]
-    ends = [np.round(np.clip(end, -_FAR, _FAR), _NOISE_DIGITS) for end in ends]
+    ends = [np.clip(end, -_FAR, _FAR).round(_NOISE_DIGITS) for end in ends]
     upward = (ends[0][:, 1] <= ends[1][:, 1])[:, None]
     return np.where(upward, ends[0], ends[1]), np.where(upward, ends[1], ends[0])
 
