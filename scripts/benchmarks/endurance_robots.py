@@ -93,8 +93,16 @@ class Robot:
         self._body = Body(home, number * 2.4)
         self.connect()
 
+    @property
+    def is_away(self) -> bool:
+        """Whether its wire is closed."""
+        return self.sock.fileno() < 0
+
     def connect(self) -> None:
-        """Open the wire and say that it is ready."""
+        """Open the wire and say that it is ready.
+
+        :raises ConnectionError: when the gateway does not take it.
+        """
         self.sock = connect(self._host, self._port, f"/robot?robot=robot-{self._number:04d}")
         self._inbox = Inbox()
         self._left = b""
@@ -176,8 +184,15 @@ class Crowd:
                 del self._by_file[file]
                 self._poll.unregister(file)
                 robot.sock.close()
-                robot.connect()
-                self.add(robot)
+                self._open_anew(robot)
+
+    def _open_anew(self, robot: Robot) -> None:
+        """Connect a robot again; where the gateway has no time for it, that is tried at its next position."""
+        try:
+            robot.connect()
+        except ConnectionError:
+            return
+        self.add(robot)
 
     def live(self) -> None:
         """Let them tell where they are until the process is ended."""
@@ -190,7 +205,10 @@ class Crowd:
             now = time.monotonic()
             while due[0][0] <= now:
                 at, k = due[0]
-                robots[k].tell(now)
+                if robots[k].is_away:
+                    self._open_anew(robots[k])
+                if not robots[k].is_away:
+                    robots[k].tell(now)
                 # After a hold-up it goes on from now: nobody wants old positions all at once.
                 heapq.heapreplace(due, (max(at + robots[k].every, now), k))
 

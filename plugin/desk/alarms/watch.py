@@ -5,16 +5,15 @@ from __future__ import annotations
 import time
 from collections.abc import Iterable
 
-from qgis.core import Qgis, QgsMessageLog
 from qgis.PyQt.QtCore import QObject, pyqtSignal
 
 from ...language import tr
 from ...sites.surface_store import SurfaceStore
 from ...wire.status import Phase
 from ..desk import PULL_EVERY_MS, Desk
-from ..notices import TITLE
 from .alarm import AlarmChange, AlarmEvent, Key
 from .board import AlarmBoard
+from .message_log import AlarmMessages
 from .road_ground import RoadGround
 from .situations import Situations
 from .stored_limits import read_limits, write_limits
@@ -24,8 +23,6 @@ from .words import KINDS
 LOOK_EVERY = 500 // PULL_EVERY_MS
 MANY = 500
 """With more robots it looks half as often."""
-MOST_LOGGED = 20
-"""Lines that one look writes into QGIS's message log."""
 
 
 class AlarmWatch(QObject):
@@ -41,6 +38,7 @@ class AlarmWatch(QObject):
         self._desk = desk
         self._ground = RoadGround(surfaces, self)
         self._situations = Situations(desk, self._ground)
+        self._messages = AlarmMessages(desk.clock)
         self._pulls = 0
         self._generation = desk.picture.generation
         self._told = ""
@@ -99,17 +97,9 @@ class AlarmWatch(QObject):
             self.look()
 
     def _tell(self, events: list[AlarmEvent]) -> None:
+        self._messages.write([event.alarm for event in events if event.change is AlarmChange.BEGAN])
         if not events:
             return
-        began = [event for event in events if event.change is AlarmChange.BEGAN]
-        for event in began[:MOST_LOGGED]:
-            QgsMessageLog.logMessage(event.alarm.text, TITLE, Qgis.MessageLevel.Warning, False)
-        if len(began) > MOST_LOGGED:
-            text = tr(
-                "and {number} more alarms: see the log of alarms in the Fleet panel",
-                number=len(began) - MOST_LOGGED,
-            )
-            QgsMessageLog.logMessage(text, TITLE, Qgis.MessageLevel.Warning, False)
         self.happened.emit(events)
         self.changed.emit()
 

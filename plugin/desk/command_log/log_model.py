@@ -97,6 +97,9 @@ class LogModel(QAbstractItemModel):
         # Of one time those that were told last come first.
         kept.sort(key=asked_at)
         self._shown = kept[::-1]
+        # No index outlives this, so no number is needed any more: they would add up over a shift.
+        self._numbers.clear()
+        self._by_number.clear()
         self._count()
         self.endResetModel()
 

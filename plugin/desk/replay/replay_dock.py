@@ -102,7 +102,7 @@ class ReplayDock(QgsDockWidget):
         self._desk.commands_changed.connect(self._show_marks)
         self._desk.site_changed.connect(self._site_changed)
         self._robots: list[str] = []
-        self._site = self._desk.site.id if self._desk.site else None
+        self._generation = self._desk.picture.generation
 
     def _play_or_hold(self, *_: object) -> None:
         self.clockwork.play(not self.clockwork.is_playing)
@@ -159,17 +159,18 @@ class ReplayDock(QgsDockWidget):
             self.line.show_marks(marks(self._desk.book, since, until, self._robots))
 
     def _site_changed(self) -> None:
-        site = self._desk.site.id if self._desk.site else None
-        if site == self._site:
+        if self._desk.picture.generation == self._generation:
             return
-        # Another site's history has no place here.
-        self._site = site
+        # Another site's history has no place here, nor another gateway's of the same site: other robots may
+        # bear the same names.
+        self._generation = self._desk.picture.generation
         self.fetching.forget()
         self.form.show_busy(False)
         self.clockwork.play(False)
         self.layer.remove()
         self.map.show_nothing()
         self.line.show_time(0.0, 0.0)
+        self.line.show_marks([])
         self._say(tr("Choose a time and press Load."))
 
     def _say(self, text: str) -> None:

@@ -1,0 +1,61 @@
+"""The panel of the replay at a small gateway; a real drive is played in ``loop/test_replay.py``."""
+
+from __future__ import annotations
+
+import itertools
+import time
+
+import pytest
+from qgis.core import QgsProject
+
+LAYER = "Trajectories (replay)"
+
+
+@pytest.fixture
+def loaded(at_desk, gateway, iface, wait):
+    """The panel with ten seconds of r1's way."""
+    now = time.time()
+    gateway._clock = itertools.count(round(now) - 15)
+    at_desk.desk.orders.abort("r1")
+    places = [["r1", now - 20 + k, 50.0 + k, 40.0, 0.0, 1.0, None, None] for k in range(10)]
+    gateway.answers["get_trajectory"] = lambda params: {"result": {"places": places, "next": None}}
+    next(action for action in iface.plugins.actions() if action.objectName() == "fleet_replay").trigger()
+    dock = iface.findChild(object, "fleet_replay_dock")
+    dock.form.load.click()
+    wait(lambda: not dock.fetching.is_busy and len(dock.fetching.history) == 10, what="the positions")
+    wait(lambda: not dock.layer.is_busy, what="the lines")
+    wait(lambda: dock.line.marks, what="the mark of the abort")
+    return dock
+
+
+def lines():
+    return QgsProject.instance().mapLayersByName(LAYER)
+
+
+def test_another_gateway_of_the_same_site_is_not_shown_the_history_of_the_one_before(
+    loaded, at_desk, gateway, site, make_robot, wait
+):
+    assert lines()
+    other = type(gateway)(site)
+    other.start()
+    try:
+        other.show(make_robot("r1", 20, 20))
+        at_desk.desk.open_link(other.url, "anna")
+        wait(
+            lambda: at_desk.desk.picture.arrays(0.0).xy.tolist() == [[20, 20]], what="the other gateway's r1"
+        )
+        assert len(loaded.fetching.history) == 0
+        assert not lines()
+        assert loaded.line.until == 0.0 and loaded.line.marks == []
+        assert "Choose a time" in loaded.banner.text()
+    finally:
+        at_desk.desk.close_link()
+        other.stop()
+
+
+def test_the_same_gateway_again_takes_no_history_away(loaded, at_desk, gateway, wait):
+    at_desk.desk.close_link()
+    wait(lambda: at_desk.desk.link.phase.value == "closed")
+    at_desk.desk.open_link(gateway.url, "anna")
+    wait(lambda: at_desk.desk.link.phase.value == "connected")
+    assert len(loaded.fetching.history) == 10 and lines()
