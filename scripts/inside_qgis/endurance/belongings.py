@@ -64,15 +64,22 @@ def objects_of(package: str) -> Counter[str]:
     One copy of a class may stay: Python keeps overloaded functions until the same ones are loaded again.
     """
     found: Counter[str] = Counter()
-    classes: Counter[str] = Counter()
     for one in gc.get_objects():
         kind = type(one)
         # Members of an enumeration are there as long as it is.
         if _is_of(package, kind.__module__) and not issubclass(kind, Enum):
             found[f"{kind.__module__}.{kind.__qualname__}"] += 1
-        elif isinstance(one, type) and _is_of(package, one.__dict__.get("__module__")):
-            classes[f"class {one.__module__}.{one.__qualname__}"] += 1
+    classes = Counter(f"class {one.__module__}.{one.__qualname__}" for one in classes_of(package))
     return found + Counter({name: number - 1 for name, number in classes.items()})
+
+
+def classes_of(package: str) -> list[type]:
+    """Return the classes that ``package`` defines, those of every version of it that still live."""
+    return [
+        one
+        for one in gc.get_objects()
+        if isinstance(one, type) and _is_of(package, one.__dict__.get("__module__"))
+    ]
 
 
 def running_threads() -> int:
