@@ -142,7 +142,10 @@ class DeskClient:
                 )
             ) from error
         self._backoff.reset()
-        self._mailbox.put_link(LinkStatus(Phase.CONNECTED, self._protocol.who))
+        who = self._protocol.operator, self._protocol.role
+        self._mailbox.put_link(
+            LinkStatus(Phase.CONNECTED, ", ".join(filter(None, who)), operator=who[0], role=who[1])
+        )
         async for text in socket:
             self._send_all(self._protocol.receive(text))
 

@@ -68,8 +68,8 @@ class DeskProtocol:
         self._ids = itertools.count(1)
         self._asked: dict[int, Order] = {}
         self.ready = False
-        self.who = ""
-        """Who this desk is to the gateway, and in which role; empty until it is known."""
+        self.operator, self.role = "", ""
+        """Who this desk is to the gateway, and in which role; empty as long as that is not known."""
 
     def begin(self) -> list[str]:
         """Return the first texts to send on a new link."""
@@ -199,7 +199,7 @@ class DeskProtocol:
                 final=True,
             )
         self._mailbox.put_site(checked_site(site_report(result["site"])))
-        self.who = ", ".join(str(result[name]) for name in ("operator", "role") if result.get(name))
+        self.operator, self.role = (str(result.get(name) or "") for name in ("operator", "role"))
         if "emergency" in result:
             self._mailbox.put_emergency(emergency_report(result["emergency"]))
         self.ready = True

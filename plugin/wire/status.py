@@ -20,14 +20,17 @@ class Phase(str, Enum):
 class LinkStatus:
     """The link's stage, why it is not connected, and when the next attempt is due (monotonic clock).
 
-    While connected, ``reason`` is who the desk is to the gateway. ``wants_token`` is true when it takes
-    another token or CA file to connect.
+    While connected, ``reason`` is who the desk is to the gateway, as people read it, and ``operator`` and
+    ``role`` are the same apart; a role that is changed meanwhile is not told. ``wants_token`` is true when
+    it takes another token or CA file to connect.
     """
 
     phase: Phase
     reason: str = ""
     next_try: float | None = None
     wants_token: bool = False
+    operator: str = ""
+    role: str = ""
 
     def wait(self, now: float) -> float:
         """Return the seconds until the next attempt, 0 when it is due."""

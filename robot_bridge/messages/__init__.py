@@ -67,6 +67,7 @@ from .plain import (
     to_json,
 )
 from .plain_roads import closures_report, conflicts_report, replanned_robot, route_report
+from .plain_supervision import new_token, open_session, operators_report, sites_report
 from .position_columns import (
     POSITION_ALWAYS,
     POSITION_FLAGS,
@@ -303,13 +304,17 @@ __all__ = [
     "command_report",
     "conflicts_report",
     "emergency_report",
+    "new_token",
     "observation_report",
+    "open_session",
+    "operators_report",
     "placement_report",
     "queue_report",
     "replanned_robot",
     "robot_report",
     "route_report",
     "site_report",
+    "sites_report",
     "task_report",
     "to_json",
 ]

@@ -8,6 +8,7 @@ from enum import Enum
 from typing import Any
 
 from .desk import CommandReport, CommandState, CommandStep, RobotReport, SiteReport
+from .known_fields import known_fields
 from .observations import ObservationReport, ObservationState
 from .placements import PlacementReport
 from .queues import QueueReport, QueueState, TaskKind, TaskReport, TaskState
@@ -44,17 +45,17 @@ def _plain(value: Any) -> Any:
 
 def robot_report(values: dict[str, Any]) -> RobotReport:
     """Return the report that a gateway sent as JSON; unknown fields of newer gateways are passed over."""
-    return RobotReport(**{**_known(RobotReport, values), "state": RobotState(values["state"])})
+    return RobotReport(**{**known_fields(RobotReport, values), "state": RobotState(values["state"])})
 
 
 def command_report(values: dict[str, Any]) -> CommandReport:
     """Return the command that a gateway sent as JSON."""
     steps = [
-        CommandStep(**{**_known(CommandStep, step), "state": CommandState(step["state"])})
+        CommandStep(**{**known_fields(CommandStep, step), "state": CommandState(step["state"])})
         for step in values.get("steps", [])
     ]
     report = CommandReport(
-        **{**_known(CommandReport, values), "state": CommandState(values["state"]), "steps": steps}
+        **{**known_fields(CommandReport, values), "state": CommandState(values["state"]), "steps": steps}
     )
     if report.stood is None:
         return report
@@ -64,13 +65,13 @@ def command_report(values: dict[str, Any]) -> CommandReport:
 
 def site_report(values: dict[str, Any]) -> SiteReport:
     """Return the site that a gateway sent as JSON."""
-    known = _known(SiteReport, values)
+    known = known_fields(SiteReport, values)
     return SiteReport(**{**known, "origin": tuple(values["origin"]), "bounds": tuple(values["bounds"])})
 
 
 def observation_report(values: dict[str, Any]) -> ObservationReport:
     """Return the observation that a gateway sent as JSON."""
-    known = _known(ObservationReport, values)
+    known = known_fields(ObservationReport, values)
     return ObservationReport(**{**known, "state": ObservationState(values["state"])})
 
 
@@ -82,7 +83,7 @@ def queue_report(values: dict[str, Any]) -> QueueReport:
         "tasks": [task_report(task) for task in values.get("tasks", [])],
         "ended": [task_report(task) for task in values.get("ended", [])],
     }
-    return QueueReport(**{**_known(QueueReport, values), **enums})
+    return QueueReport(**{**known_fields(QueueReport, values), **enums})
 
 
 def task_report(values: dict[str, Any]) -> TaskReport:
@@ -90,19 +91,14 @@ def task_report(values: dict[str, Any]) -> TaskReport:
     typed: dict[str, Any] = {"kind": TaskKind(values["kind"]), "state": TaskState(values["state"])}
     if values.get("path") is not None:
         typed["path"] = [tuple(point) for point in values["path"]]
-    return TaskReport(**{**_known(TaskReport, values), **typed})
+    return TaskReport(**{**known_fields(TaskReport, values), **typed})
 
 
 def placement_report(values: dict[str, Any]) -> PlacementReport:
     """Return the placed cone that a gateway sent as JSON."""
-    return PlacementReport(**_known(PlacementReport, values))
+    return PlacementReport(**known_fields(PlacementReport, values))
 
 
 def emergency_report(values: dict[str, Any]) -> EmergencyReport:
     """Return how an emergency stop stands, as a gateway sent it as JSON."""
-    return EmergencyReport(**_known(EmergencyReport, values))
-
-
-def _known(cls: type, values: dict[str, Any]) -> dict[str, Any]:
-    names = {f.name for f in dataclasses.fields(cls)}
-    return {name: value for name, value in values.items() if name in names}
+    return EmergencyReport(**known_fields(EmergencyReport, values))

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import dataclasses
 import math
 from typing import Any, TypeVar
 
+from .known_fields import known_fields
 from .roads import (
     ClosureReport,
     Closures,
@@ -52,8 +52,7 @@ def route_report(values: dict[str, Any]) -> RouteReport:
 
 
 def _made(kind: type[T], values: dict[str, Any]) -> T:
-    known = {field.name for field in dataclasses.fields(kind)}  # type: ignore[arg-type]
-    return kind(**{name: value for name, value in values.items() if name in known})
+    return kind(**known_fields(kind, values))
 
 
 def _points(pairs: list[Any]) -> list[tuple[float, float]]:

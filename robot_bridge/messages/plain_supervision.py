@@ -1,0 +1,36 @@
+"""What supervisors are told, from plain JSON values: accounts, tokens, open sessions, sites."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from .accounts import NewToken, OperatorReport, Operators, TokenState
+from .known_fields import known_fields
+from .roles import Role
+from .sites import SiteOffer, Sites
+from .supervision import SessionReport
+
+
+def operators_report(values: dict[str, Any]) -> Operators:
+    """Return every account that a gateway sent as JSON."""
+    return Operators([_operator_report(one) for one in values["operators"]])
+
+
+def _operator_report(values: dict[str, Any]) -> OperatorReport:
+    enums = {"role": Role(values["role"]), "token": TokenState(values["token"])}
+    return OperatorReport(**{**known_fields(OperatorReport, values), **enums})
+
+
+def new_token(values: dict[str, Any]) -> NewToken:
+    """Return the token that was just made, as a gateway sent it as JSON."""
+    return NewToken(**{**known_fields(NewToken, values), "role": Role(values["role"])})
+
+
+def open_session(values: dict[str, Any]) -> SessionReport:
+    """Return one connection of an operator, as a gateway sent it as JSON."""
+    return SessionReport(**known_fields(SessionReport, values))
+
+
+def sites_report(values: dict[str, Any]) -> Sites:
+    """Return the sites that a gateway may serve, as it sent them as JSON."""
+    return Sites([SiteOffer(**known_fields(SiteOffer, one)) for one in values["sites"]])
