@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -91,6 +92,13 @@ class Days:
     @staticmethod
     def _last_trip(day: Day) -> Trip:
         return next((trip for trip in reversed(day) if trip), [])
+
+    def home_from(self, robot: int, place: int) -> tuple[float, float]:
+        """Return the metres and seconds from the target at ``place``, the robot's last, to its day's end."""
+        way = self.tour(robot, [[place]])
+        metres = sum(self.metres[a][b] for a, b in pairwise(way))
+        service = sum(self.service[one] for one in way[1:])
+        return metres, metres / self.job.robots[robot].speed + service
 
     def cost(self, robot: int, day: Day) -> Cost:
         """Return what ``day`` costs; infinite metres where there is no way or not enough battery."""

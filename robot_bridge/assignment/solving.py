@@ -8,11 +8,11 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
-from .by_pyvrp import load_pyvrp
 from .days import Day, Days
 from .errors import CancelledError, JobError, UnservedError
 from .job import Job
 from .plan import Plan
+from .pyvrp_search import load_pyvrp
 from .scheduling import BALANCED, OBJECTIVES, Aim
 from .stages import Effort, solved_stage
 from .timetable import plan_of

@@ -7,11 +7,13 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
-from .by_pyvrp import trips_by_pyvrp
 from .days import Day, Days, Trip
 from .improving import improved
+from .loaded_by_pyvrp import loaded_days_by_pyvrp
+from .pyvrp_search import Clock
 from .savings import TripLimits, saving_pairs, trips_by_savings
 from .scheduling import BALANCED, LEAST_DISTANCE, Aim, Score, scheduled
+from .trips_by_pyvrp import trips_by_pyvrp
 
 _SLACK = 1.05
 """By how much trips may be longer than an even share of the work."""
@@ -63,15 +65,34 @@ def solved_stage(
     first, limits = _first(days, others, begin, aim)
     share = _FIRST_SHARE if effort.use_pyvrp else 1.0
     first = _improved(days, first, targets, aim, lambda: over(share))
-    if not effort.use_pyvrp or first.left or not others:
+    if not effort.use_pyvrp or first.left or not targets:
         return first
-    seconds = effort.seconds * _LAST_SHARE[aim.objective] - (time.perf_counter() - begun)
-    trips = _trips(first.plan, set(others))
-    second = _by_pyvrp(days, trips, begin, aim, limits, seconds, effort)
+    clock = _clock_of_pyvrp(effort, aim, effort.seconds - (time.perf_counter() - begun))
+    if others:
+        trips = _trips(first.plan, set(others))
+        second: Answer | None = _with_trips(
+            days, trips_by_pyvrp(days, trips, limits, clock, effort.seed), begin, aim
+        )
+    else:
+        plan = first.plan if _all_on_board(first.plan, start) else begin
+        made = loaded_days_by_pyvrp(days, start, plan, aim, clock, effort.seed)
+        second = Answer(made, [], _score(days, made, aim), by_pyvrp=True)
     if second is None:
         return _improved(days, first, targets, aim, lambda: over(1.0))
     second = _improved(days, second, targets, aim, lambda: over(1.0))
     return min(first, second, key=lambda answer: answer.rank)
+
+
+def _clock_of_pyvrp(effort: Effort, aim: Aim, seconds_left: float) -> Clock:
+    """Return the clock of what PyVRP does: it leaves time for small changes."""
+    begin, end = _FIRST_SHARE, _LAST_SHARE[aim.objective]
+    seconds = seconds_left - effort.seconds * (1.0 - end)
+    return Clock(seconds, lambda share: effort.progress(begin + (end - begin) * share))
+
+
+def _all_on_board(plan: Sequence[Day], start: Sequence[Day]) -> bool:
+    """Whether ``plan`` adds to ``start`` only what is placed before any visit to a store."""
+    return all(day[1:] == before[1:] for day, before in zip(plan, start, strict=True))
 
 
 def _on_board(days: Days, targets: Sequence[int], start: Sequence[Day]) -> list[Day]:
@@ -157,22 +178,11 @@ def _trips(plan: Sequence[Day], targets: set[int]) -> list[Trip]:
     return [trip for trip in trips if trip]
 
 
-def _by_pyvrp(
-    days: Days,
-    trips: list[Trip],
-    start: list[Day],
-    aim: Aim,
-    limits: TripLimits,
-    seconds: float,
-    effort: Effort,
-) -> Answer | None:
-    def progress(share: float) -> None:
-        effort.progress(_FIRST_SHARE + (_LAST_SHARE[aim.objective] - _FIRST_SHARE) * share)
-
-    found = trips_by_pyvrp(days, trips, limits, seconds, progress, effort.seed)
-    if found is None:
+def _with_trips(days: Days, trips: list[Trip] | None, start: list[Day], aim: Aim) -> Answer | None:
+    """Return PyVRP's answer for ``trips`` after ``start``; None where some robot's battery is too short."""
+    if trips is None:
         return None
-    answer = replace(_assigned(days, found, start, aim), by_pyvrp=True)
+    answer = replace(_assigned(days, trips, start, aim), by_pyvrp=True)
     return None if answer.left else answer
 
 

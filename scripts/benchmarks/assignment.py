@@ -9,11 +9,11 @@ from pathlib import Path
 
 import numpy as np
 
-from robot_bridge.assignment.by_pyvrp import load_pyvrp
 from robot_bridge.assignment.checks import check_plan
 from robot_bridge.assignment.days import Days
-from robot_bridge.assignment.job import Job, Robot, Store, Target
+from robot_bridge.assignment.job import TO_START, Job, Robot, Store, Target
 from robot_bridge.assignment.plan import Plan
+from robot_bridge.assignment.pyvrp_search import load_pyvrp
 from robot_bridge.assignment.road_travel import RoadTravel
 from robot_bridge.assignment.savings import TripLimits, saving_pairs, trips_by_savings
 from robot_bridge.assignment.solving import PREVIEW, PYVRP, Wanted, assign
@@ -30,6 +30,8 @@ CONES, ROBOTS, CAPACITY = 200, 5, 8
 SHORT_S, LONG_S = 2.0, 10.0
 GOAL = 1.005
 SEEDS = (1, 2, 3)
+LOADED = ((20, 3), (40, 4), (60, 5), (100, 5))
+"""Cones and robots of the jobs in which all cones are aboard."""
 RUNS = 5
 GROUPS, SPREAD = 10, 15.0
 """places around which cones stand together, and the metres by which they do."""
@@ -51,6 +53,13 @@ Balanced, the last robot finishes at (seconds; 10 s for each cone, 30 s at each 
 | | preview | ours, {short:g} s | an even share of the shortest plan |
 |---|---|---|---|
 {ends}
+
+Robots here and there on a field of 100 m that have all cones aboard, without a store, each to end where it began;
+metres of all robots where the fewest are asked for, and when the last one finishes where an even share is:
+
+| | metres: preview | ours, {short:g} s | last finishes: preview | ours, {short:g} s |
+|---|---|---|---|---|
+{loaded}
 
 E-n51-k5 (Christofides and Eilon, 1969; 50 customers, optimum {optimum}): preview {instance_preview:.0f}, ours
 {instance:.0f} in {short:g} s. {faults} of {plans} plans have faults by the checker.
@@ -89,12 +98,15 @@ def measure(data: Path) -> Part:
         shortest = min(ours, key=lambda plan: plan.metres)
         ends.append(_row(case.name, [*(f"{one.end_s:.0f}" for one in even), f"{_even_share(shortest):.0f}"]))
         plans += [preview, *ours, *even]
+    loaded, of_loaded = _loaded_rows()
+    plans += of_loaded
     short, quick = _instance(PYVRP), _instance(PREVIEW)
     faults = sum(bool(check_plan(plan)) for plan in plans)
     median = float(np.median(ratios))
     text = TEXT.format(
         cones=CONES, room=CAPACITY, robots=ROBOTS, short=SHORT_S, long=LONG_S,
         load=f"{os.getloadavg()[0]:.1f}", metres="\n".join(rows), ends="\n".join(ends),
+        loaded="\n".join(loaded),
         preview=f"{min(previews):.2f} to {max(previews):.2f} s", matrix=matrix_s, goal=GOAL,
         runs=RUNS, count=len(ratios), median=median, worst=max(ratios),
         optimum=e_n51_k5.OPTIMUM, instance=short, instance_preview=quick, faults=faults, plans=len(plans),
@@ -140,6 +152,36 @@ def _job(places: np.ndarray, store: tuple[float, float]) -> Job:
         tuple(Robot(f"r{k}", *store, CAPACITY) for k in range(1, ROBOTS + 1)),
         (Store("store", *store),),
     )
+
+
+def _loaded_rows() -> tuple[list[str], list[Plan]]:
+    """Return the rows of the jobs without a store, and all their plans."""
+    rows, made = [], []
+    for cones, robots in LOADED:
+        case = _loaded(cones, robots)
+        plans = [
+            _planned(case, objective, method)[1]
+            for objective in ("distance", "balanced")
+            for method in (PREVIEW, PYVRP)
+        ]
+        made += plans
+        cells = [f"{plan.metres:.0f}" for plan in plans[:2]] + [f"{plan.end_s:.0f}" for plan in plans[2:]]
+        rows.append(_row(case.name, cells))
+    return rows, made
+
+
+def _loaded(cones: int, robots: int) -> Case:
+    """Return a job whose robots have a few cones more aboard than an even share."""
+    random = np.random.default_rng(cones)
+    places, starts = random.uniform(0, 100, (cones, 2)).tolist(), random.uniform(0, 100, (robots, 2)).tolist()
+    room = cones // robots + 4
+    job = Job(
+        tuple(Target(f"c{k}", *place) for k, place in enumerate(places, 1)),
+        tuple(Robot(f"r{k}", *start, room, aboard=room) for k, start in enumerate(starts, 1)),
+        (),
+        TO_START,
+    )
+    return Case(f"{cones} cones, {robots} robots", job, StraightTravel(job))
 
 
 def _planned(case: Case, objective: str, method: str, seed: int = 0) -> tuple[float, Plan]:

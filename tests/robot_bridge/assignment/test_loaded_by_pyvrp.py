@@ -1,0 +1,158 @@
+"""Robots that have all cones aboard share them out as well as can be, and better than a preview."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import pairwise, permutations
+
+import numpy as np
+import pytest
+
+pytest.importorskip("pyvrp")
+
+from robot_bridge.assignment.checks import check_plan
+from robot_bridge.assignment.days import Day, Days
+from robot_bridge.assignment.job import STAY, TO_START, TO_STORE, Job, Robot, Store, Target
+from robot_bridge.assignment.loaded_by_pyvrp import loaded_days_by_pyvrp
+from robot_bridge.assignment.pyvrp_search import Clock
+from robot_bridge.assignment.scheduling import BALANCED, LEAST_DISTANCE, Aim
+from robot_bridge.assignment.solving import PREVIEW, PYVRP, Wanted, assign
+from robot_bridge.assignment.travel import StraightTravel
+
+ROUNDING = 0.05 * 10
+"""Metres or seconds by which a plan may be longer than the best: half a decimetre on each of its ways."""
+NO_HURRY = 600.0
+"""Seconds; the search ends of itself long before."""
+
+
+def loaded(seed: int, finish: str, cones: int, room: int, robots: int = 2, stores: int = 0) -> Job:
+    """Return a job of robots here and there, of two speeds, that have ``room`` cones aboard."""
+    random = np.random.default_rng(seed)
+    places, starts = random.uniform(0, 100, (cones, 2)).tolist(), random.uniform(0, 100, (robots, 2)).tolist()
+    return Job(
+        tuple(Target(f"c{k}", *place, service_s=10.0 + k) for k, place in enumerate(places)),
+        tuple(
+            Robot(f"R{k}", *at, room, 1.0 + k % 2, aboard=room, ready_s=20.0 * k)
+            for k, at in enumerate(starts)
+        ),
+        tuple(Store(f"s{k}", 100.0 * k, 50.0) for k in range(stores)),
+        finish,
+    )
+
+
+def every_plan(job: Job, before: list[Day]) -> Iterator[list[Day]]:
+    """Yield all plans of two robots in which what is not in ``before`` follows it."""
+    there = {place for day in before for place in day[0]}
+    targets = [place for place in range(job.first_target, len(job.places)) if place not in there]
+    for order in permutations(targets):
+        for split in range(len(order) + 1):
+            yield [[before[0][0] + list(order[:split])], [before[1][0] + list(order[split:])]]
+
+
+def by_hand(job: Job, plan: list[Day], gate_s: float) -> tuple[float, float]:
+    """Return when the last robot ends and the metres of all; infinite where room or battery is not enough.
+
+    Cones of stage 1 may not be begun before ``gate_s``.
+    """
+    metres = StraightTravel(job).metres
+    ends, total = [], 0.0
+    for number, (robot, (row,)) in enumerate(zip(job.robots, plan, strict=True)):
+        tour = [number, *row]
+        if row and job.finish == TO_START:
+            tour.append(number)
+        if row and job.finish == TO_STORE:
+            tour.append(min(range(job.first_store, job.first_target), key=lambda one: metres[row[-1], one]))
+        clock, way = robot.ready_s, 0.0
+        for a, b in pairwise(tour):
+            way += metres[a, b]
+            clock += metres[a, b] / robot.speed
+            if b >= job.first_target:
+                target = job.target(b)
+                clock = max(clock, gate_s if target.stage else 0.0) + target.service_s
+            elif b >= job.first_store:
+                clock += job.stores[b - job.first_store].service_s
+        if way > robot.range_m or len(row) > robot.aboard:
+            return math.inf, math.inf
+        ends.append(clock)
+        total += way
+    return max(ends), total
+
+
+def found(job: Job, objective: str, before: list[Day], gate_s: float = 0.0) -> list[Day]:
+    """Return what is found from the plan in which the first robot places all, as far as it can."""
+    days = Days(job, StraightTravel(job).metres)
+    days.gates[1] = gate_s
+    start = next(
+        plan for plan in reversed(list(every_plan(job, before))) if by_hand(job, plan, gate_s)[0] < math.inf
+    )
+    clock = Clock(NO_HURRY, lambda share: None)
+    return loaded_days_by_pyvrp(days, before, start, Aim(objective), clock)
+
+
+def assert_is_best(job: Job, objective: str, before: list[Day], gate_s: float = 0.0) -> None:
+    plan = found(job, objective, before, gate_s)
+    which = 0 if objective == BALANCED else 1
+    least = min(by_hand(job, one, gate_s)[which] for one in every_plan(job, before))
+    assert least - 1e-6 <= by_hand(job, plan, gate_s)[which] <= least + ROUNDING
+
+
+NOTHING: list[Day] = [[[]], [[]]]
+OBJECTIVES = pytest.mark.parametrize("objective", [BALANCED, LEAST_DISTANCE])
+
+
+@OBJECTIVES
+@pytest.mark.parametrize("finish", [STAY, TO_START, TO_STORE])
+def test_no_other_plan_is_better(finish: str, objective: str) -> None:
+    for seed in range(2):
+        assert_is_best(loaded(seed, finish, 5, 4, stores=2 * (finish == TO_STORE)), objective, NOTHING)
+
+
+@OBJECTIVES
+def test_room_is_what_is_aboard(objective: str) -> None:
+    job = loaded(3, STAY, 5, 3)
+    robots = (replace(job.robots[0], capacity=8), replace(job.robots[1], aboard=2))
+    assert_is_best(replace(job, robots=robots), objective, NOTHING)
+
+
+@OBJECTIVES
+def test_a_battery_is_not_driven_empty(objective: str) -> None:
+    job = loaded(0, TO_START, 5, 5)
+    whole = found(job, objective, NOTHING)
+    drives = [
+        by_hand(job, [day if k == one else [[]] for k, day in enumerate(whole)], 0.0)[1] for one in (0, 1)
+    ]
+    short = drives.index(max(drives))
+    robots = tuple(
+        replace(one, range_m=max(drives) - 5.0) if k == short else one for k, one in enumerate(job.robots)
+    )
+    assert_is_best(replace(job, robots=robots), objective, NOTHING)
+
+
+@OBJECTIVES
+def test_a_later_stage_goes_on_from_where_the_robots_are(objective: str) -> None:
+    job = loaded(1, STAY, 6, 4)
+    job = replace(job, targets=tuple(replace(one, stage=int(k > 1)) for k, one in enumerate(job.targets)))
+    first, second = job.first_target, job.first_target + 1
+    before: list[Day] = [[[first]], [[second]]]
+    gate_s = by_hand(job, before, 0.0)[0]
+    assert_is_best(job, objective, before, gate_s)
+
+
+@OBJECTIVES
+def test_it_is_better_than_a_preview_and_says_who_found_it(objective: str) -> None:
+    job = loaded(1, TO_START, 32, 12, robots=4)
+    preview, plan = (
+        assign(job, StraightTravel(job), Wanted(objective, method, NO_HURRY)) for method in (PREVIEW, PYVRP)
+    )
+    assert check_plan(plan) == []
+    assert plan.method == PYVRP
+    gain = plan.end_s / preview.end_s if objective == BALANCED else plan.metres / preview.metres
+    assert gain < 0.98, gain
+
+
+def test_what_cannot_be_better_is_told_to_be_the_preview() -> None:
+    job = loaded(0, STAY, 1, 4)
+    plan = assign(job, StraightTravel(job), Wanted(method=PYVRP))
+    assert plan.method == "pyvrp, which found nothing better than the preview"
