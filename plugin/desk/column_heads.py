@@ -3,21 +3,27 @@
 from __future__ import annotations
 
 from qgis.PyQt.QtCore import Qt
-from qgis.PyQt.QtWidgets import QHeaderView, QStyle
+from qgis.PyQt.QtWidgets import QHeaderView, QStyle, QTableView, QTreeView
 
 EDGES = 4
 """Pixels beside a head's words."""
 
 
-def fit_heads(header: QHeaderView) -> None:
+def fit_heads(view: QTableView | QTreeView) -> None:
     """Widen each column whose head would be cut off, now and when it gets the mark of sorting.
 
-    None becomes narrower. ``header`` lies across the top of its table and has its font and its columns'
-    first widths already.
+    None becomes narrower. The heads of ``view`` have their font and their columns' first widths already.
     """
+    header = _heads(view)
     for column in range(header.count()):
         _fit(header, column)
-    header.sortIndicatorChanged.connect(lambda column, _order: _fit(header, column))
+    # No function that holds the header itself: nothing else in Python would, so that Python took both for
+    # garbage, and the next click on a head crashed QGIS.
+    header.sortIndicatorChanged.connect(lambda column, _order: _fit(_heads(view), column))
+
+
+def _heads(view: QTableView | QTreeView) -> QHeaderView:
+    return view.header() if isinstance(view, QTreeView) else view.horizontalHeader()
 
 
 def _fit(header: QHeaderView, column: int) -> None:

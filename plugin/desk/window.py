@@ -103,7 +103,7 @@ class DeskWindow(QObject):
             tool.setAction(action)
             action.triggered.connect(lambda _, tool=tool: self._iface.mapCanvas().setMapTool(tool))
             # A click on the button of the tool in hand keeps it, as QGIS's own do.
-            action.triggered.connect(lambda _, action=action: action.setChecked(True))
+            action.triggered.connect(lambda _, tool=tool: tool.action().setChecked(True))
         actions.connect.triggered.connect(self._connect_or_not)
         actions.send.triggered.connect(desk.send_draft)
         actions.cancel.triggered.connect(lambda: desk.drafts.put(None))

@@ -159,7 +159,7 @@ class RolesDialog(QDialog):
         header = table.horizontalHeader()
         for column, width in WIDTHS.items():
             table.setColumnWidth(column, width)
-        fit_heads(header)
+        fit_heads(table)
         # The column that takes what is left keeps room for its head.
         header.setMinimumSectionSize(header.fontMetrics().horizontalAdvance(TITLES[RESULT]) + 8)
         header.setSectionResizeMode(RESULT, QHeaderView.ResizeMode.Stretch)

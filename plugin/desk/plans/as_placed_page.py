@@ -66,7 +66,7 @@ class AsPlacedPage(QWidget):
         self.table.verticalHeader().setDefaultSectionSize(20)
         self.table.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
         self.table.setSelectionBehavior(QAbstractItemView.SelectionBehavior.SelectRows)
-        fit_heads(self.table.horizontalHeader())
+        fit_heads(self.table)
         self.table.cellDoubleClicked.connect(self._go_there)
         self.placements: list[PlacementReport] = []
         self._lay_out()

@@ -41,7 +41,7 @@ class PlanTree(QTreeWidget):
         )
         for column, width in enumerate((142, 66, 84, 44)):
             self.setColumnWidth(column, width)
-        fit_heads(self.header())
+        fit_heads(self)
         self.setIndentation(12)
         self._plan: Plan | None = None
         self._editable = False

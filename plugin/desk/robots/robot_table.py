@@ -102,7 +102,7 @@ class RobotTable(QTableView):
             self.setColumnWidth(number, max(widest + extra, TASK_WIDTH if number == TASK else 0))
             by_choice = column.first if hidden is None else column.title not in str(hidden).split(",")
             self.setColumnHidden(number, not by_choice)
-        fit_heads(header)
+        fit_heads(self)
         # The column that takes what is left keeps room for its head.
         header.setMinimumSectionSize(max(24, metrics.horizontalAdvance(COLUMNS[TASK].head) + 9))
         header.setSectionResizeMode(TASK, QHeaderView.ResizeMode.Stretch)

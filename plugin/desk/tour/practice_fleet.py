@@ -47,6 +47,7 @@ class PracticeFleet(QObject):
         self.url = ""
         self._folder: QTemporaryDir | None = None
         self._processes: list[QProcess] = []
+        self._gateway: QProcess | None = None
         self._said = ""
 
     @property
@@ -63,15 +64,15 @@ class PracticeFleet(QObject):
             return
         self._folder, self._said = QTemporaryDir(), ""
         database = f"sqlite:///{self._folder.filePath('fleet.db')}"
-        gateway = self._process()
-        gateway.readyReadStandardOutput.connect(lambda: self._read(gateway))
-        gateway.finished.connect(lambda *_: self._ended(gateway))
-        gateway.errorOccurred.connect(lambda *_: self._ended(gateway))
+        gateway = self._gateway = self._process()
+        gateway.readyReadStandardOutput.connect(self._read)
+        gateway.finished.connect(self._ended)
+        gateway.errorOccurred.connect(self._ended)
         gateway.start(self.program, ["serve", "--site", str(SITE), "--port", "0", "--database", database])
 
     def stop(self) -> None:
         """End every process, in good order where they do so soon."""
-        processes, self._processes, self.url = self._processes, [], ""
+        processes, self._processes, self._gateway, self.url = self._processes, [], None, ""
         for process in processes:
             process.blockSignals(True)
             process.terminate()
@@ -93,8 +94,8 @@ class PracticeFleet(QObject):
         self._processes.append(process)
         return process
 
-    def _read(self, gateway: QProcess) -> None:
-        said = bytes(gateway.readAllStandardOutput()).decode("utf-8", "replace")
+    def _read(self) -> None:
+        said = bytes(self._gateway.readAllStandardOutput()).decode("utf-8", "replace")
         if self.url:
             return
         self._said += said
@@ -110,11 +111,11 @@ class PracticeFleet(QObject):
             robot.setStandardOutputFile(QProcess.nullDevice())
             robot.start(self.program, ["robot", "--url", url, "--name", name, f"--pose={pose}"])
 
-    def _ended(self, gateway: QProcess) -> None:
-        if gateway not in self._processes:
+    def _ended(self, *_: object) -> None:
+        if self._gateway is None:
             return
         lines = self._said.strip().splitlines()
-        why = lines[-1] if lines else gateway.errorString()
+        why = lines[-1] if lines else self._gateway.errorString()
         self.stop()
         self.failed.emit(
             tr(
