@@ -38,6 +38,8 @@ SHORTEST_SHIFT = 45.0
 ROBOTS = 1000
 WINDOW = (1280, 800)
 EXTENT = (0.0, 0.0, 200.0, 160.0)
+ENOUGH = 300.0
+"""Seconds for a busy machine to begin and to end."""
 PAUSES = (5.0, 40.0)
 """The least and the most seconds between two drops of the link."""
 SEED = 6
@@ -144,7 +146,7 @@ def endure(
         display = virtual_screen(processes, *WINDOW)
         qgis = start_qgis(processes, Profile(folder / "profile", link=False), SESSION, told, display)
         with BadNetwork(proxy, pauses) as network:
-            entries = follow(processes, qgis, Path(str(told["journal"])), seconds + 600)
+            entries = follow(processes, qgis, Path(str(told["journal"])), seconds + ENOUGH)
             samples, left, after, end = _watched(entries, network)
         complaints = complaints_in(processes.log("qgis"))
     return Run(samples, left, after, end, network.drops, complaints)

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import faulthandler
 import json
 import os
+import signal
 import traceback
 from collections.abc import Callable
 from pathlib import Path
@@ -71,6 +73,8 @@ class Session:
 
 def start(work: Callable[[Session], None]) -> None:
     """Do ``work`` as soon as the window is up; when it fails say so and end QGIS."""
+    # Whoever waits for this program in vain asks by that signal where it is.
+    faulthandler.register(signal.SIGUSR1, file=2)
     session = Session()
 
     def go() -> None:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import json
+import signal
 import subprocess
 import time
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -73,10 +74,19 @@ def follow(
         if ended is not None:
             break
         if time.monotonic() > until:
-            raise StageError(f"QGIS was not done after {seconds:.0f} s; its output: {processes.log('qgis')}")
+            where = _where_it_is(processes, qgis, entries)
+            raise StageError(f"QGIS was not done after {seconds:.0f} s; {where}")
         if not read and BROKEN in processes.log("qgis").read_text(encoding="utf-8", errors="replace"):
             raise StageError(f"QGIS could not run the session's script; its output: {processes.log('qgis')}")
         processes.require_running(but=("qgis", *killed))
         time.sleep(0.1)
     if ended != 0:
         raise StageError(f"QGIS ended with status {ended}; its output: {processes.log('qgis')}")
+
+
+def _where_it_is(processes: Processes, qgis: subprocess.Popen[bytes], entries: Sequence[str]) -> str:
+    """Return what QGIS said last, and what its threads are at."""
+    qgis.send_signal(signal.SIGUSR1)
+    time.sleep(1.0)
+    output = processes.log("qgis").read_text(encoding="utf-8", errors="replace")
+    return f"it wrote down last: {entries[-1] if entries else 'nothing'}; its output ends:\n{output[-4000:]}"

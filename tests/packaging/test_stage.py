@@ -12,6 +12,7 @@ import time
 import pytest
 from stage.errors import StageError
 from stage.processes import Processes
+from stage.session import follow
 from stage.verdict import Errand, judge
 
 SLEEP = [sys.executable, "-c", "import time; print('ready', flush=True); time.sleep(60)"]
@@ -85,6 +86,25 @@ def test_waiting_for_a_line_has_an_end(tmp_path):
         with pytest.raises(StageError, match="silent was not ready after 0 s"):
             processes.wait_for_line("silent", "never said", 0.2)
         assert time.monotonic() - began < 30
+
+
+# Like a session inside QGIS that never comes to its end.
+HANGS = """
+import faulthandler, json, signal, sys, time
+faulthandler.register(signal.SIGUSR1, file=2)
+open(sys.argv[1], "w").write(json.dumps({"step": "connected"}) + "\\n")
+def wait_for_ever():
+    time.sleep(60)
+wait_for_ever()
+"""
+
+
+def test_what_never_ends_tells_where_it_is(tmp_path):
+    journal = tmp_path / "journal"
+    with Processes(tmp_path) as processes:
+        qgis = processes.start("qgis", [sys.executable, "-c", HANGS, journal])
+        with pytest.raises(StageError, match=r'(?s)not done after 3 s.*"connected".*in wait_for_ever'):
+            list(follow(processes, qgis, journal, 3.0))
 
 
 REACHED = Errand("r1", (58.0, 8.0), "reached")
