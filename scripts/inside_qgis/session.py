@@ -96,7 +96,11 @@ def end() -> None:
     Left by ``QgsApplication.exit`` it takes its window apart with the project open, and QGIS 3.44 crashes.
     It would ask about changes that are not saved and about tasks that run, and nobody is there to answer.
     """
-    QgsProject.instance().setDirty(False)
     while QgsApplication.taskManager().countActiveTasks():
         QTest.qWait(POLL_MS)
+    project = QgsProject.instance()
+    for layer in project.mapLayers().values():
+        layer.setCustomProperty("skipMemoryLayersCheck", 1)
+    # Nothing may change the project between this and leaving.
+    project.setDirty(False)
     iface.actionExit().trigger()
