@@ -77,7 +77,9 @@ class NoticeLabel(QLabel):
         self.setFixedHeight(self.heightForWidth(max(200, bar.width() - BESIDE_TEXT)))
 
     def show_text(self, text: str) -> None:
-        """Show another text."""
+        """Show ``text`` in place of the other one; laying out QGIS's bar anew takes time."""
+        if self.text() == f"{TITLE}: {text}":
+            return
         self.setText(f"{TITLE}: {text}")
         self.setFixedHeight(self.heightForWidth(self.width()))
 

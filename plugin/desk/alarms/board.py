@@ -29,6 +29,7 @@ class AlarmBoard:
         self._rows = {kind: RowLatch() for kind in RULES}
         self._pairs = PairLatch()
         self._alarms: dict[Key, Alarm] = {}
+        self._ordered: list[Alarm] | None = []
         self.log: deque[AlarmEvent] = deque(maxlen=MOST_EVENTS)
 
     @property
@@ -38,10 +39,10 @@ class AlarmBoard:
 
     def alarms(self) -> list[Alarm]:
         """Return those to be shown: new ones first, what holds before what is over, pressing ones first."""
-        return sorted(
-            self._alarms.values(),
-            key=lambda alarm: (not alarm.is_new, alarm.ended is not None, URGENCY[alarm.kind], -alarm.began),
-        )
+        if self._ordered is None:
+            # Bar, panel, table and details ask at each change: with a thousand alarms that is to be felt.
+            self._ordered = sorted(self._alarms.values(), key=_order)
+        return self._ordered.copy()
 
     def of(self, robot: str) -> list[Alarm]:
         """Return the alarms that a robot is part of, pressing ones first."""
@@ -61,6 +62,8 @@ class AlarmBoard:
         events += self._look_at_pairs(now, at)
         self.log.extend(events)
         self._let_go()
+        if events:
+            self._ordered = None
         return events
 
     def set_limits(self, limits: Thresholds) -> None:
@@ -81,6 +84,7 @@ class AlarmBoard:
             else:
                 del self._alarms[key]
         self.log.extend(events)
+        self._ordered = None
         return events
 
     def clear(self) -> None:
@@ -88,6 +92,7 @@ class AlarmBoard:
         self._rows = {kind: RowLatch() for kind in RULES}
         self._pairs = PairLatch()
         self._alarms.clear()
+        self._ordered = None
 
     def _let_go(self) -> None:
         """Leave what is over to the log where nobody has acknowledged anything for a long time."""
@@ -137,3 +142,7 @@ class AlarmBoard:
             else:
                 del self._alarms[key]
         return events
+
+
+def _order(alarm: Alarm) -> tuple[bool, bool, int, float]:
+    return not alarm.is_new, alarm.ended is not None, URGENCY[alarm.kind], -alarm.began
