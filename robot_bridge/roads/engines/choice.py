@@ -10,7 +10,7 @@ from ..errors import MissingEngineError
 from .contraction import ContractionEngines
 from .engine import Engine, Graph
 from .plain import PlainEngine
-from .scipy_engine import ScipyEngine
+from .scipy_engine import scipy_engines
 
 Engines = Callable[[Floats], Engine]
 """Makes an engine on one graph from the cost of each arc."""
@@ -19,7 +19,7 @@ AUTOMATIC = "automatic"
 
 _MAKERS: dict[str, tuple[str, str, Callable[[Graph], Engines]]] = {
     "contraction": ("routingkit_cch", "routingkit-cch", ContractionEngines),
-    "scipy": ("scipy", "scipy", lambda graph: lambda costs: ScipyEngine(graph, costs)),
+    "scipy": ("scipy", "scipy", scipy_engines),
     "plain": ("heapq", "", lambda graph: lambda costs: PlainEngine(graph, costs)),
 }
 """Of each engine the module that it needs, the package that has it, and how engines are made."""

@@ -2,12 +2,23 @@
 
 from __future__ import annotations
 
+import importlib
 import math
+from collections.abc import Callable
 
 import numpy as np
 
 from ..centrelines import Floats, Ints
 from .engine import Ends, Graph, cheapest_of_parallel
+
+
+def scipy_engines(graph: Graph) -> Callable[[Floats], ScipyEngine]:
+    """Return what makes engines on ``graph`` from the cost of each arc.
+
+    :raises ImportError: where SciPy is not installed, so that another engine can be chosen in time.
+    """
+    importlib.import_module("scipy.sparse.csgraph")
+    return lambda costs: ScipyEngine(graph, costs)
 
 
 class ScipyEngine:

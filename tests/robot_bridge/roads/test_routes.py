@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 
 import numpy as np
 import pytest
@@ -139,6 +140,14 @@ def test_the_route_says_which_engine_found_it(engine: str) -> None:
     names = {"contraction": "contraction hierarchies (RoutingKit)", "scipy": "SciPy"}
     wanted = names.get(engine, "Dijkstra in Python")
     assert Router(square(), engine).route((0.0, 0.0), (5.0, 0.0)).engine == wanted
+
+
+def test_where_no_engines_package_is_installed_python_searches(monkeypatch: pytest.MonkeyPatch) -> None:
+    for module in ("routingkit_cch", "scipy.sparse.csgraph"):
+        monkeypatch.setitem(sys.modules, module, None)
+    assert Router(square()).route((0.0, 0.0), (5.0, 0.0)).engine == "Dijkstra in Python"
+    with pytest.raises(MissingEngineError, match=r"'scipy' .* install it with 'pip install scipy'"):
+        Router(square(), "scipy")
 
 
 def test_an_engine_that_is_none_is_refused() -> None:
