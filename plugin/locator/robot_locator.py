@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from qgis.core import QgsSettings
+from qgis.core import Qgis, QgsSettings
 from qgis.gui import QgisInterface
 from qgis.PyQt.QtGui import QIcon
 
@@ -14,7 +14,10 @@ from ..expressions.robots_now import FleetNow
 from .robot_filter import NAME, RobotFilter
 
 PREFIX = "rb"
-_SETTING = f"locator_filters/prefix_{NAME}"
+PREFIX_KEY = f"locator-filters/items/{NAME}/prefix"
+"""Where QGIS keeps the prefix that the user has chosen."""
+if Qgis.versionInt() < 33000:
+    PREFIX_KEY = f"gui/locator_filters/prefix_{NAME}"
 
 
 class RobotLocator:
@@ -24,16 +27,16 @@ class RobotLocator:
         self._iface, self._filter = iface, RobotFilter(fleet, _icons(), go)
         settings = QgsSettings()
         # As if the user had chosen it: of plugins themselves QGIS takes none of less than three letters.
-        if not settings.value(_SETTING, "", section=QgsSettings.Section.Gui):
-            settings.setValue(_SETTING, PREFIX, QgsSettings.Section.Gui)
+        if not settings.value(PREFIX_KEY, ""):
+            settings.setValue(PREFIX_KEY, PREFIX)
         iface.registerLocatorFilter(self._filter)
 
     def remove(self) -> None:
         """Take the filter out; QGIS deletes it. A prefix of the user's own stays."""
         self._iface.deregisterLocatorFilter(self._filter)
         settings = QgsSettings()
-        if settings.value(_SETTING, "", section=QgsSettings.Section.Gui) == PREFIX:
-            settings.remove(_SETTING, QgsSettings.Section.Gui)
+        if settings.value(PREFIX_KEY, "") == PREFIX:
+            settings.remove(PREFIX_KEY)
 
 
 def _icons() -> dict[str, QIcon]:

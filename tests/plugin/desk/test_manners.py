@@ -9,8 +9,9 @@ from pathlib import Path
 import pytest
 from fleet_supervisor.plugin.desk.shortcuts import KEYS
 from fleet_supervisor.plugin.help.help_window import DOCS, HelpWindow, heading_link
-from fleet_supervisor.plugin.help.topics import CONNECTIONS, OPTIONS, START, TOPICS, topic_of
+from fleet_supervisor.plugin.help.topics import ACCOUNTS, CONNECTIONS, OPTIONS, SITES, START, TOPICS, topic_of
 from fleet_supervisor.plugin.locator.robot_filter import RobotFilter, ranked
+from fleet_supervisor.plugin.locator.robot_locator import PREFIX_KEY
 from fleet_supervisor.plugin.settings.preferences import Preferences, read_preferences, write_preferences
 from fleet_supervisor.plugin.supervisor import FleetSupervisor
 from qgis.core import (
@@ -90,19 +91,18 @@ def test_robots_are_looked_for_in_the_windows_thread(at_desk, iface, wait, monke
 
 
 def test_a_prefix_of_the_users_own_stays(iface, plugin):
-    key = "locator_filters/prefix_fleet_robots"
-    assert QgsSettings().value(key, section=QgsSettings.Section.Gui) == "rb"
+    assert QgsSettings().value(PREFIX_KEY) == "rb"
     plugin.unload()
-    assert QgsSettings().value(key, "", section=QgsSettings.Section.Gui) == ""
-    QgsSettings().setValue(key, "bot", QgsSettings.Section.Gui)
+    assert QgsSettings().value(PREFIX_KEY, "") == ""
+    QgsSettings().setValue(PREFIX_KEY, "bot")
     again = FleetSupervisor(iface)
     again.initGui()
     try:
         assert "bot" in [one.activePrefix() for one in iface.locator.filters()]
     finally:
         again.unload()
-        assert QgsSettings().value(key, section=QgsSettings.Section.Gui) == "bot"
-        QgsSettings().remove(key, QgsSettings.Section.Gui)
+        assert QgsSettings().value(PREFIX_KEY) == "bot"
+        QgsSettings().remove(PREFIX_KEY)
 
 
 def test_the_same_name_comes_first_then_those_that_begin_so():
@@ -326,7 +326,9 @@ def test_a_link_leads_to_another_page(plugin, iface):
     assert "Closed roads" in window.browser.toPlainText()
 
 
-@pytest.mark.parametrize("topic", sorted({START, CONNECTIONS, OPTIONS, *TOPICS.values()}, key=str), ids=str)
+@pytest.mark.parametrize(
+    "topic", sorted({START, CONNECTIONS, OPTIONS, ACCOUNTS, SITES, *TOPICS.values()}, key=str), ids=str
+)
 def test_every_topic_is_a_heading_of_a_guide(topic):
     text = (DOCS / f"{topic.page}.md").read_text(encoding="utf-8")
     headings = [heading_link(line.lstrip("# ")) for line in text.splitlines() if line.startswith("#")]
