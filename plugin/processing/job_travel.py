@@ -95,7 +95,7 @@ class TravelSource:
         self._network, _ = network_of_roads(
             self._algorithm, self._parameters, self._context, reading, feedback
         )
-        return reading.crs
+        return None if feedback.isCanceled() else reading.crs
 
     def _crs(self, jobs: JobSource) -> QgsCoordinateReferenceSystem:
         algorithm, parameters, context = self._algorithm, self._parameters, self._context
@@ -122,7 +122,7 @@ class TravelSource:
     def travel(
         self, job: Job, crs: QgsCoordinateReferenceSystem, feedback, progress: Callable[[float], None]
     ) -> Travel:
-        """Return the ways between the places of ``job``.
+        """Return the ways between the places of ``job``; ``progress`` may raise to end the work.
 
         :raises RoadsError: when a place is too far from every road.
         """
@@ -137,6 +137,7 @@ class TravelSource:
         surfaces = frozenset(name.strip() for name in names if name.strip())
         wanted = Restrictions(False, surfaces or None, value["LEAST_WIDTH"])
         router = Router(self._network)
+        progress(0.0)
         self._close(router, crs, feedback)
         return RoadTravel(job, router, driving, wanted, value["DISTANCE"], progress)
 

@@ -16,7 +16,7 @@ from .pyvrp_search import load_pyvrp
 from .scheduling import BALANCED, OBJECTIVES, Aim
 from .stages import Effort, solved_stage
 from .timetable import plan_of
-from .travel import Travel
+from .travel import CancellableTravel, Travel
 
 AUTOMATIC, PYVRP, PREVIEW = "automatic", "pyvrp", "preview"
 METHODS = (AUTOMATIC, PYVRP, PREVIEW)
@@ -61,11 +61,12 @@ def assign(job: Job, travel: Travel, wanted: Wanted | None = None, progress: Pro
     use_pyvrp = _use_pyvrp(wanted.method)
     days = Days(job, travel.metres)
     _refuse_unreachable(days)
-    plan, improved_by_pyvrp = _solved(days, wanted, use_pyvrp, progress or (lambda share: True))
+    progress = progress or (lambda share: True)
+    plan, improved_by_pyvrp = _solved(days, wanted, use_pyvrp, progress)
     method = PREVIEW
     if use_pyvrp:
         method = PYVRP if improved_by_pyvrp else f"{PYVRP}, which found nothing better than the preview"
-    return plan_of(days, travel, plan, wanted.objective, method)
+    return plan_of(days, CancellableTravel(travel, lambda: progress(1.0)), plan, wanted.objective, method)
 
 
 def _use_pyvrp(method: str) -> bool:

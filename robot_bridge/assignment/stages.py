@@ -64,6 +64,7 @@ def solved_stage(
     others = [place for place in targets if place not in served]
     first, limits = _first(days, others, begin, aim)
     share = _FIRST_SHARE if effort.use_pyvrp else 1.0
+    over(share)
     first = _improved(days, first, targets, aim, lambda: over(share))
     if not effort.use_pyvrp or first.left or not targets:
         return first

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Protocol
 
 import numpy as np
 
+from .errors import CancelledError
 from .job import Floats, Job
 
 STRAIGHT = "straight lines"
@@ -38,6 +40,20 @@ class StraightTravel:
     def path(self, start: int, goal: int) -> Floats:
         """Return the line between the two places."""
         return straight(self._places[start], self._places[goal], self._spacing)
+
+
+class CancellableTravel:
+    """The ways of ``inner``; its paths raise CancelledError once ``go_on()`` says no."""
+
+    def __init__(self, inner: Travel, go_on: Callable[[], bool]) -> None:
+        self._inner, self._go_on = inner, go_on
+        self.name, self.metres = inner.name, inner.metres
+
+    def path(self, start: int, goal: int) -> Floats:
+        """Return the points from place to place."""
+        if not self._go_on():
+            raise CancelledError("The assignment was cancelled.")
+        return self._inner.path(start, goal)
 
 
 def straight(a: Floats, b: Floats, spacing: float) -> Floats:

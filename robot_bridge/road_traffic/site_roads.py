@@ -13,11 +13,12 @@ from numpy.typing import NDArray
 
 from ..errors import RefusedError
 from ..roads.along import edges_along
-from ..roads.centrelines import Floats, centrelines
+from ..roads.centrelines import Floats
 from ..roads.closures import edges_of_closure
 from ..roads.keepouts import edges_through
-from ..roads.network import Network, build_network
+from ..roads.network import build_network
 from ..roads.routes import REACH, Router
+from ..sites.road_lines import road_lines
 from ..sites.site import Site
 from .closed_roads import ClosedRoads, Place
 
@@ -45,7 +46,7 @@ class SiteRoads:
         """Build the network of ``site`` and close what leads through its keepouts."""
         if not site.centrelines:
             return cls(site, None, np.zeros(0, bool))
-        network = _network(site)
+        network = build_network(road_lines(site.centrelines))
         router = Router(network)
         closed = edges_through(network, [area.rings for area in site.keepouts])
         router.close(closed.tolist())
@@ -143,17 +144,3 @@ class SiteRoads:
             self.router.open(sorted(opened))
         if closed:
             self.router.close(sorted(closed))
-
-
-def _network(site: Site) -> Network:
-    return build_network(
-        centrelines(
-            [line.points for line in site.centrelines],
-            width=[line.width_m for line in site.centrelines],
-            surface=[line.surface for line in site.centrelines],
-            direction=[line.direction for line in site.centrelines],
-            speed=[line.speed_ms for line in site.centrelines],
-            closed=[line.closed for line in site.centrelines],
-            level=[line.level for line in site.centrelines],
-        )
-    )

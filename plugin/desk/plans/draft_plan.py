@@ -23,7 +23,7 @@ from ..desk import Desk
 from .closed_ways import ClosedWay, closed_ways
 from .cone_source import ConeFacts, read_cones, read_stores
 from .near_meetings import Meeting, meetings
-from .plan_task import PlanTask, Work
+from .plan_task import PlanTask
 from .plan_ways import PlanWays
 from .wanted_job import PlanSettings, settings_in
 
@@ -86,11 +86,11 @@ class DraftPlan(QObject):
 
     def move(self, target: str, robot: str, trip: int, place: int) -> None:
         """Let ``robot`` serve ``target`` as number ``place``, from 0, of its trip ``trip``."""
-        self._edit(lambda draft: editing.moved(draft.plan, draft.ways.travel_of, target, robot, trip, place))
+        self._edit(lambda plan, travel_of: editing.moved(plan, travel_of, target, robot, trip, place))
 
     def remove(self, target: str) -> None:
         """Let nobody serve ``target``."""
-        self._edit(lambda draft: editing.removed(draft.plan, draft.ways.travel_of, target))
+        self._edit(lambda plan, travel_of: editing.removed(plan, travel_of, target))
 
     def put(self, draft: Draft | None) -> None:
         """Show another plan, None for none."""
@@ -98,7 +98,7 @@ class DraftPlan(QObject):
         self.draft = draft
         self.changed.emit()
 
-    def run(self, title: str, work: Work, then: Callable[[Plan], None]) -> None:
+    def run(self, title: str, work: Callable[[PlanTask], Plan], then: Callable[[Plan], None]) -> None:
         """Make a plan beside the window's thread; ``then`` gets it."""
         if self.task is not None:
             raise PlanningError(tr("A plan is being made. Wait for it, or press Cancel."))
@@ -151,16 +151,20 @@ class DraftPlan(QObject):
         ways.closures = self._desk.roads.closures
         self.run(
             tr("Preview of the cone plan") if preview else tr("Cone plan"),
-            lambda told: assign(job, ways.travel_of(job), wanted, told),
+            lambda task: assign(job, ways.travel_of(job, task.goes_on), wanted, task.told),
             lambda plan: self._put(plan, blank),
         )
 
-    def _edit(self, change: Callable[[Draft], Plan]) -> None:
+    def _edit(self, change: Callable[[Plan, editing.TravelOf], Plan]) -> None:
         draft = self.draft
         if draft is not None:
             title = tr("Change of the cone plan")
             draft.ways.closures = self._desk.roads.closures
-            self.run(title, lambda told: change(draft), lambda plan: self._put(plan, draft))
+            self.run(
+                title,
+                lambda task: change(draft.plan, lambda job: draft.ways.travel_of(job, task.goes_on)),
+                lambda plan: self._put(plan, draft),
+            )
 
     def _put(self, plan: Plan, of: Draft) -> None:
         self.draft = self.judged(plan, of)

@@ -182,7 +182,9 @@ class DrivenPlan(QObject):
         wanted = Wanted(driven.plan.objective, time_limit_s=min(self._drafts.settings.seconds, _REPLANNING_S))
         self._drafts.run(
             tr("Plan of what is left"),
-            lambda told: replan(driven.plan, driven.ways.travel_of, now, wanted, told),
+            lambda task: replan(
+                driven.plan, lambda job: driven.ways.travel_of(job, task.goes_on), now, wanted, task.told
+            ),
             lambda plan: self._offer(self._drafts.judged(plan, driven)),
         )
 

@@ -15,17 +15,17 @@ from ....robot_bridge.roads.errors import RoadsError
 from ...errors import FleetError
 from ...language import tr
 
-Work = Callable[[Callable[[float], bool]], Plan]
-"""Makes a plan; what it is given is told the share that is done, 0 to 1, and returns whether to go on."""
-
 
 class PlanTask(QgsTask):
-    """Does ``work``. Unless cancelled, ``made`` or ``refused`` is emitted in the window's thread."""
+    """Does ``work``, which is given the task.
+
+    Unless cancelled, ``made`` or ``refused`` is emitted in the window's thread.
+    """
 
     made = pyqtSignal(object)
     refused = pyqtSignal(str)
 
-    def __init__(self, title: str, work: Work):
+    def __init__(self, title: str, work: Callable[[PlanTask], Plan]):
         super().__init__(title, QgsTask.Flag.CanCancel)
         self._work = work
         self._plan: Plan | None = None
@@ -35,7 +35,7 @@ class PlanTask(QgsTask):
 
     def run(self) -> bool:
         try:
-            self._plan = self._work(self._told)
+            self._plan = self._work(self)
         except CancelledError:
             pass
         except (AssignmentError, RoadsError, FleetError) as error:
@@ -57,6 +57,11 @@ class PlanTask(QgsTask):
         else:
             self.refused.emit(self._why)
 
-    def _told(self, share: float) -> bool:
+    def told(self, share: float) -> bool:
+        """Show that ``share`` of the work, 0 to 1, is done; return whether to go on."""
         self.setProgress(100.0 * share)
+        return self.goes_on()
+
+    def goes_on(self) -> bool:
+        """Whether nobody has cancelled it."""
         return not self.isCanceled()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -14,15 +14,16 @@ from qgis.core import (
     QgsProject,
 )
 
+from ....robot_bridge.assignment.errors import CancelledError
 from ....robot_bridge.assignment.job import Job
 from ....robot_bridge.assignment.road_travel import RoadTravel
-from ....robot_bridge.assignment.travel import StraightTravel, Travel
+from ....robot_bridge.assignment.travel import CancellableTravel, StraightTravel, Travel
 from ....robot_bridge.messages import ClosureReport
-from ....robot_bridge.roads.centrelines import centrelines
 from ....robot_bridge.roads.closures import edges_of_closure
 from ....robot_bridge.roads.network import build_network
 from ....robot_bridge.roads.routes import Router
 from ....robot_bridge.sites.frame import SiteFrame
+from ....robot_bridge.sites.road_lines import road_lines
 from ...language import tr
 from ...sites.ground_reading import DEFAULT_WIDTH_M, read_areas, read_centrelines
 from ...sites.obstacle_source import obstacle_sources
@@ -65,23 +66,26 @@ class PlanWays:
         """Whether the project has roads to plan along."""
         return bool(self._roads)
 
-    def travel_of(self, job: Job) -> Travel:
+    def travel_of(self, job: Job, goes_on: Callable[[], bool]) -> Travel:
         """Return the ways between the places of ``job``, clear of its cones and of what stands.
 
-        :raises RoadsError: when a place is too far from every road; LayerReadingError for a layer of roads
-            that cannot be read.
+        :raises CancelledError: here and by the ways once ``goes_on()`` says no; RoadsError when a place is
+            too far from every road; LayerReadingError for a layer of roads that cannot be read.
         """
-        router = self._opened()
+        router = self._opened(goes_on)
         travel: Travel = StraightTravel(job)
         if router is not None:
-            travel = _NearOrByRoad(job, travel, RoadTravel(job, router), self.settings.direct_m)
+            roads = RoadTravel(job, router, progress=lambda share: _ask(goes_on))
+            travel = _NearOrByRoad(job, travel, roads, self.settings.direct_m)
         obstacles = np.concatenate([job.places[job.first_target :], self.standing])
-        return ClearTravel(travel, job.places, obstacles, self.settings.clearance_m)
+        clear = ClearTravel(travel, job.places, obstacles, self.settings.clearance_m)
+        return CancellableTravel(clear, goes_on)
 
-    def _opened(self) -> Router | None:
+    def _opened(self, goes_on: Callable[[], bool]) -> Router | None:
         if not self._read:
+            self._router = self._network(goes_on)
+            # Only now: who is cancelled or fails here has no roads, and must not go on without them.
             self._read = True
-            self._router = self._network()
         if self._router is not None:
             self._close(self._router)
         return self._router
@@ -95,26 +99,35 @@ class PlanWays:
         router.close(sorted(wanted - self._shut - always))
         self._shut = wanted - always
 
-    def _network(self) -> Router | None:
-        feedback = QgsFeedback()
+    def _network(self, goes_on: Callable[[], bool]) -> Router | None:
+        feedback = _Asking(goes_on)
         roads = read_centrelines(self._roads, self._site, DEFAULT_WIDTH_M, feedback).items
+        _ask(goes_on)
         if not roads:
             return None
-        network = build_network(
-            centrelines(
-                [road.points for road in roads],
-                width=[road.width_m for road in roads],
-                surface=[road.surface for road in roads],
-                direction=[road.direction for road in roads],
-                speed=[road.speed_ms for road in roads],
-                closed=[road.closed for road in roads],
-                level=[road.level for road in roads],
-            )
-        )
+        network = build_network(road_lines(roads))
+        _ask(goes_on)
         router = Router(network)
         areas = read_areas(self._keepouts, self._site, KEEPOUT, feedback).items
+        _ask(goes_on)
         router.close(edges_through(network, [area.rings for area in areas]))
         return router
+
+
+def _ask(goes_on: Callable[[], bool]) -> None:
+    if not goes_on():
+        raise CancelledError(tr("The assignment was cancelled."))
+
+
+class _Asking(QgsFeedback):
+    """Asks another whether it is cancelled, for what reads layers until its feedback says so."""
+
+    def __init__(self, goes_on: Callable[[], bool]) -> None:
+        super().__init__()
+        self._goes_on = goes_on
+
+    def isCanceled(self) -> bool:
+        return not self._goes_on()
 
 
 class _NearOrByRoad:

@@ -10,6 +10,8 @@ import numpy as np
 import pyogrio
 import pytest
 import shapely
+from fleet_supervisor.plugin.processing import assign_cones, job_travel
+from fleet_supervisor.robot_bridge.assignment import road_travel, solving, stages
 from fleet_supervisor.robot_bridge.assignment.checks import check_plan
 from fleet_supervisor.robot_bridge.assignment.plan import Plan
 from fleet_supervisor.robot_bridge.assignment.plan_json import from_json
@@ -134,6 +136,41 @@ def test_pyvrp_is_used_where_it_is(run, layers):
     results, plan = run(**layers, METHOD="automatic", TIME_LIMIT=1)
     assert results["METHOD_USED"].startswith("pyvrp")
     assert check_plan(plan) == []
+
+
+PHASES = {
+    "network": (job_travel, "network_of_roads"),
+    "distances": (road_travel, "road_matrix"),
+    "savings": (stages, "trips_by_savings"),
+    "improving": (stages, "improved"),
+    "pyvrp": (stages, "trips_by_pyvrp"),
+    "paths": (solving, "plan_of"),
+    "writing": (assign_cones, "write_whole"),
+}
+"""What comes one after the other, and who does it."""
+
+
+@pytest.mark.parametrize("phase", [name for name in PHASES if name != "writing"])
+def test_a_cancel_in_one_phase_lets_none_come_after_it(run, layers, listener, monkeypatch, phase):
+    pytest.importorskip("pyvrp")
+    entered = []
+
+    def noted(name, work):
+        def do(*given, **named):
+            entered.append(name)
+            if name == phase:
+                listener.cancel()
+            return work(*given, **named)
+
+        return do
+
+    for name, (module, function) in PHASES.items():
+        monkeypatch.setattr(module, function, noted(name, getattr(module, function)))
+    results, plan = run(**layers, STAGE_FIELD="", METHOD="pyvrp", TIME_LIMIT=600)
+    names = list(PHASES)
+    assert set(entered) == set(names[: names.index(phase) + 1])
+    assert plan is None
+    assert "METRES" not in results
 
 
 def test_a_cancel_leaves_nothing(run, layers, cancels_at):
