@@ -6,107 +6,18 @@ from qgis.PyQt.QtCore import QPointF, QRectF, Qt
 from qgis.PyQt.QtGui import QBrush, QColor, QIcon, QPainter, QPainterPath, QPen, QPixmap, QPolygonF
 
 from ...robot_bridge.messages import RobotState
-from .colours import CASING, CONE, PAPER, SELECTED, STATE_COLOURS
-from .picture import STATES
+from .colours import CASING, CONE, PAPER, STATE_COLOURS
 
 CELL = 32
 """Width and height of the square that a robot's drawing fits in at any heading."""
-HEADINGS = 90
-"""Directions that robots are drawn in; between them nobody sees a difference."""
-MARK_SIZE = 1.5625
-ARROW_SIZE = 0.95
-"""Of marks and of arrows, in cells."""
-ARROW_TURNS = 36
-"""Directions that the arrows at the border point in."""
-RING, OTHER_RING, TARGET, CONE_TARGET = range(4)
-MARKS = 4
 ICON_SCALE = 2.04
 """From a robot's drawing to one of 64 pixels for tables."""
 
 
-def robot_atlas(pixel_ratio: float, size: float = 1.0) -> QPixmap:
-    """Return every robot drawing in one picture, a cell each of :func:`cell` device pixels.
-
-    The rows are :data:`~.picture.STATES`. In column k the robot points k / :data:`HEADINGS` of a turn
-    clockwise from +x; in the last column its heading is not known. ``size`` 1 is the drawing as it is.
-    """
-    side = cell(pixel_ratio, size)
-    atlas = _transparent(side * (HEADINGS + 1), side * len(STATES))
-    painter = QPainter(atlas)
-    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-    for row, state in enumerate(STATES):
-        for column in range(HEADINGS + 1):
-            painter.save()
-            painter.translate((column + 0.5) * side, (row + 0.5) * side)
-            painter.scale(side / CELL, side / CELL)
-            if column < HEADINGS:
-                painter.rotate(column * 360.0 / HEADINGS)
-            draw_robot(painter, state, column < HEADINGS)
-            painter.restore()
-    painter.end()
-    return atlas
-
-
-def cell(pixel_ratio: float, size: float = 1.0) -> int:
-    """Return the device pixels along a side of the square that a robot of ``size`` fits in."""
-    return round(CELL * size * pixel_ratio)
-
-
-def mark_atlas(pixel_ratio: float, size: float = 1.0) -> QPixmap:
-    """Return the marks, a cell each: the ring of the selected robot that commands go to, that of others
-    selected with it, a target, and a cone target, both with their spot in the middle."""
-    side = cell(pixel_ratio, MARK_SIZE * size)
-    atlas = _transparent(side * MARKS, side)
-    painter = QPainter(atlas)
-    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-    middle = CELL * MARK_SIZE / 2
-    painter.scale(side / (2 * middle), side / (2 * middle))
-    for column, (radius, colour, width) in enumerate(
-        ((18.0, SELECTED, 3.0), (16.0, SELECTED, 1.6), (4.0, PAPER, 2.2), (4.0, PAPER, 2.2))
-    ):
-        centre = QPointF((2 * column + 1) * middle, middle)
-        painter.setBrush(Qt.BrushStyle.NoBrush)
-        for pen in (_pen(CASING, width + 2.4), _pen(colour, width)):
-            painter.setPen(pen)
-            painter.drawEllipse(centre, radius, radius)
-        if column == CONE_TARGET:
-            draw_cone(painter, centre)
-    painter.end()
-    return atlas
-
-
-def arrow_atlas(pixel_ratio: float) -> QPixmap:
-    """Return the arrows at the map's border: turned as in :func:`robot_atlas`, two rows for each state, the
-    second for selected robots. They have :data:`ARROW_TURNS` columns."""
-    side = cell(pixel_ratio, ARROW_SIZE)
-    atlas = _transparent(side * ARROW_TURNS, side * 2 * len(STATES))
-    painter = QPainter(atlas)
-    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-    arrow = QPolygonF([QPointF(11, 0), QPointF(-6, 9), QPointF(-2, 0), QPointF(-6, -9)])
-    for row in range(2 * len(STATES)):
-        painter.setBrush(QBrush(STATE_COLOURS[STATES[row // 2]]))
-        for column in range(ARROW_TURNS):
-            painter.save()
-            painter.translate((column + 0.5) * side, (row + 0.5) * side)
-            painter.scale(pixel_ratio, pixel_ratio)
-            painter.rotate(column * 360.0 / ARROW_TURNS)
-            for pen in (_pen(CASING, 4.4), _pen(SELECTED if row % 2 else PAPER, 2.0)):
-                painter.setPen(pen)
-                painter.drawPolygon(arrow)
-            painter.restore()
-    painter.end()
-    return atlas
-
-
-def _transparent(width: int, height: int) -> QPixmap:
-    pixmap = QPixmap(width, height)
-    pixmap.fill(QColor(0, 0, 0, 0))
-    return pixmap
-
-
 def state_icon(state: RobotState) -> QIcon:
     """Return the drawing of a robot in ``state``, pointing up, for tables and legends."""
-    pixmap = _transparent(64, 64)
+    pixmap = QPixmap(64, 64)
+    pixmap.fill(QColor(0, 0, 0, 0))
     painter = QPainter(pixmap)
     painter.setRenderHint(QPainter.RenderHint.Antialiasing)
     painter.translate(32, 32)
@@ -133,6 +44,15 @@ def draw_robot(painter: QPainter, state: RobotState, with_heading: bool) -> None
     painter.drawPath(outline)
     if state is RobotState.LOST:
         _cross(painter, colour)
+
+
+def draw_arrow(painter: QPainter, state: RobotState, rim: QColor) -> None:
+    """Draw the arrow at the map's border to a robot in ``state``: it points along +x."""
+    arrow = QPolygonF([QPointF(11, 0), QPointF(-6, 9), QPointF(-2, 0), QPointF(-6, -9)])
+    painter.setBrush(QBrush(STATE_COLOURS[state]))
+    for pen in (_pen(CASING, 4.4), _pen(rim, 2.0)):
+        painter.setPen(pen)
+        painter.drawPolygon(arrow)
 
 
 def draw_cone(painter: QPainter, foot: QPointF, size: float = 22.0) -> None:

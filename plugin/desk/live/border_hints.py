@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 from qgis.PyQt.QtCore import QPointF
-from qgis.PyQt.QtGui import QPainter
+from qgis.PyQt.QtGui import QPainter, QPixmap
 
-from ..glyphs import ARROW_SIZE, ARROW_TURNS, arrow_atlas, cell
+from ..picture import STATES
+from .atlases import ARROW_SIZE, ARROW_TURNS, arrow_atlas, cell
 from .labels import Labels
 from .scene import PlacedScene
 from .screen import Screen
@@ -24,6 +26,8 @@ APART = 56.0
 """Pixels of the border that share one arrow."""
 FIND_EVERY = 0.25
 """Seconds for which the arrows and their numbers stay as they are unless the view moves."""
+_SLOTS = 10_000
+"""More than fit along any border."""
 _URGENT = np.array([1, 2, 3, 0])
 """The rank of each of STATES: an arrow for several robots has the colour of the one to worry about."""
 
@@ -37,7 +41,7 @@ class Hint:
     turn: float
     rows: Rows
 
-    @property
+    @cached_property
     def area(self) -> tuple[float, float, float, float]:
         """About what the arrow and its text cover: left, top, right, bottom."""
         # A single robot has its name there, several their number.
@@ -53,15 +57,15 @@ def hints(pixels: Points, beyond: Rows, screen: Screen) -> list[Hint]:
     middle = np.array([screen.width, screen.height]) / 2.0
     way = pixels[beyond] - middle
     reach = (middle - MARGIN) / np.maximum(np.abs(way), 1e-9)
-    at = middle + way * reach.min(axis=1)[:, None]
-    slots, of = np.unique(np.round(at / APART).astype(np.intp), axis=0, return_inverse=True)
+    at = middle + way * np.minimum(reach[:, 0], reach[:, 1])[:, None]
+    slot = np.round(at / APART).astype(np.intp)
+    _, of, count = np.unique(slot[:, 0] * _SLOTS + slot[:, 1], return_inverse=True, return_counts=True)
     order = np.argsort(of, kind="stable")
-    groups = np.split(order, np.cumsum(np.bincount(of, minlength=len(slots)))[:-1])
-    found = []
-    for group in groups:
-        (x, y), (dx, dy) = at[group].mean(axis=0), way[group].mean(axis=0)
-        found.append(Hint(float(x), float(y), float(np.arctan2(dy, dx)), beyond[group]))
-    return found
+    first = np.cumsum(count) - count
+    x, y, dx, dy = np.add.reduceat(np.hstack([at, way])[order], first).T / count
+    groups = np.split(beyond[order], first[1:])
+    turns = np.arctan2(dy, dx)
+    return [Hint(*given) for given in zip(x.tolist(), y.tolist(), turns.tolist(), groups, strict=True)]
 
 
 class BorderHints:
@@ -69,10 +73,15 @@ class BorderHints:
 
     def __init__(self, labels: Labels) -> None:
         self._labels = labels
-        self._arrows: tuple[float, Sprites] | None = None
+        self._atlases: dict[tuple[int, bool], Sprites] = {}
+        self._ratio = 0.0
         self._found_for: tuple[Screen, list[str]] | None = None
         self._found_at = -np.inf
         self.hints: list[Hint] = []
+        self._chosen: tuple[str, ...] | None = None
+        """For which selection it was made ready what is painted; None when it has to be made anew."""
+        self._arrows: list[tuple[Sprites, Points, Rows]] = []
+        self._texts: list[tuple[QPointF, QPixmap]] = []
 
     def find(self, placed: PlacedScene, pixels: Points, seen: Rows, screen: Screen) -> None:
         """Find the arrows for robots that are not in rows ``seen``, unless that was done just now."""
@@ -83,36 +92,55 @@ class BorderHints:
         self._found_for, self._found_at = (screen, names), now
         beyond = np.isfinite(pixels[:, 0])
         beyond[seen] = False
-        self.hints = hints(pixels, np.flatnonzero(beyond), screen)
+        self.hints, self._chosen = hints(pixels, np.flatnonzero(beyond), screen), None
 
     def paint(self, painter: QPainter, placed: PlacedScene, screen: Screen) -> None:
         """Paint each arrow in its robots' colour, with their name or number."""
-        if not self.hints:
-            return
-        if self._arrows is None or self._arrows[0] != screen.ratio:
-            side = cell(screen.ratio, ARROW_SIZE)
-            self._arrows = screen.ratio, Sprites(arrow_atlas(screen.ratio), side, screen.ratio)
+        if self._chosen != placed.scene.chosen:
+            names = placed.scene.robots.names
+            self._arrows = self._coloured(placed, screen) if self.hints else []
+            self._texts = [_beside(self._labels, hint, names, screen) for hint in self.hints]
+            self._chosen = placed.scene.chosen
+        for arrow, at, column in self._arrows:
+            arrow.paint(painter, at, column)
+        for place, text in self._texts:
+            painter.drawPixmap(place, text)
+
+    def _coloured(self, placed: PlacedScene, screen: Screen) -> list[tuple[Sprites, Points, Rows]]:
+        """Return for each colour the arrow, the places where it stands, and its cells."""
         robots = placed.scene.robots
         chosen = {placed.scene.rows[name] for name in placed.scene.chosen if name in placed.scene.rows}
         rank = _URGENT[robots.state]
         states = np.array([robots.state[hint.rows[rank[hint.rows].argmax()]] for hint in self.hints])
-        is_chosen = [bool(chosen) and not chosen.isdisjoint(hint.rows.tolist()) for hint in self.hints]
+        is_chosen = np.array([bool(chosen) and not chosen.isdisjoint(h.rows.tolist()) for h in self.hints])
         turns = np.array([hint.turn for hint in self.hints]) / (2 * np.pi)
         column = np.round(turns * ARROW_TURNS).astype(np.intp) % ARROW_TURNS
         at = np.array([(hint.x, hint.y) for hint in self.hints])
-        self._arrows[1].paint(painter, at, column, states * 2 + np.array(is_chosen, dtype=np.intp))
-        for hint in self.hints:
-            text = robots.names[hint.rows[0]] if len(hint.rows) == 1 else str(len(hint.rows))
-            _beside(painter, self._labels, text, hint, screen)
+        found = []
+        for state, to_chosen in sorted({*zip(states.tolist(), is_chosen.tolist(), strict=True)}):
+            those = np.flatnonzero((states == state) & (is_chosen == to_chosen))
+            found.append((self._arrow(state, to_chosen, screen.ratio), at[those], column[those]))
+        return found
+
+    def _arrow(self, state: int, to_chosen: bool, ratio: float) -> Sprites:
+        """Return the arrow to robots in a state, made when it is needed first."""
+        if ratio != self._ratio:
+            self._atlases.clear()
+            self._ratio = ratio
+        if (state, to_chosen) not in self._atlases:
+            atlas = arrow_atlas(ratio, STATES[state], to_chosen)
+            self._atlases[state, to_chosen] = Sprites(atlas, cell(ratio, ARROW_SIZE), ratio)
+        return self._atlases[state, to_chosen]
 
 
-def _beside(painter: QPainter, labels: Labels, text: str, hint: Hint, screen: Screen) -> None:
-    """Draw ``text`` on the inner side of the arrow, whole."""
+def _beside(labels: Labels, hint: Hint, names: list[str], screen: Screen) -> tuple[QPointF, QPixmap]:
+    """Return the robot's name, or how many there are, and where it is whole on the arrow's inner side."""
+    text = names[hint.rows[0]] if len(hint.rows) == 1 else str(len(hint.rows))
     picture = labels.picture(text, screen.ratio)
     width, height = picture.width() / screen.ratio, picture.height() / screen.ratio
-    inward = 8.0 + np.hypot(width, height) / 2
-    x = hint.x - np.cos(hint.turn) * inward - width / 2
-    y = hint.y - np.sin(hint.turn) * inward - height / 2
+    inward = 8.0 + math.hypot(width, height) / 2
+    x = hint.x - math.cos(hint.turn) * inward - width / 2
+    y = hint.y - math.sin(hint.turn) * inward - height / 2
     x = min(max(x, 0.0), screen.width - width)
     y = min(max(y, 0.0), screen.height - height)
-    painter.drawPixmap(QPointF(x, y), picture)
+    return QPointF(x, y), picture

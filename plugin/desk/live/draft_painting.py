@@ -11,7 +11,8 @@ from qgis.PyQt.QtGui import QColor, QImage, QPainter, QPen
 
 from ..colours import PAPER, REFUSED, ROUTE
 from ..drafts import CONE, START, TARGETS
-from ..glyphs import CONE_TARGET, draw_cone
+from ..glyphs import draw_cone
+from .atlases import CONE_TARGET
 from .scene import PlacedScene
 from .screen import Screen
 from .sprites import Sprites

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 from qgis.PyQt.QtCore import QPointF
-from qgis.PyQt.QtGui import QPainter
+from qgis.PyQt.QtGui import QPainter, QPixmap
 
 from ....robot_bridge.messages import RobotState
 from ...language import tr
@@ -32,8 +32,9 @@ LETTER = 8.0
 SPOT = np.array([36.0, 16.0])
 STATE_LETTERS = 14.0
 """Letters that a robot's state and age take at most, but for hours and days."""
-_URGENT = np.array([2, 1, 0, 2])
-"""The rank of each of STATES: the lost before the stale before all others."""
+_URGENT = np.array([5, 3, 1, 5], dtype=np.int8)
+"""The rank of each of STATES: the lost before the stale before all others, each with one before it for those
+that had their texts shown already. Small numbers: numpy sorts them faster."""
 
 
 class NamesPainter:
@@ -44,6 +45,9 @@ class NamesPainter:
         self._named: Rows = np.empty(0, dtype=np.intp)
         self._written: list[list[str]] = []
         self._widths = np.empty(0)
+        self._pieces: list[tuple[int, float, QPixmap]] = []
+        """Of the k-th of the written: how far along which picture stands."""
+        self._waiting: list[int] = []
         self._chosen_at = -np.inf
         self._screen: Screen | None = None
         self._lengths = np.empty(0)
@@ -68,18 +72,38 @@ class NamesPainter:
             self._chosen_at, self._screen = now, screen
             self._written = [texts(robots, row) for row in self._named.tolist()]
             self._widths = np.array([_width(parts) for parts in self._written])
-        corners = _corners(pixels[self._named], self._widths, screen)
+            self._wait_for_pictures(screen.ratio)
+        self._make_pictures(screen.ratio)
+        corners = _corners(pixels[self._named], self._widths, screen).tolist()
+        for k, along, picture in self._pieces:
+            x, y = corners[k]
+            top = y + (HEIGHT - picture.height() / screen.ratio) / 2
+            painter.drawPixmap(QPointF(x + along, top), picture)
+
+    def _wait_for_pictures(self, ratio: float) -> None:
+        """Have at once what is written wherever its pictures are there already."""
+        self._pieces, self._waiting = [], []
+        for k, parts in enumerate(self._written):
+            if all(self._labels.known(text, ratio) for text in parts):
+                self._put(k, ratio)
+            else:
+                self._waiting.append(k)
+
+    def _make_pictures(self, ratio: float) -> None:
+        """Make some of the pictures that are waited for; the others come with the next frames."""
         new = NEW_IN_A_FRAME
-        for parts, (x, y) in zip(self._written, corners.tolist(), strict=True):
-            new -= sum(not self._labels.known(text, screen.ratio) for text in parts)
-            if new < 0 and not all(self._labels.known(text, screen.ratio) for text in parts):
-                # It comes with one of the next frames.
-                continue
-            for text in parts:
-                picture = self._labels.picture(text, screen.ratio)
-                top = y + (HEIGHT - picture.height() / screen.ratio) / 2
-                painter.drawPixmap(QPointF(x, top), picture)
-                x += picture.width() / screen.ratio - 2 * MARGIN + 4
+        while self._waiting and new > 0:
+            k = self._waiting.pop(0)
+            new -= sum(not self._labels.known(text, ratio) for text in self._written[k])
+            self._put(k, ratio)
+
+    def _put(self, k: int, ratio: float) -> None:
+        """Have what is written beside the k-th robot painted, its parts one after the other."""
+        along = 0.0
+        for text in self._written[k]:
+            picture = self._labels.picture(text, ratio)
+            self._pieces.append((k, along, picture))
+            along += picture.width() / ratio - 2 * MARGIN + 4
 
     def _are_others(self, robots: RobotArrays) -> bool:
         """Tell whether another robot stands in the row of one that was chosen."""
@@ -98,7 +122,7 @@ class NamesPainter:
     ) -> Rows:
         """Return the rows whose texts do not cover another's text or robot, the most urgent first."""
         robots, scene = placed.scene.robots, placed.scene
-        rank = _URGENT[robots.state] * 2 + 1
+        rank = _URGENT[robots.state]
         rank[self._named[self._named < len(rank)]] -= 1
         rank[[scene.rows[name] for name in scene.chosen if name in scene.rows]] = -1
         rank = rank[seen]
@@ -138,6 +162,11 @@ def _corners(pixels: Points, width: npt.NDArray[np.float64], screen: Screen) -> 
 
 def _first_of_each_spot(corner: Points) -> Rows:
     """Return the indices of texts that begin where none before them does, to try no spot twice."""
-    spot = np.floor(corner / SPOT).astype(np.int64)
-    _, first = np.unique(spot[:, 0] * 100_003 + spot[:, 1], return_index=True)
-    return np.sort(first)
+    if len(corner) == 0:
+        return np.empty(0, dtype=np.intp)
+    across, down = np.floor(corner / SPOT).astype(np.intp).T
+    spot = (across - across.min()) * (np.ptp(down) + 1) + down - down.min()
+    first = np.full(spot.max() + 1, -1)
+    # Of several values for one place numpy keeps the last, so they go there backwards.
+    first[spot[::-1]] = np.arange(len(spot))[::-1]
+    return np.sort(first[first >= 0])

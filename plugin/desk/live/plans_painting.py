@@ -11,7 +11,7 @@ from qgis.PyQt.QtGui import QColor, QImage, QPainter, QPen
 
 from ...language import tr
 from ..colours import PAPER, ROUTE
-from ..glyphs import CONE_TARGET, TARGET
+from .atlases import CONE_TARGET, TARGET
 from .labels import Labels
 from .scene import PlacedScene
 from .screen import Screen

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from itertools import product
+
 import numpy as np
 import numpy.typing as npt
 from qgis.PyQt.QtCore import QLineF, Qt
 from qgis.PyQt.QtGui import QColor, QPainter, QPen
 
 from ..colours import CASING, PAPER, STATE_COLOURS
-from ..glyphs import HEADINGS, MARK_SIZE, OTHER_RING, RING, cell, mark_atlas, robot_atlas
 from ..picture import STATES
+from .atlases import HEADINGS, MARK_SIZE, OTHER_RING, RING, cell, mark_atlas, robot_atlas
 from .scene import PlacedScene
 from .screen import Screen
 from .sprites import Sprites
@@ -34,6 +36,9 @@ FINE_VELOCITIES = 300
 CORNERS = 32
 SMALLEST_CIRCLE = 12.0
 MOST_CIRCLES = 300
+_FRESH, _STALE, _LOST, _OFFLINE = range(len(STATES))
+_UPWARDS = (_FRESH, _OFFLINE, _STALE, _LOST)
+"""In which order robots are painted."""
 _CIRCLE = np.column_stack([f(np.arange(CORNERS) * 2 * np.pi / CORNERS) for f in (np.cos, np.sin)])
 
 
@@ -41,16 +46,16 @@ class RobotsPainter:
     """Paints the robots on one screen at a time."""
 
     def __init__(self) -> None:
-        self._atlases: dict[float, Sprites] = {}
+        self._drawings: dict[tuple[float, int], Sprites] = {}
         self._marks: dict[float, Sprites] = {}
         self._ratio = 0.0
         self.magnification = 1.0
         """How many times as large as they come robots are drawn."""
 
     def marks(self, ratio: float, size: float = 1.0) -> Sprites:
-        """Return the marks of :func:`~.desk.glyphs.mark_atlas`."""
+        """Return the marks of :func:`~.desk.live.atlases.mark_atlas`."""
         if ratio != self._ratio:
-            self._atlases.clear()
+            self._drawings.clear()
             self._marks.clear()
             self._ratio = ratio
         if size not in self._marks:
@@ -81,13 +86,13 @@ class RobotsPainter:
         rings = np.full(len(chosen), OTHER_RING)
         rings[-1:] = RING
         marks.paint(painter, pixels[chosen], rings)
-        turn = np.arctan2(metre[:, 1], metre[:, 0]) / (2 * np.pi)
-        column = np.where(known, np.round(turn * HEADINGS) % HEADINGS, HEADINGS).astype(np.intp)
+        turn = np.arctan2(metre[:, 1], metre[:, 0]) * (HEADINGS / (2 * np.pi))
+        column = np.where(known, np.round(turn) % HEADINGS, HEADINGS).astype(np.intp)
         is_chosen = np.zeros(len(pixels), dtype=bool)
         is_chosen[chosen] = True
-        self._drawings(painter, there, column, robots.state[seen], is_chosen[seen], size)
+        self._paint_drawings(painter, there, column, robots.state[seen], is_chosen[seen], size)
 
-    def _drawings(
+    def _paint_drawings(
         self,
         painter: QPainter,
         at: Points,
@@ -96,19 +101,20 @@ class RobotsPainter:
         chosen: npt.NDArray[np.bool_],
         size: float,
     ) -> None:
-        worth = np.where(chosen, 1.0, np.where(state > 0, max(size, NOTICEABLE), size))
-        # Those that need to be noticed lie on top.
-        for wanted in sorted({size, max(size, NOTICEABLE), 1.0}):
-            those = np.flatnonzero(worth == wanted)
-            if len(those) == 0:
-                continue
-            drawn = wanted * self.magnification
-            if drawn not in self._atlases:
-                atlas = robot_atlas(self._ratio, drawn)
-                self._atlases[drawn] = Sprites(atlas, cell(self._ratio, drawn), self._ratio)
-            if state[those].any():
-                those = those[np.argsort(state[those] % (len(STATES) - 1), kind="stable")]
-            self._atlases[drawn].paint(painter, at[those], column[those], state[those])
+        # Those that need to be noticed lie on top, and the selected ones on top of all.
+        for is_chosen, of_state in product((False, True), _UPWARDS):
+            those = np.flatnonzero((state == of_state) & (chosen == is_chosen))
+            if len(those):
+                worth = 1.0 if is_chosen else size if of_state == _FRESH else max(size, NOTICEABLE)
+                self._sprites(worth, of_state).paint(painter, at[those], column[those])
+
+    def _sprites(self, size: float, state: int) -> Sprites:
+        """Return the drawings of robots in a state, made when the first such robot is seen."""
+        drawn = size * self.magnification
+        if (drawn, state) not in self._drawings:
+            atlas = robot_atlas(self._ratio, drawn, STATES[state])
+            self._drawings[drawn, state] = Sprites(atlas, cell(self._ratio, drawn), self._ratio)
+        return self._drawings[drawn, state]
 
 
 def circles(placed: PlacedScene, seen: Rows, metre: Points) -> list[tuple[int, Points]]:

@@ -61,4 +61,5 @@ class Room:
         rows, columns = self._shape
         x, y = corner.T
         edges = (x, columns), (y, rows), (x + width + GRID, columns), (y + height + GRID, rows)
-        return [np.clip(edge // GRID, 0, most).astype(np.intp) for edge, most in edges]
+        # numpy takes ten times as long for //.
+        return [np.clip(np.floor(edge * (1.0 / GRID)).astype(np.intp), 0, most) for edge, most in edges]

@@ -12,7 +12,7 @@ FIELDS = 10
 
 
 class Sprites:
-    """Cells of one picture, ``side`` device pixels wide and high, ``ratio`` device pixels a logical one."""
+    """A row of cells, ``side`` device pixels wide and high, ``ratio`` device pixels a logical one."""
 
     def __init__(self, atlas: QPixmap, side: int, ratio: float) -> None:
         self._atlas = atlas
@@ -20,29 +20,27 @@ class Sprites:
         self._ratio = ratio
         self._fragments = None
         self._table = np.empty((0, FIELDS))
+        self._painted = 0
 
     def paint(
         self,
         painter: QPainter,
         centre: npt.NDArray[np.float64],
         column: npt.NDArray[np.intp] | int,
-        row: npt.NDArray[np.intp] | int = 0,
     ) -> None:
-        """Paint cell (``column``, ``row``) around each ``centre``, (n, 2) logical pixels."""
+        """Paint cell ``column`` around each ``centre``, (n, 2) logical pixels."""
         count = len(centre)
         if count == 0:
             return
         self._provide(count)
         table, side = self._table, self._side
-        # What was painted before and is no more must not show: a size of nothing hides it.
-        table[count:, 4:6] = 0.0
         # A whole device pixel keeps the drawing sharp.
         table[:count, 0:2] = (np.round(centre * self._ratio - side / 2) + side / 2) / self._ratio
         table[:count, 2] = column * side
-        table[:count, 3] = row * side
-        table[:count, 4:6] = side
-        table[:count, 6:8] = 1.0 / self._ratio
-        table[:count, 9] = 1.0
+        # What was painted before and is no more must not show: a size of nothing hides it.
+        table[count : self._painted, 4:6] = 0.0
+        table[self._painted : count, 4:6] = side
+        self._painted = count
         painter.drawPixmapFragments(self._fragments, self._atlas)
 
     def _provide(self, count: int) -> None:
@@ -53,3 +51,6 @@ class Sprites:
         raw = sip.voidptr(self._fragments, size * FIELDS * 8, True)
         self._table = np.frombuffer(raw, dtype=np.float64).reshape(size, FIELDS)
         self._table[:] = 0.0
+        self._table[:, 6:8] = 1.0 / self._ratio
+        self._table[:, 9] = 1.0
+        self._painted = 0

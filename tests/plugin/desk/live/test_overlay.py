@@ -138,10 +138,12 @@ def test_each_state_has_its_colour_and_its_own_shape(canvas, site, state):
 
 
 def test_states_differ_without_their_colours(qgis_app):
-    from fleet_supervisor.plugin.desk.glyphs import CELL, robot_atlas
+    from fleet_supervisor.plugin.desk.glyphs import CELL
+    from fleet_supervisor.plugin.desk.live.atlases import robot_atlas
 
-    atlas = robot_atlas(1.0).toImage().convertToFormat(QImage.Format.Format_Grayscale8)
-    cells = [atlas.copy(0, CELL * row, CELL, CELL) for row in range(len(STATES))]
+    grey = QImage.Format.Format_Grayscale8
+    atlases = [robot_atlas(1.0, 1.0, state).toImage().convertToFormat(grey) for state in STATES]
+    cells = [atlas.copy(0, 0, CELL, CELL) for atlas in atlases]
     tables = [np.frombuffer(as_bytes(cell), np.uint8) for cell in cells]
     for first in range(len(tables)):
         for second in range(first):
