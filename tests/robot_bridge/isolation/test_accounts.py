@@ -206,6 +206,42 @@ def test_after_an_upgrade_the_gateway_may_use_the_new_tables(yard):
         yard.sql("drop table novelty")
 
 
+def robots_side(mariadb: Yard) -> set[tuple[str, ...]]:
+    """Return of which version what robots meet on MariaDB is, and what it is."""
+    side = f"'{mariadb.side}'"
+    return {
+        *mariadb.sql(f"select schema_comment from information_schema.schemata where schema_name = {side}"),
+        *mariadb.sql(f"select view_definition from information_schema.views where table_schema = {side}"),
+        *mariadb.sql(
+            "select action_statement from information_schema.triggers "
+            f"where trigger_schema = '{mariadb.name}' and trigger_name = 'rr_of_whom'"
+        ),
+    }
+
+
+@pytest.mark.parametrize("words", [("database", "upgrade"), ("robots", "add", NAME)])
+def test_what_robots_meet_is_replaced_where_an_older_version_made_it(mariadb, words):
+    made = robots_side(mariadb)
+    keeper = f"'{mariadb.name}_keeper'@'localhost'"
+    mariadb.sql(
+        f"create or replace definer = {keeper} sql security definer view {mariadb.side}.sa as "
+        f"select id, robot, op, params, payload, created_at, urgent from {mariadb.name}.sa "
+        "force index (ix_sa_robot) where robot = substring_index(user(), '@', 1)"
+    )
+    mariadb.sql(
+        f"create or replace definer = {keeper} trigger {mariadb.name}.rr_of_whom before insert "
+        f"on {mariadb.name}.rr for each row set new.robot = substring_index(user(), '@', 1)"
+    )
+    mariadb.sql(f"alter database {mariadb.side} comment 'robots'' side of the fleet, version 1'")
+    assert len(made - robots_side(mariadb)) == len(["version", "view", "trigger"])
+    done = run(mariadb, *words)
+    assert done.returncode == 0, done.stderr
+    assert robots_side(mariadb) == made
+    assert mariadb.of(MINE).run("select robot from sa") == [(MINE,)]
+    if "add" in words:
+        run_once(mariadb.admin, lambda connection: keeper_on(connection).remove_robot(NAME))
+
+
 def test_on_sqlite_a_robot_gets_a_token_and_no_password(tmp_path):
     url = f"sqlite:///{tmp_path / 'fleet.db'}"
     run_once(url, revisions.create)
