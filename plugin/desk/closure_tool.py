@@ -8,7 +8,7 @@ import numpy as np
 from qgis.core import QgsPointXY
 from qgis.gui import QgsMapMouseEvent, QgsMapTool
 from qgis.PyQt.QtCore import QPoint, Qt
-from qgis.PyQt.QtWidgets import QMessageBox, QWidget
+from qgis.PyQt.QtWidgets import QWidget
 
 from ...robot_bridge.messages import ClosureReport
 from ...robot_bridge.roads.points import foot_on
@@ -18,6 +18,7 @@ from .closure_dialog import ClosureDialog
 from .desk import Desk
 from .drafts import Point
 from .road_board import time_of_day
+from .safe_question import safe_question
 
 REACH = 12.0
 """Pixels by which a click may miss a road."""
@@ -70,22 +71,18 @@ class ClosureTool(QgsMapTool):
         dialog.open()
 
     def _ask_to_open(self, closure: ClosureReport) -> None:
-        box = QMessageBox(self._window)
-        box.setObjectName("fleet_open_road")
-        box.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        box.setWindowTitle(tr("Open road"))
         because = f": {closure.reason}" if closure.reason else ""
-        box.setText(
-            tr(
-                "{by} closed this road at {time}{because}",
-                by=closure.closed_by,
-                time=time_of_day(closure.closed_at),
-                because=because,
-            )
+        text = tr(
+            "{by} closed this road at {time}{because}",
+            by=closure.closed_by,
+            time=time_of_day(closure.closed_at),
+            because=because,
         )
+        opening = "fleet_open_road_confirm", tr("Open road")
+        box = safe_question(
+            self._window, "fleet_open_road", text, opening, tr("Cancel"),
+            lambda: self._desk.open_road(closure.closure),
+        )  # fmt: skip
+        box.setWindowTitle(tr("Open road"))
         box.setInformativeText(tr("Open it again for every robot?"))
-        opening = box.addButton(tr("Open road"), QMessageBox.ButtonRole.AcceptRole)
-        opening.setObjectName("fleet_open_road_confirm")
-        box.addButton(QMessageBox.StandardButton.Cancel)
-        opening.clicked.connect(lambda: self._desk.open_road(closure.closure))
         box.open()

@@ -24,6 +24,7 @@ from ...errors import FleetError
 from ...language import tr
 from ..desk import Desk
 from ..placement_book import MOST_ASKED
+from ..safe_question import safe_question
 from .as_placed_page import AsPlacedPage
 from .collecting import Collecting
 from .draft_plan import DraftPlan
@@ -93,13 +94,11 @@ class PlanDock(QgsDockWidget):
         if draft is None:
             return
         text = before_sending(self._desk, draft)
-        box = QMessageBox(QMessageBox.Icon.Question, tr("Send the cone plan"), text, parent=self)
-        box.setObjectName("fleet_plan_question")
-        send = box.addButton(tr("Send"), QMessageBox.ButtonRole.AcceptRole)
-        send.setObjectName("fleet_plan_question_send")
-        box.addButton(tr("Do not send"), QMessageBox.ButtonRole.RejectRole)
-        box.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        box.buttonClicked.connect(lambda button: button is send and self._try(self.driven.send))
+        send = "fleet_plan_question_send", tr("Send")
+        box = safe_question(
+            self, "fleet_plan_question", text, send, tr("Do not send"), lambda: self._try(self.driven.send)
+        )
+        box.setWindowTitle(tr("Send the cone plan"))
         self.question = box
         box.open()
 
