@@ -52,17 +52,31 @@ class Planner:
         self.operator.wait(f"{name} being usable", lambda: button.isEnabled() and button.isVisible(), 20)
         QTest.mouseClick(button, Qt.MouseButton.LeftButton)
 
+    def add_points(self, name, fields, rows):
+        """Add a layer of points: rows are x and y in the site frame, and the values of ``fields``."""
+        e, n = self.operator.desk.site.origin
+        layer = QgsVectorLayer(f"Point?crs=EPSG:32633{fields}", name, "memory")
+        features = []
+        for x, y, *values in rows:
+            feature = QgsFeature(layer.fields())
+            feature.setAttributes(values)
+            feature.setGeometry(QgsGeometry.fromPointXY(QgsPointXY(e + x, n + y)))
+            features.append(feature)
+        layer.dataProvider().addFeatures(features)
+        QgsProject.instance().addMapLayer(layer)
+        return layer
+
     def add_store(self, x, y):
         """Add a layer with a store at a place of the site."""
-        e, n = self.operator.desk.site.origin
-        layer = QgsVectorLayer("Point?crs=EPSG:32633&field=id:string", "Stores", "memory")
-        feature = QgsFeature(layer.fields())
-        feature.setAttribute("id", "depot")
-        feature.setGeometry(QgsGeometry.fromPointXY(QgsPointXY(e + x, n + y)))
-        layer.dataProvider().addFeatures([feature])
-        QgsProject.instance().addMapLayer(layer)
+        layer = self.add_points("Stores", "&field=id:string", [(x, y, "depot")])
         stores = self.dock.form.stores
         stores.setCurrentIndex(stores.findData(layer.id()))
+
+    def add_cones(self, rows):
+        """Add a layer of cones with their stages, and choose it."""
+        layer = self.add_points("Cones", "&field=id:string&field=stage:integer", rows)
+        cones = self.dock.form.cones
+        cones.setCurrentIndex(cones.findData(layer.id()))
 
     def solve(self, seconds):
         self.dock.form.seconds.setValue(seconds)
@@ -232,3 +246,34 @@ def test_a_lost_robots_cones_are_taken_over_without_a_question_when_that_is_swit
     planner.send()
     operator.wait("all of it being collected", lambda: len(planner.done) == len(cones), 240)
     assert all(one.collected_at is not None for one in operator.desk.placements)
+
+
+def begun_and_placed(database):
+    """Return what the gateway wrote of each cone: its robot, and when it was begun and placed."""
+    with sqlite3.connect(database) as connection:
+        rows = connection.execute(
+            "select placed.cone, placed.robot, task.began_at, placed.placed_at "
+            "from placements placed join queue_tasks task on task.id = placed.task"
+        ).fetchall()
+    return {cone: row for cone, *row in rows}
+
+
+def test_no_cone_of_a_stage_is_begun_before_all_of_the_stage_before_are_placed(
+    loop, operator, planner, tmp_path
+):
+    starts = {"r1": (24.0, 2.0, 0.0), "r2": (62.0, 2.0, 0.0)}
+    for name, pose in starts.items():
+        loop.start_robot(name, pose, speed=4.0)
+    operator.connect_to(loop, list(starts))
+    # The robot that is soon done with the first stage has the second one beside it.
+    planner.add_cones([(42, 6, "long way", 1), (60, 6, "short way", 1), (65, 6, "next", 2)])
+    planner.set_robots(carries=3, aboard=3, speed=4.0, count=2)
+    planner.solve(1.0)
+    planner.send()
+    operator.wait("every cone being placed", lambda: len(planner.done) == 3, 60)
+
+    written = begun_and_placed(tmp_path / "fleet.db")
+    long_way, short_way, following = (written[cone] for cone in ("long way", "short way", "next"))
+    assert [long_way[0], short_way[0], following[0]] == ["r1", "r2", "r2"]
+    assert short_way[2] < long_way[2], "the second stage had to wait for the other robot"
+    assert following[1] >= long_way[2]
