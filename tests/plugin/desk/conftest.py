@@ -33,6 +33,8 @@ from websockets.asyncio.server import serve
 from websockets.exceptions import ConnectionClosed
 
 ORIGIN = (488000.0, 5190000.0)
+BAR_SIZE = (600, 40)
+"""Pixels: the bar lies in no layout, and an item of QGIS 3.44 takes no more room than its bar has."""
 
 
 @pytest.fixture
@@ -232,6 +234,7 @@ class Window(QMainWindow):
         self.canvas.setDestinationCrs(QgsCoordinateReferenceSystem("EPSG:32633"))
         self.setCentralWidget(self.canvas)
         self.bar = QgsMessageBar(self.canvas)
+        self.bar.resize(*BAR_SIZE)
         self.plugins = self.menuBar().addMenu("Plugins")
         self.plugin_help = self.menuBar().addMenu("Help").addMenu("Plugins")
         self.locator = QgsLocator(self)
