@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import ClassVar
 
-from .checks import MessageError
+from .checks import check_expires_in
 from .roles import Role
 
 LONGEST_VALIDITY = 3660 * 86400.0
@@ -39,7 +39,7 @@ class AddOperator:
     expires_in: float | None = None
 
     def __post_init__(self) -> None:
-        _check_validity(self.expires_in)
+        check_expires_in(self.expires_in, LONGEST_VALIDITY)
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ class RotateToken:
     expires_in: float | None = None
 
     def __post_init__(self) -> None:
-        _check_validity(self.expires_in)
+        check_expires_in(self.expires_in, LONGEST_VALIDITY)
 
 
 @dataclass(frozen=True)
@@ -99,10 +99,3 @@ class Operators:
     """Every operator's account, by name."""
 
     operators: list[OperatorReport]
-
-
-def _check_validity(seconds: float | None) -> None:
-    if seconds is not None and not 0 < seconds <= LONGEST_VALIDITY:
-        raise MessageError(
-            f"expires_in is {seconds}; give seconds, above 0 and up to {LONGEST_VALIDITY:g}, or leave it out"
-        )

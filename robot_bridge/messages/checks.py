@@ -65,3 +65,11 @@ def check_command_id(command: str) -> None:
     """Refuse an id that cannot tell one command from every other; raises MessageError."""
     if not (8 <= len(command) <= 64 and command.isprintable()):
         raise MessageError(f"command is {command!r}; give an id of 8 to 64 characters, say a UUID")
+
+
+def check_expires_in(seconds: float | None, longest: float) -> None:
+    """Refuse what is no time until something expires; None is never. Raises MessageError."""
+    if seconds is not None and not 0 < seconds <= longest:
+        raise MessageError(
+            f"expires_in is {seconds}; give seconds, above 0 and up to {longest:g}, or leave it out"
+        )

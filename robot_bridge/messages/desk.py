@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import Any, ClassVar
+from typing import Any, ClassVar, get_args
 
 from .accounts import AddOperator, GetOperators, RevokeToken, RotateToken, SetRole
-from .checks import MessageError, check_command_id, check_finite, check_robot_name
+from .checks import MessageError, check_command_id, check_expires_in, check_finite, check_robot_name
 from .observations import GetImage, GetObservations, ReviewObservation
 from .placements import CollectLayout, GetPlacements
 from .position_columns import PositionForm
@@ -202,10 +202,7 @@ class Send:
         check_command_id(self.command)
         check_reason(self.reason)
         check_override(self.override)
-        if self.expires_in is not None and not 0 < self.expires_in <= LONGEST_EXPIRY:
-            raise MessageError(
-                f"expires_in is {self.expires_in}; give seconds, above 0 and up to {LONGEST_EXPIRY:g}"
-            )
+        check_expires_in(self.expires_in, LONGEST_EXPIRY)
 
 
 @dataclass(frozen=True)
@@ -295,51 +292,4 @@ DeskRequest = (
     | ResolveConflict
 )
 
-DESK_REQUESTS: dict[str, type[DeskRequest]] = {
-    cls.method: cls
-    for cls in (
-        Hello,
-        Subscribe,
-        GetPositions,
-        SetPositions,
-        Send,
-        SendMap,
-        AbortAll,
-        AbortTask,
-        EmergencyStop,
-        ClearEmergencyStop,
-        GetCommands,
-        GetObservations,
-        GetImage,
-        ReviewObservation,
-        GetSessions,
-        EndSession,
-        GetAudit,
-        GetOperators,
-        AddOperator,
-        RotateToken,
-        RevokeToken,
-        SetRole,
-        GetSites,
-        ChooseSite,
-        GetTrajectory,
-        GetSurfaces,
-        SetQueue,
-        AddTasks,
-        MoveTask,
-        RemoveTask,
-        MakeCurrent,
-        PauseQueue,
-        ResumeQueue,
-        GetQueue,
-        TakeOver,
-        GetPlacements,
-        CollectLayout,
-        GetRoute,
-        CloseRoad,
-        OpenRoad,
-        GetClosures,
-        GetConflicts,
-        ResolveConflict,
-    )
-}
+DESK_REQUESTS: dict[str, type[DeskRequest]] = {cls.method: cls for cls in get_args(DeskRequest)}
