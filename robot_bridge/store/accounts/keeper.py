@@ -5,7 +5,7 @@ from __future__ import annotations
 import abc
 from collections.abc import Iterable
 
-from sqlalchemy import Connection
+from sqlalchemy import Connection, text
 
 from ...errors import BridgeError
 from ...messages import check_robot_name
@@ -22,6 +22,15 @@ MOST_CONNECTIONS = 8
 """Connections of one robot."""
 STATEMENT_SECONDS = 10
 """How long a robot's statement or idle transaction may take, unless it sets that otherwise."""
+LIMITS = {
+    "params": LARGEST_PARAMS,
+    "payload": LARGEST_PAYLOAD,
+    "waiting": MOST_WAITING,
+    "payloads": MOST_PAYLOADS,
+}
+"""The limits that the tables themselves and their triggers keep, as the statements name them."""
+
+_LONGEST_DATABASE = 40
 
 
 class AccountError(BridgeError):
@@ -103,6 +112,20 @@ class AccountKeeper(abc.ABC):
 
     def _check_name(self, name: str) -> None:
         check_robot_name(name)
+
+    def _check_database(self, name: str) -> None:
+        if len(name) > _LONGEST_DATABASE:
+            raise AccountError(
+                f"database name {name!r} is longer than {_LONGEST_DATABASE} characters, and accounts are "
+                "named after it; rename the database"
+            )
+
+    def _delete_messages(self, robot: str, schema: str) -> None:
+        """Delete what waits in RR and SA, which are in ``schema`` (quoted)."""
+        for table in ("rr", "sa"):
+            self._connection.execute(
+                text(f"delete from {schema}.{table} where robot = :robot"), {"robot": robot}
+            )
 
     def _refuse_taken(self, name: str) -> None:
         if name in self.robots():

@@ -18,19 +18,9 @@ import hashlib
 
 from sqlalchemy import text
 
-from .keeper import (
-    LARGEST_PARAMS,
-    LARGEST_PAYLOAD,
-    MOST_CONNECTIONS,
-    MOST_PAYLOADS,
-    MOST_WAITING,
-    STATEMENT_SECONDS,
-    AccountError,
-    AccountKeeper,
-)
+from .keeper import LIMITS, MOST_CONNECTIONS, STATEMENT_SECONDS, AccountError, AccountKeeper
 
 _VERSION = "robots' side of the fleet, version 3"
-_LONGEST_DATABASE = 40
 _SERVER_OWN = (
     "root",
     "mysql",
@@ -68,11 +58,7 @@ class MariaDbAccounts(AccountKeeper):
     def prepare(self) -> None:
         if self._prepared() == [_VERSION]:
             return
-        if len(self._database()) > _LONGEST_DATABASE:
-            raise AccountError(
-                f"database name {self._database()!r} is longer than {_LONGEST_DATABASE} characters, and "
-                "accounts are named after it; rename the database"
-            )
+        self._check_database(self._database())
         # What is defined is committed at once here: done again after a failure it must go through.
         self._all(
             _COMMON.format(
@@ -82,12 +68,9 @@ class MariaDbAccounts(AccountKeeper):
                 keeper=f"{self._text(self._keeper())}@'localhost'",
                 me="substring_index(user(), '@', 1)",
                 version=_VERSION.replace("'", "''"),
-                params=LARGEST_PARAMS,
-                payload=LARGEST_PAYLOAD,
-                waiting=MOST_WAITING,
-                waiting_before=MOST_WAITING - 1,
-                payloads=MOST_PAYLOADS,
-                payloads_before=MOST_PAYLOADS - 1,
+                before_waiting=LIMITS["waiting"] - 1,
+                before_payloads=LIMITS["payloads"] - 1,
+                **LIMITS,
             ).split("\n\n")
         )
 
@@ -132,9 +115,7 @@ class MariaDbAccounts(AccountKeeper):
     def _drop_robot(self, name: str) -> None:
         self._do(f"alter user {self._account(name)} account lock")
         self._end_connections(name)
-        base = self._quoted(self._database())
-        for table in ("rr", "sa"):
-            self._connection.execute(text(f"delete from {base}.{table} where robot = :name"), {"name": name})
+        self._delete_messages(name, self._quoted(self._database()))
         self._do(f"drop user {self._account(name)}")
 
     def _set_password(self, name: str, password: str) -> None:
@@ -213,14 +194,14 @@ begin
     end if;
     set new.robot = {me};
     if exists (
-        select 1 from {base}.rr force index (ix_rr_robot) where robot = {me} limit {waiting_before}, 1
+        select 1 from {base}.rr force index (ix_rr_robot) where robot = {me} limit {before_waiting}, 1
     ) then
         signal sqlstate '45000' set
             message_text = '{waiting} requests wait already; write again when the gateway has read some';
     end if;
     if new.payload is not null and exists (
         select 1 from {base}.rr force index (ix_rr_robot) where robot = {me} and payload is not null
-        limit {payloads_before}, 1
+        limit {before_payloads}, 1
     ) then
         signal sqlstate '45000' set
             message_text = '{payloads} images wait already; write again when the gateway has read some';

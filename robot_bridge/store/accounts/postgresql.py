@@ -11,19 +11,9 @@ from typing import Any
 
 from sqlalchemy import text
 
-from .keeper import (
-    LARGEST_PARAMS,
-    LARGEST_PAYLOAD,
-    MOST_CONNECTIONS,
-    MOST_PAYLOADS,
-    MOST_WAITING,
-    STATEMENT_SECONDS,
-    AccountError,
-    AccountKeeper,
-)
+from .keeper import LIMITS, MOST_CONNECTIONS, STATEMENT_SECONDS, AccountError, AccountKeeper
 
 _VERSION = "robots' side of the fleet, version 1"
-_LONGEST_DATABASE = 40
 _SERVER_OWN = ("postgres", "public", "none")
 
 # What anybody may call in any database, and what it would let a robot do to the others.
@@ -58,22 +48,15 @@ class PostgreSqlAccounts(AccountKeeper):
         if found == [_VERSION]:
             return
         database = self.robots_database()
-        if len(database) > _LONGEST_DATABASE:
-            raise AccountError(
-                f"database name {database!r} is longer than {_LONGEST_DATABASE} characters, and accounts are "
-                "named after it; rename the database"
-            )
+        self._check_database(database)
         self._all(
             _COMMON.format(
                 database=self._quoted(database),
                 reader=self._quoted(f"{database}_sa_reader"),
                 owner=self._quoted(self._owner()),
                 version=_VERSION.replace("'", "''"),
-                params=LARGEST_PARAMS,
-                payload=LARGEST_PAYLOAD,
-                waiting=MOST_WAITING,
-                payloads=MOST_PAYLOADS,
                 robots=_ROBOTS,
+                **LIMITS,
             ).split("\n\n")
         )
         if self._is_superuser():
@@ -118,8 +101,7 @@ class PostgreSqlAccounts(AccountKeeper):
         role, database = self._quoted(name), self._quoted(self.robots_database())
         self._do(f"alter role {role} nologin")
         self._end_connections(name)
-        for table in ("rr", "sa"):
-            self._connection.execute(text(f"delete from public.{table} where robot = :name"), {"name": name})
+        self._delete_messages(name, "public")
         self._all(
             [
                 f"revoke all on for_robots.sa from {role}",
