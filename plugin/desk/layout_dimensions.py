@@ -17,8 +17,9 @@ from qgis.PyQt.QtWidgets import (
     QWidget,
 )
 
-from ...robot_bridge.layouts.layout import Dimension, Layout
+from ...robot_bridge.layouts.layout import Dimension, Fault, Layout
 from ..language import tr
+from ..layout_words import TITLES, dimension_in_words, fault_in_words, standard_in_words
 from .colours import WRONG_STYLE
 
 GROUP = "fleet_supervisor/layouts"
@@ -77,8 +78,8 @@ class LayoutDimensions(QDialog):
     def show_layout(self, layout: Layout, heading: float) -> None:
         """Show the dimensions of ``layout`` for the operator to change."""
         self._kind = type(layout)
-        self.setWindowTitle(layout.TITLE)
-        self.standard.setText(tr("After: {standard}", standard=layout.STANDARD))
+        self.setWindowTitle(TITLES[layout.NAME])
+        self.standard.setText(tr("After: {standard}", standard=standard_in_words(self._kind)))
         form = QFormLayout()
         form.setRowWrapPolicy(QFormLayout.RowWrapPolicy.DontWrapRows)
         form.setFieldGrowthPolicy(QFormLayout.FieldGrowthPolicy.FieldsStayAtSizeHint)
@@ -86,7 +87,7 @@ class LayoutDimensions(QDialog):
         form.addRow(tr("Heading"), self.heading)
         self._fields = {one.name: self._field(one) for one in layout.dimensions()}
         for one in layout.dimensions():
-            label = QLabel(one.text)
+            label = QLabel(dimension_in_words(self._kind, one))
             label.setWordWrap(True)
             label.setMinimumWidth(200)
             label.setBuddy(self._fields[one.name])
@@ -153,22 +154,22 @@ class LayoutDimensions(QDialog):
         values = {name: _value(field) for name, field in self._fields.items()}
         wrong = []
         for one in self._kind.dimensions():
-            problem = one.problem(values[one.name])
-            self._mark(one, values[one.name], problem)
-            if problem:
-                wrong.append(f"{one.text}: {problem}.")
+            fault = one.fault(values[one.name])
+            self._mark(one, values[one.name], fault)
+            if fault is not None:
+                wrong.append(f"{dimension_in_words(self._kind, one)}: {fault_in_words(one, fault)}.")
         self.problem.setText("\n".join(wrong))
         self.problem.setVisible(bool(wrong))
         if not wrong:
             remember(self._kind, values)
             self.changed.emit(self._kind.of(values))
 
-    def _mark(self, one: Dimension, value: float, problem: str) -> None:
+    def _mark(self, one: Dimension, value: float, fault: Fault | None) -> None:
         """Show what is wrong, and what is not as the standard has it."""
         font = self._fields[one.name].font()
         font.setBold(value != one.standard)
         self._fields[one.name].setFont(font)
-        self._fields[one.name].setStyleSheet(WRONG_STYLE if problem else "")
+        self._fields[one.name].setStyleSheet(WRONG_STYLE if fault is not None else "")
 
 
 def remembered(kind: type[Layout]) -> Layout:
@@ -180,7 +181,7 @@ def remembered(kind: type[Layout]) -> Layout:
             number = float(value)
         except (TypeError, ValueError):
             continue
-        if not one.problem(number):
+        if one.fault(number) is None:
             values[one.name] = number
     return kind.of(values)
 

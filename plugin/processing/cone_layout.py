@@ -23,6 +23,7 @@ from ...robot_bridge.layouts.catalogue import LAYOUTS
 from ...robot_bridge.layouts.cone import Cone
 from ...robot_bridge.layouts.placing import along, placed
 from ..language import tr, tr_page
+from ..layout_words import TITLES, dimension_in_words, standard_in_words
 from ..sites.parts import parts_of
 from .cone_ground import ground_parameters
 from .cone_layer import STYLES, ConeSetup, add_layers, site_crs_parameter, theta_of
@@ -111,10 +112,10 @@ class ConeLayout(FleetAlgorithm):
         with shown_by_processing():
             kind = LAYOUTS[self.parameterAsEnumString(parameters, LAYOUT, context)]
             layout = kind.of(dimensions_in(self.parameterAsString(parameters, DIMENSIONS, context)))
-            feedback.pushInfo(f"{kind.TITLE} ({kind.STANDARD})")
+            feedback.pushInfo(f"{TITLES[kind.NAME]} ({standard_in_words(kind)})")
             for one in kind.dimensions():
                 value = f"{one.name}={getattr(layout, one.name):g} {one.unit}".rstrip()
-                feedback.pushInfo(f"  {value}: {one.text}")
+                feedback.pushInfo(f"  {value}: {dimension_in_words(kind, one)}")
             cones = layout.cones(self.parameterAsString(parameters, PREFIX, context).strip())
             placed_cones = self._placed(cones, parameters, context)
             return self._setup.write(self, parameters, context, placed_cones, kind.NAME, feedback)

@@ -64,6 +64,299 @@
             <translation>el ca.pem del recinte; buit per a autoritats públiques</translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/accounts/account_model.py" />
+            <source>Last connected</source>
+            <translation>Última connexió</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/account_model.py" />
+            <source>Operator</source>
+            <translation>Operador</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/account_model.py" />
+            <source>Role</source>
+            <translation>Paper</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/account_model.py" />
+            <source>Since</source>
+            <translation>Des de</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/account_model.py" />
+            <source>Token</source>
+            <translation>Testimoni</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/account_model.py" />
+            <source>connected now</source>
+            <translation>connectat ara</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/account_model.py" />
+            <source>expired {time}</source>
+            <translation>caducat: {time}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/account_model.py" />
+            <source>holds</source>
+            <translation>vàlid</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/account_model.py" />
+            <source>holds until {time}</source>
+            <translation>vàlid fins a {time}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/account_model.py" />
+            <source>none</source>
+            <translation>cap</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/account_model.py" />
+            <source>revoked {time}</source>
+            <translation>revocat: {time}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/account_model.py" />
+            <source>{operator} (you)</source>
+            <translation>{operator} (vós)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/accounts_action.py" />
+            <source>Accounts…</source>
+            <translation>Comptes…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/accounts_action.py" />
+            <source>Who may connect to the gateway and do what; takes a supervisor</source>
+            <translation>Qui es pot connectar a la passarel·la i què pot fer; cal un supervisor</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/desk/accounts/accounts_dialog.py" />
+            <source>%n accounts</source>
+            <translation>
+                <numerusform>%n compte</numerusform>
+                <numerusform>%n comptes</numerusform>
+            </translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/accounts_dialog.py" />
+            <source>&amp;Add…</source>
+            <translation>&amp;Afegeix…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/accounts_dialog.py" />
+            <source>Accounts</source>
+            <translation>Comptes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/accounts_dialog.py" />
+            <source>Change &amp;role…</source>
+            <translation>Canvia el &amp;rol…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/accounts_dialog.py" />
+            <source>New &amp;token…</source>
+            <translation>&amp;Testimoni nou…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/accounts_dialog.py" />
+            <source>New account {operator}</source>
+            <translation>Compte nou: {operator}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/accounts_dialog.py" />
+            <source>New token for {operator}</source>
+            <translation>Testimoni nou per a {operator}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/accounts_dialog.py" />
+            <source>Re&amp;fresh</source>
+            <translation>Act&amp;ualitza</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/accounts_dialog.py" />
+            <source>Re&amp;voke…</source>
+            <translation>Re&amp;voca…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/accounts_dialog.py" />
+            <source>Revoke {operator}</source>
+            <translation>Revocació de {operator}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/accounts_dialog.py" />
+            <source>Role of {operator}</source>
+            <translation>Rol de {operator}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/accounts_dialog.py" />
+            <source>The token of {operator} is made.</source>
+            <translation>S'ha fet el testimoni de {operator}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/accounts_dialog.py" />
+            <source>The token of {operator} is revoked.</source>
+            <translation>S'ha revocat el testimoni de {operator}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/accounts_dialog.py" />
+            <source>This gateway has no accounts: everybody on its computer may do everything. The first account, a supervisor's, ends that.</source>
+            <translation>Aquesta passarel·la no té comptes: tothom al seu ordinador ho pot fer tot. El primer compte, d'un supervisor, hi posa fi.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/accounts_dialog.py" />
+            <source>{operator} is {role} now.</source>
+            <translation>Ara el rol de {operator} és {role}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>&amp;Name</source>
+            <translation>&amp;Nom</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>&amp;Role</source>
+            <translation>&amp;Rol</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>&amp;Token holds</source>
+            <translation>El &amp;testimoni val</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>Cancel</source>
+            <translation>Cancel·la</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>Change role</source>
+            <translation>Canvia el rol</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>Make account</source>
+            <translation>Fes el compte</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>Make token</source>
+            <translation>Fes el testimoni</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>New account</source>
+            <translation>Compte nou</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>Revoke</source>
+            <translation>Revoca</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>Revoke the token of {operator}?</source>
+            <translation>Revocar el testimoni de {operator}?</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>The gateway makes a token for the account. It is shown once, to be handed over.</source>
+            <translation>La passarel·la fa un testimoni per al compte. Es mostra un sol cop, per lliurar-lo.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>The token of {operator} ends at once, with every connection that it opened. The account stays, and a new token can be made for it. Robots go on with what they were told.</source>
+            <translation>El testimoni de {operator} s'acaba de seguida, amb totes les connexions que ha obert. El compte es queda, i se li pot fer un testimoni nou. Els robots continuen amb el que se'ls ha dit.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>This gateway has no accounts yet: everybody on its computer may do everything. The first account ends that for good, and this connection too: connect again with its token. It has to be a supervisor's.</source>
+            <translation>Aquesta passarel·la encara no té comptes: tothom al seu ordinador ho pot fer tot. El primer compte hi posa fi per sempre, i també a aquesta connexió: torneu-vos a connectar amb el seu testimoni. Ha de ser d'un supervisor.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>This is your own account: this desk is cut off and does not come back by itself.</source>
+            <translation>Aquest és el vostre compte: aquesta consola queda desconnectada i no torna tota sola.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>This is your own account: this desk is cut off until you enter the new token.</source>
+            <translation>Aquest és el vostre compte: aquesta consola queda desconnectada fins que introduïu el testimoni nou.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>This is your own account: without being a supervisor you cannot undo it.</source>
+            <translation>Aquest és el vostre compte: sense ser supervisor no ho podreu desfer.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>for 1 day</source>
+            <translation>durant 1 dia</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>for 1 year</source>
+            <translation>durant 1 any</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>for 30 days</source>
+            <translation>durant 30 dies</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>for 7 days</source>
+            <translation>durant 7 dies</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>for 90 days</source>
+            <translation>durant 90 dies</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>until it is revoked</source>
+            <translation>fins que es revoqui</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>{operator} gets a new token. The one before ends at once, with every connection that it opened.</source>
+            <translation>{operator} rep un testimoni nou. L'anterior s'acaba de seguida, amb totes les connexions que ha obert.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>{operator} is {role}. Another role holds from the next thing on that is asked for, also over connections that are open.</source>
+            <translation>El rol de {operator} és {role}. Un altre rol val a partir de la petició següent, també en connexions obertes.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/token_dialog.py" />
+            <source>&amp;Copy</source>
+            <translation>&amp;Copia</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/token_dialog.py" />
+            <source>Copied. It stays in the clipboard until something else is copied.</source>
+            <translation>Copiat. Es queda al porta-retalls fins que es copiï una altra cosa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/token_dialog.py" />
+            <source>This desk was connected with what the token takes the place of, and is cut off. Enter the token in the Fleet panel under Access, then press Connect.</source>
+            <translation>Aquesta consola estava connectada amb allò que el testimoni reemplaça, i queda desconnectada. Introduïu el testimoni al tauler de la flota, a Accés, i premeu Connecta.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/token_dialog.py" />
+            <source>Token of {operator}</source>
+            <translation>Testimoni de {operator}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/token_dialog.py" />
+            <source>{operator}, {role}: the token {until}. It is shown now and never again, and kept nowhere: hand it over on a way that others do not read. If it gets lost, make a new one.</source>
+            <translation>{operator}, {role}: testimoni {until}. Es mostra ara i mai més, i no es desa enlloc: lliureu-lo per una via que altres no llegeixin. Si es perd, feu-ne un de nou.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/actions.py" />
             <source>ABORT ALL</source>
             <translation>AVORTA-HO TOT</translation>
@@ -77,11 +370,6 @@
             <location filename="../../plugin/desk/actions.py" />
             <source>Add to queue</source>
             <translation>Afegeix a la cua</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/actions.py" />
-            <source>Cancel</source>
-            <translation>Cancel·la</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/actions.py" />
@@ -333,11 +621,6 @@
         </message>
         <message>
             <location filename="../../plugin/desk/alarms/alarm_model.py" />
-            <source>Since</source>
-            <translation>Des de</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/alarms/alarm_model.py" />
             <source>State</source>
             <translation>Estat</translation>
         </message>
@@ -457,6 +740,11 @@
             <translation>{count} línies escrites a {path}</translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/alarms/message_log.py" />
+            <source>and {number} more alarms: see the log of alarms in the Fleet panel</source>
+            <translation>i {number} alarmes més: vegeu el registre d'alarmes al tauler de la flota</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/alarms/road_ground.py" />
             <source>layers of road surfaces cannot be read: {why}</source>
             <translation>les capes de superfícies de via no es poden llegir: {why}</translation>
@@ -540,11 +828,6 @@
             <location filename="../../plugin/desk/alarms/watch.py" />
             <source>Switched off: {kinds}.</source>
             <translation>Desactivades: {kinds}.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/alarms/watch.py" />
-            <source>and {number} more alarms: see the log of alarms in the Fleet panel</source>
-            <translation>i {number} alarmes més: vegeu el registre d'alarmes al tauler de la flota</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/alarms/watch.py" />
@@ -695,11 +978,6 @@
             <location filename="../../plugin/desk/closure_dialog.py" />
             <source>The road is closed for every robot from this junction to the next. Robots whose way leads along it get another way; one that has no other way is stopped, unless the site's settings say otherwise.</source>
             <translation>La via es tanca a tots els robots des d'aquesta cruïlla fins a la següent. Els que hi havien de passar reben un altre recorregut; el que no en té cap altre s'atura, si la configuració del recinte no diu una altra cosa.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/closure_dialog.py" />
-            <source>for 1 day</source>
-            <translation>durant 1 dia</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/closure_dialog.py" />
@@ -1539,6 +1817,11 @@
             <location filename="../../plugin/desk/emergency_banner.py" />
             <source>{acknowledged} of {robots} robots acknowledged, {standing} seen to stand</source>
             <translation>{acknowledged} de {robots} robots ho han confirmat, {standing} es veuen aturats</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/inquiries.py" />
+            <source>{words}: the gateway's answer cannot be read ({kind}). Update the gateway or the plugin, whichever is older.</source>
+            <translation>{words}: la resposta de la passarel·la no es pot llegir ({kind}). Actualitzeu la passarel·la o el connector, el que sigui més antic.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/layout_action.py" />
@@ -2524,6 +2807,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/plan_ways.py" />
+            <source>The assignment was cancelled.</source>
+            <translation>S'ha cancel·lat l'assignació.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_ways.py" />
             <source>{name}, straight within {nearby:g} m</source>
             <translation>{name}, recte dins de {nearby:g} m</translation>
         </message>
@@ -3317,11 +3605,6 @@
         </message>
         <message>
             <location filename="../../plugin/desk/robots/detail_rows.py" />
-            <source>none</source>
-            <translation>cap</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/robots/detail_rows.py" />
             <source>{state}, last heard {age:.1f} s ago over {link}</source>
             <translation>{state}, últim missatge fa {age:.1f} s per {link}</translation>
         </message>
@@ -3486,6 +3769,21 @@
             <translation>cap lloc així</translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/role_words.py" />
+            <source>operator</source>
+            <translation>operador</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/role_words.py" />
+            <source>supervisor</source>
+            <translation>supervisor</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/role_words.py" />
+            <source>viewer</source>
+            <translation>observador</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/route_preview.py" />
             <source>corners tighter than the robot turns: {tight}</source>
             <translation>cantonades més tancades que el gir del robot: {tight}</translation>
@@ -3529,6 +3827,94 @@
             <location filename="../../plugin/desk/route_tool.py" />
             <source>This is the first vertex: another is put before one that comes later.</source>
             <translation>Aquest és el primer vèrtex: se'n posa un altre davant d'un que ve després.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/site_choice/site_choice_action.py" />
+            <source>Site…</source>
+            <translation>Recinte…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/site_choice/site_choice_action.py" />
+            <source>Which of the published sites the gateway serves; takes a supervisor</source>
+            <translation>Quin dels recintes publicats serveix la passarel·la; cal un supervisor</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/desk/site_choice/site_choice_dialog.py" />
+            <source>%n sites</source>
+            <translation>
+                <numerusform>%n recinte</numerusform>
+                <numerusform>%n recintes</numerusform>
+            </translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/site_choice/site_choice_dialog.py" />
+            <source>&amp;Serve this site…</source>
+            <translation>&amp;Serveix aquest recinte…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/site_choice/site_choice_dialog.py" />
+            <source>Serve {site}</source>
+            <translation>Servir {site}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/site_choice/site_choice_dialog.py" />
+            <source>Sites</source>
+            <translation>Recintes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/site_choice/site_choice_dialog.py" />
+            <source>Which site is served</source>
+            <translation>Quin recinte se serveix</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/site_choice/site_choice_dialog.py" />
+            <source>{site} is served now.</source>
+            <translation>Ara se serveix {site}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/site_choice/site_model.py" />
+            <source>Folder</source>
+            <translation>Carpeta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/site_choice/site_model.py" />
+            <source>Site</source>
+            <translation>Recinte</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/site_choice/site_model.py" />
+            <source>Version</source>
+            <translation>Versió</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/site_choice/site_model.py" />
+            <source>can be chosen</source>
+            <translation>es pot triar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/site_choice/site_model.py" />
+            <source>served now</source>
+            <translation>se serveix ara</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/site_choice/site_question.py" />
+            <source>Every robot is sent the map of {site} ({folder}), every desk shows it, and it is served until another one is chosen, also by a gateway that is started anew.</source>
+            <translation>Cada robot rep el mapa de {site} ({folder}), cada consola el mostra, i se serveix fins que se'n triï un altre, també si la passarel·la es torna a engegar.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/site_choice/site_question.py" />
+            <source>No robot is stopped: commands and queues go on in the same metres, whatever roads and keepouts the new site has there. Stop robots first where that matters.</source>
+            <translation>Cap robot no s'atura: les ordres i les cues continuen en els mateixos metres, siguin quines siguin les vies i zones prohibides que el recinte nou hi té. Atureu abans els robots on això importi.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/site_choice/site_question.py" />
+            <source>Serve this site</source>
+            <translation>Serveix aquest recinte</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/site_choice/site_question.py" />
+            <source>Serve {site}?</source>
+            <translation>Servir {site}?</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/site_drop.py" />
@@ -3609,6 +3995,21 @@
             <location filename="../../plugin/desk/state_words.py" />
             <source>waiting</source>
             <translation>en espera</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/supervisor_dialog.py" />
+            <source>Asking the gateway …</source>
+            <translation>S'està preguntant a la passarel·la …</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/supervisor_dialog.py" />
+            <source>This gateway says nothing of roles: it is older than accounts. Update it.</source>
+            <translation>Aquesta passarel·la no diu res de rols: és anterior als comptes. Actualitzeu-la.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/supervisor_dialog.py" />
+            <source>This takes a supervisor, and {operator} is {role} here. If that was changed meanwhile, disconnect and connect again.</source>
+            <translation>Per a això cal un supervisor, i aquí el rol de {operator} és {role}. Si mentrestant s'ha canviat, desconnecteu-vos i torneu-vos a connectar.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/surface_action.py" />
@@ -3930,6 +4331,371 @@
             <translation>Fleet Supervisor: ajuda</translation>
         </message>
         <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Across the base of a cone; the cones touch the track's limits</source>
+            <translation>Amplada de la base d'un con; els cons toquen els límits de la pista</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Braking lane</source>
+            <translation>Carril de frenada</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Clear width of the corridor</source>
+            <translation>Amplada lliure del corredor</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Clear width of the gates</source>
+            <translation>Amplada lliure de les portes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Clear width of the lane</source>
+            <translation>Amplada lliure del carril</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Clear width of the track</source>
+            <translation>Amplada lliure de la pista</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Clear width of the ways in and out</source>
+            <translation>Amplada lliure dels camins d'entrada i sortida</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Cones inside each inner circle</source>
+            <translation>Cons dins de cada cercle interior</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Cones on each side of each lane</source>
+            <translation>Cons a cada costat de cada carril</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Cones outside each outer circle</source>
+            <translation>Cons fora de cada cercle exterior</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Cones that close the end of the lane</source>
+            <translation>Cons que tanquen el final del carril</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Cones that close the way out</source>
+            <translation>Cons que tanquen el camí de sortida</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Cones to go round</source>
+            <translation>Cons que cal envoltar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Constant-radius circle</source>
+            <translation>Cercle de radi constant</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Corridor</source>
+            <translation>Corredor</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Diameter of the inner circles</source>
+            <translation>Diàmetre dels cercles interiors</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Diameter of the outer circles</source>
+            <translation>Diàmetre dels cercles exteriors</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Double lane change</source>
+            <translation>Doble canvi de carril</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Formula Student Rules, D 4.1</source>
+            <translation>Reglament de Formula Student, D 4.1</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Formula Student Rules, D 5.1</source>
+            <translation>Reglament de Formula Student, D 5.1</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Formula Student acceleration</source>
+            <translation>Acceleració de Formula Student</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Formula Student skid pad</source>
+            <translation>Skid pad de Formula Student</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>From a gate to the nearest cone</source>
+            <translation>D'una porta al con més proper</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>From a line to the big cones before and behind it</source>
+            <translation>D'una línia als cons grans d'abans i després</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>From centre to centre of the circles</source>
+            <translation>De centre a centre dels cercles</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>From cone to cone</source>
+            <translation>De con a con</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>From cone to cone along the lane</source>
+            <translation>De con a con al llarg del carril</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>From cone to cone along the middle of the lane</source>
+            <translation>De con a con al llarg del mig del carril</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>From cone to cone along the track</source>
+            <translation>De con a con al llarg de la pista</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>From cone to cone along the ways in and out</source>
+            <translation>De con a con al llarg dels camins d'entrada i sortida</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>From pair to pair</source>
+            <translation>De parella a parella</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>From the left limit of the entry lane to the right one of the side lane</source>
+            <translation>Del límit esquerre del carril d'entrada al dret del carril lateral</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>From the meeting point to the first cones of the ways in and out</source>
+            <translation>Del punt de trobada als primers cons dels camins d'entrada i sortida</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>From the middle of the path to these cones</source>
+            <translation>Del mig del camí a aquests cons</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>From the right limit of the entry lane to that of the side lane</source>
+            <translation>Del límit dret del carril d'entrada al del carril lateral</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>From the starting line to the finish line</source>
+            <translation>De la línia de sortida a la d'arribada</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>From the timing line to the big cones before and behind it</source>
+            <translation>De la línia de cronometratge als cons grans d'abans i després</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>ISO 4138:2021, method 1</source>
+            <translation>ISO 4138:2021, mètode 1</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Lane before braking begins</source>
+            <translation>Carril abans de començar a frenar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Lane to stop in behind the finish line</source>
+            <translation>Carril d'aturada després de la línia d'arribada</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Least width of the exit lane</source>
+            <translation>Amplada mínima del carril de sortida</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Length of the corridor</source>
+            <translation>Llargada del corredor</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Length of the way in that has cones</source>
+            <translation>Llargada amb cons del camí d'entrada</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Length of the way out that has cones</source>
+            <translation>Llargada amb cons del camí de sortida</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Obstacle avoidance</source>
+            <translation>Evitació d'obstacles</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Part of each outer circle that has cones</source>
+            <translation>Part de cada cercle exterior que té cons</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Radius of the middle of the lane</source>
+            <translation>Radi del mig del carril</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Section 1: entry lane</source>
+            <translation>Secció 1: carril d'entrada</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Section 2: way to the side lane</source>
+            <translation>Secció 2: camí cap al carril lateral</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Section 3: side lane</source>
+            <translation>Secció 3: carril lateral</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Section 4: way back</source>
+            <translation>Secció 4: camí de tornada</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Section 5: exit lane</source>
+            <translation>Secció 5: carril de sortida</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Sections 5 and 6: exit lane</source>
+            <translation>Seccions 5 i 6: carril de sortida</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Slalom</source>
+            <translation>Eslàlom</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Speed at which braking begins</source>
+            <translation>Velocitat a què comença la frenada</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>To which side it goes first: 1 left, -1 right</source>
+            <translation>Cap a quin costat va primer: 1 esquerra, -1 dreta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Vehicle widths in the width of the entry lane</source>
+            <translation>Amplades de vehicle en l'amplada del carril d'entrada</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Vehicle widths in the width of the exit lane</source>
+            <translation>Amplades de vehicle en l'amplada del carril de sortida</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Vehicle widths in the width of the side lane</source>
+            <translation>Amplades de vehicle en l'amplada del carril lateral</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>What is added to each of these widths</source>
+            <translation>El que s'afegeix a cadascuna d'aquestes amplades</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>What is added to the width of the entry lane</source>
+            <translation>El que s'afegeix a l'amplada del carril d'entrada</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>What is added to the width of the exit lane</source>
+            <translation>El que s'afegeix a l'amplada del carril de sortida</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>What is added to the width of the side lane</source>
+            <translation>El que s'afegeix a l'amplada del carril lateral</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>What of the exit lane is in line with the entry lane: 1 left limit, 0 middle, -1 right limit</source>
+            <translation>Què del carril de sortida està alineat amb el d'entrada: 1 límit esquerre, 0 mig, -1 límit dret</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Which way it is driven: 1 left, -1 right</source>
+            <translation>En quin sentit es condueix: 1 esquerra, -1 dreta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Width of the vehicle without mirrors</source>
+            <translation>Amplada del vehicle sense miralls</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>give a number</source>
+            <translation>doneu un nombre</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>give a whole number</source>
+            <translation>doneu un nombre enter</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>give one of {choices}</source>
+            <translation>doneu-ne un de {choices}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>give {least:g} or more</source>
+            <translation>doneu {least:g} o més</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>length after UN R13-H; test after ISO 21994</source>
+            <translation>llargada segons UN R13-H; assaig segons ISO 21994</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>none; 18 m as European testers drive it</source>
+            <translation>cap; 18 m, com la condueixen els provadors europeus</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>none; colours, width and spacing of Formula Student</source>
+            <translation>cap; colors, amplada i separació de Formula Student</translation>
+        </message>
+        <message>
             <location filename="../../plugin/locator/robot_filter.py" />
             <source>Robots</source>
             <translation>Robots</translation>
@@ -4093,11 +4859,6 @@
             <location filename="../../plugin/processing/assign_cones.py" />
             <source>Targets</source>
             <translation>Objectius</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/assign_cones.py" />
-            <source>The assignment was cancelled.</source>
-            <translation>S'ha cancel·lat l'assignació.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/assign_cones.py" />
@@ -4543,11 +5304,6 @@
             <location filename="../../plugin/processing/export_navigation_map.py" />
             <source>Files</source>
             <translation>Fitxers</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/export_navigation_map.py" />
-            <source>Folder</source>
-            <translation>Carpeta</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
@@ -5771,11 +6527,6 @@
         </message>
         <message>
             <location filename="../../plugin/processing/publish_site.py" />
-            <source>Sites</source>
-            <translation>Recintes</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/publish_site.py" />
             <source>There is nothing to publish: the layers hold nothing that can be read. See the warnings, or give BOUNDS to publish an empty site.</source>
             <translation>No hi ha res a publicar: les capes no contenen res que es pugui llegir. Vegeu els avisos, o doneu BOUNDS per publicar un recinte buit.</translation>
         </message>
@@ -6326,11 +7077,6 @@
         </message>
         <message>
             <location filename="../../plugin/roles/table_model.py" />
-            <source>Role</source>
-            <translation>Paper</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/roles/table_model.py" />
             <source>Template</source>
             <translation>Plantilla</translation>
         </message>
@@ -6398,11 +7144,6 @@
             <location filename="../../plugin/settings/connection_dialog.py" />
             <source>&amp;Authentication</source>
             <translation>&amp;Autenticació</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/settings/connection_dialog.py" />
-            <source>&amp;Name</source>
-            <translation>&amp;Nom</translation>
         </message>
         <message>
             <location filename="../../plugin/settings/connection_dialog.py" />
@@ -6523,11 +7264,6 @@
             <location filename="../../plugin/settings/connections_widget.py" />
             <source>Name</source>
             <translation>Nom</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/settings/connections_widget.py" />
-            <source>Operator</source>
-            <translation>Operador</translation>
         </message>
         <message>
             <location filename="../../plugin/settings/connections_widget.py" />

@@ -64,6 +64,299 @@
             <translation>el ca.pem del recinto; vacío para autoridades públicas</translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/accounts/account_model.py" />
+            <source>Last connected</source>
+            <translation>Última conexión</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/account_model.py" />
+            <source>Operator</source>
+            <translation>Operador</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/account_model.py" />
+            <source>Role</source>
+            <translation>Papel</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/account_model.py" />
+            <source>Since</source>
+            <translation>Desde</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/account_model.py" />
+            <source>Token</source>
+            <translation>Testigo</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/account_model.py" />
+            <source>connected now</source>
+            <translation>conectado ahora</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/account_model.py" />
+            <source>expired {time}</source>
+            <translation>caducado: {time}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/account_model.py" />
+            <source>holds</source>
+            <translation>válido</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/account_model.py" />
+            <source>holds until {time}</source>
+            <translation>válido hasta {time}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/account_model.py" />
+            <source>none</source>
+            <translation>ninguno</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/account_model.py" />
+            <source>revoked {time}</source>
+            <translation>revocado: {time}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/account_model.py" />
+            <source>{operator} (you)</source>
+            <translation>{operator} (usted)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/accounts_action.py" />
+            <source>Accounts…</source>
+            <translation>Cuentas…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/accounts_action.py" />
+            <source>Who may connect to the gateway and do what; takes a supervisor</source>
+            <translation>Quién puede conectarse a la pasarela y qué puede hacer; hace falta un supervisor</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/desk/accounts/accounts_dialog.py" />
+            <source>%n accounts</source>
+            <translation>
+                <numerusform>%n cuenta</numerusform>
+                <numerusform>%n cuentas</numerusform>
+            </translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/accounts_dialog.py" />
+            <source>&amp;Add…</source>
+            <translation>&amp;Añadir…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/accounts_dialog.py" />
+            <source>Accounts</source>
+            <translation>Cuentas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/accounts_dialog.py" />
+            <source>Change &amp;role…</source>
+            <translation>Cambiar el &amp;rol…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/accounts_dialog.py" />
+            <source>New &amp;token…</source>
+            <translation>&amp;Testigo nuevo…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/accounts_dialog.py" />
+            <source>New account {operator}</source>
+            <translation>Cuenta nueva: {operator}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/accounts_dialog.py" />
+            <source>New token for {operator}</source>
+            <translation>Testigo nuevo para {operator}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/accounts_dialog.py" />
+            <source>Re&amp;fresh</source>
+            <translation>Act&amp;ualizar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/accounts_dialog.py" />
+            <source>Re&amp;voke…</source>
+            <translation>Re&amp;vocar…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/accounts_dialog.py" />
+            <source>Revoke {operator}</source>
+            <translation>Revocación de {operator}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/accounts_dialog.py" />
+            <source>Role of {operator}</source>
+            <translation>Rol de {operator}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/accounts_dialog.py" />
+            <source>The token of {operator} is made.</source>
+            <translation>Se ha hecho el testigo de {operator}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/accounts_dialog.py" />
+            <source>The token of {operator} is revoked.</source>
+            <translation>Se ha revocado el testigo de {operator}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/accounts_dialog.py" />
+            <source>This gateway has no accounts: everybody on its computer may do everything. The first account, a supervisor's, ends that.</source>
+            <translation>Esta pasarela no tiene cuentas: cualquiera en su ordenador puede hacerlo todo. La primera cuenta, de un supervisor, le pone fin.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/accounts_dialog.py" />
+            <source>{operator} is {role} now.</source>
+            <translation>Ahora el rol de {operator} es {role}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>&amp;Name</source>
+            <translation>&amp;Nombre</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>&amp;Role</source>
+            <translation>&amp;Rol</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>&amp;Token holds</source>
+            <translation>El &amp;testigo vale</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>Cancel</source>
+            <translation>Cancelar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>Change role</source>
+            <translation>Cambiar el rol</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>Make account</source>
+            <translation>Crear la cuenta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>Make token</source>
+            <translation>Crear el testigo</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>New account</source>
+            <translation>Cuenta nueva</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>Revoke</source>
+            <translation>Revocar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>Revoke the token of {operator}?</source>
+            <translation>¿Revocar el testigo de {operator}?</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>The gateway makes a token for the account. It is shown once, to be handed over.</source>
+            <translation>La pasarela crea un testigo para la cuenta. Se muestra una sola vez, para entregarlo.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>The token of {operator} ends at once, with every connection that it opened. The account stays, and a new token can be made for it. Robots go on with what they were told.</source>
+            <translation>El testigo de {operator} se acaba enseguida, con todas las conexiones que abrió. La cuenta se queda, y se le puede crear un testigo nuevo. Los robots siguen con lo que se les dijo.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>This gateway has no accounts yet: everybody on its computer may do everything. The first account ends that for good, and this connection too: connect again with its token. It has to be a supervisor's.</source>
+            <translation>Esta pasarela aún no tiene cuentas: cualquiera en su ordenador puede hacerlo todo. La primera cuenta le pone fin para siempre, y también a esta conexión: conéctese otra vez con su testigo. Tiene que ser de un supervisor.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>This is your own account: this desk is cut off and does not come back by itself.</source>
+            <translation>Esta es su propia cuenta: esta consola queda desconectada y no vuelve por sí sola.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>This is your own account: this desk is cut off until you enter the new token.</source>
+            <translation>Esta es su propia cuenta: esta consola queda desconectada hasta que introduzca el testigo nuevo.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>This is your own account: without being a supervisor you cannot undo it.</source>
+            <translation>Esta es su propia cuenta: sin ser supervisor no podrá deshacerlo.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>for 1 day</source>
+            <translation>durante 1 día</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>for 1 year</source>
+            <translation>durante 1 año</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>for 30 days</source>
+            <translation>durante 30 días</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>for 7 days</source>
+            <translation>durante 7 días</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>for 90 days</source>
+            <translation>durante 90 días</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>until it is revoked</source>
+            <translation>hasta que se revoque</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>{operator} gets a new token. The one before ends at once, with every connection that it opened.</source>
+            <translation>{operator} recibe un testigo nuevo. El anterior se acaba enseguida, con todas las conexiones que abrió.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>{operator} is {role}. Another role holds from the next thing on that is asked for, also over connections that are open.</source>
+            <translation>El rol de {operator} es {role}. Otro rol vale a partir de la siguiente petición, también en conexiones abiertas.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/token_dialog.py" />
+            <source>&amp;Copy</source>
+            <translation>&amp;Copiar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/token_dialog.py" />
+            <source>Copied. It stays in the clipboard until something else is copied.</source>
+            <translation>Copiado. Se queda en el portapapeles hasta que se copie otra cosa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/token_dialog.py" />
+            <source>This desk was connected with what the token takes the place of, and is cut off. Enter the token in the Fleet panel under Access, then press Connect.</source>
+            <translation>Esta consola estaba conectada con aquello que el testigo reemplaza, y queda desconectada. Introduzca el testigo en el panel de la flota, en Acceso, y pulse Conectar.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/token_dialog.py" />
+            <source>Token of {operator}</source>
+            <translation>Testigo de {operator}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/token_dialog.py" />
+            <source>{operator}, {role}: the token {until}. It is shown now and never again, and kept nowhere: hand it over on a way that others do not read. If it gets lost, make a new one.</source>
+            <translation>{operator}, {role}: testigo {until}. Se muestra ahora y nunca más, y no se guarda en ningún sitio: entréguelo por una vía que otros no lean. Si se pierde, cree uno nuevo.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/actions.py" />
             <source>ABORT ALL</source>
             <translation>ABORTAR TODO</translation>
@@ -77,11 +370,6 @@
             <location filename="../../plugin/desk/actions.py" />
             <source>Add to queue</source>
             <translation>Añadir a la cola</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/actions.py" />
-            <source>Cancel</source>
-            <translation>Cancelar</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/actions.py" />
@@ -333,11 +621,6 @@
         </message>
         <message>
             <location filename="../../plugin/desk/alarms/alarm_model.py" />
-            <source>Since</source>
-            <translation>Desde</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/alarms/alarm_model.py" />
             <source>State</source>
             <translation>Estado</translation>
         </message>
@@ -457,6 +740,11 @@
             <translation>{count} líneas escritas en {path}</translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/alarms/message_log.py" />
+            <source>and {number} more alarms: see the log of alarms in the Fleet panel</source>
+            <translation>y {number} alarmas más: vea el registro de alarmas en el panel de la flota</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/alarms/road_ground.py" />
             <source>layers of road surfaces cannot be read: {why}</source>
             <translation>las capas de superficies de vía no se pueden leer: {why}</translation>
@@ -540,11 +828,6 @@
             <location filename="../../plugin/desk/alarms/watch.py" />
             <source>Switched off: {kinds}.</source>
             <translation>Desactivadas: {kinds}.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/alarms/watch.py" />
-            <source>and {number} more alarms: see the log of alarms in the Fleet panel</source>
-            <translation>y {number} alarmas más: vea el registro de alarmas en el panel de la flota</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/alarms/watch.py" />
@@ -695,11 +978,6 @@
             <location filename="../../plugin/desk/closure_dialog.py" />
             <source>The road is closed for every robot from this junction to the next. Robots whose way leads along it get another way; one that has no other way is stopped, unless the site's settings say otherwise.</source>
             <translation>La vía se cierra a todos los robots desde este cruce hasta el siguiente. Los que debían pasar por ella reciben otro recorrido; el que no tiene otro se detiene, si la configuración del recinto no dice otra cosa.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/closure_dialog.py" />
-            <source>for 1 day</source>
-            <translation>durante 1 día</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/closure_dialog.py" />
@@ -1539,6 +1817,11 @@
             <location filename="../../plugin/desk/emergency_banner.py" />
             <source>{acknowledged} of {robots} robots acknowledged, {standing} seen to stand</source>
             <translation>{acknowledged} de {robots} robots lo confirmaron, {standing} se ven parados</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/inquiries.py" />
+            <source>{words}: the gateway's answer cannot be read ({kind}). Update the gateway or the plugin, whichever is older.</source>
+            <translation>{words}: la respuesta de la pasarela no se puede leer ({kind}). Actualice la pasarela o el complemento, lo que sea más antiguo.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/layout_action.py" />
@@ -2524,6 +2807,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/plan_ways.py" />
+            <source>The assignment was cancelled.</source>
+            <translation>Se canceló la asignación.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_ways.py" />
             <source>{name}, straight within {nearby:g} m</source>
             <translation>{name}, recto dentro de {nearby:g} m</translation>
         </message>
@@ -3317,11 +3605,6 @@
         </message>
         <message>
             <location filename="../../plugin/desk/robots/detail_rows.py" />
-            <source>none</source>
-            <translation>ninguno</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/robots/detail_rows.py" />
             <source>{state}, last heard {age:.1f} s ago over {link}</source>
             <translation>{state}, último mensaje hace {age:.1f} s por {link}</translation>
         </message>
@@ -3486,6 +3769,21 @@
             <translation>ningún lugar así</translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/role_words.py" />
+            <source>operator</source>
+            <translation>operador</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/role_words.py" />
+            <source>supervisor</source>
+            <translation>supervisor</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/role_words.py" />
+            <source>viewer</source>
+            <translation>observador</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/route_preview.py" />
             <source>corners tighter than the robot turns: {tight}</source>
             <translation>esquinas más cerradas que el giro del robot: {tight}</translation>
@@ -3529,6 +3827,94 @@
             <location filename="../../plugin/desk/route_tool.py" />
             <source>This is the first vertex: another is put before one that comes later.</source>
             <translation>Este es el primer vértice: se pone otro delante de uno que viene después.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/site_choice/site_choice_action.py" />
+            <source>Site…</source>
+            <translation>Recinto…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/site_choice/site_choice_action.py" />
+            <source>Which of the published sites the gateway serves; takes a supervisor</source>
+            <translation>Cuál de los recintos publicados sirve la pasarela; hace falta un supervisor</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/desk/site_choice/site_choice_dialog.py" />
+            <source>%n sites</source>
+            <translation>
+                <numerusform>%n recinto</numerusform>
+                <numerusform>%n recintos</numerusform>
+            </translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/site_choice/site_choice_dialog.py" />
+            <source>&amp;Serve this site…</source>
+            <translation>&amp;Servir este recinto…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/site_choice/site_choice_dialog.py" />
+            <source>Serve {site}</source>
+            <translation>Servir {site}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/site_choice/site_choice_dialog.py" />
+            <source>Sites</source>
+            <translation>Recintos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/site_choice/site_choice_dialog.py" />
+            <source>Which site is served</source>
+            <translation>Qué recinto se sirve</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/site_choice/site_choice_dialog.py" />
+            <source>{site} is served now.</source>
+            <translation>Ahora se sirve {site}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/site_choice/site_model.py" />
+            <source>Folder</source>
+            <translation>Carpeta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/site_choice/site_model.py" />
+            <source>Site</source>
+            <translation>Recinto</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/site_choice/site_model.py" />
+            <source>Version</source>
+            <translation>Versión</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/site_choice/site_model.py" />
+            <source>can be chosen</source>
+            <translation>se puede elegir</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/site_choice/site_model.py" />
+            <source>served now</source>
+            <translation>se sirve ahora</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/site_choice/site_question.py" />
+            <source>Every robot is sent the map of {site} ({folder}), every desk shows it, and it is served until another one is chosen, also by a gateway that is started anew.</source>
+            <translation>Cada robot recibe el mapa de {site} ({folder}), cada consola lo muestra, y se sirve hasta que se elija otro, también si la pasarela se vuelve a arrancar.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/site_choice/site_question.py" />
+            <source>No robot is stopped: commands and queues go on in the same metres, whatever roads and keepouts the new site has there. Stop robots first where that matters.</source>
+            <translation>Ningún robot se detiene: las órdenes y las colas siguen en los mismos metros, sean cuales sean las vías y zonas prohibidas que el recinto nuevo tenga allí. Detenga antes los robots donde eso importe.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/site_choice/site_question.py" />
+            <source>Serve this site</source>
+            <translation>Servir este recinto</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/site_choice/site_question.py" />
+            <source>Serve {site}?</source>
+            <translation>¿Servir {site}?</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/site_drop.py" />
@@ -3609,6 +3995,21 @@
             <location filename="../../plugin/desk/state_words.py" />
             <source>waiting</source>
             <translation>en espera</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/supervisor_dialog.py" />
+            <source>Asking the gateway …</source>
+            <translation>Preguntando a la pasarela …</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/supervisor_dialog.py" />
+            <source>This gateway says nothing of roles: it is older than accounts. Update it.</source>
+            <translation>Esta pasarela no dice nada de roles: es anterior a las cuentas. Actualícela.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/supervisor_dialog.py" />
+            <source>This takes a supervisor, and {operator} is {role} here. If that was changed meanwhile, disconnect and connect again.</source>
+            <translation>Para esto hace falta un supervisor, y aquí el rol de {operator} es {role}. Si mientras tanto se ha cambiado, desconéctese y conéctese otra vez.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/surface_action.py" />
@@ -3930,6 +4331,371 @@
             <translation>Fleet Supervisor: ayuda</translation>
         </message>
         <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Across the base of a cone; the cones touch the track's limits</source>
+            <translation>Anchura de la base de un cono; los conos tocan los límites de la pista</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Braking lane</source>
+            <translation>Carril de frenado</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Clear width of the corridor</source>
+            <translation>Anchura libre del corredor</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Clear width of the gates</source>
+            <translation>Anchura libre de las puertas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Clear width of the lane</source>
+            <translation>Anchura libre del carril</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Clear width of the track</source>
+            <translation>Anchura libre de la pista</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Clear width of the ways in and out</source>
+            <translation>Anchura libre de los caminos de entrada y salida</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Cones inside each inner circle</source>
+            <translation>Conos dentro de cada círculo interior</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Cones on each side of each lane</source>
+            <translation>Conos a cada lado de cada carril</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Cones outside each outer circle</source>
+            <translation>Conos fuera de cada círculo exterior</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Cones that close the end of the lane</source>
+            <translation>Conos que cierran el final del carril</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Cones that close the way out</source>
+            <translation>Conos que cierran el camino de salida</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Cones to go round</source>
+            <translation>Conos que se rodean</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Constant-radius circle</source>
+            <translation>Círculo de radio constante</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Corridor</source>
+            <translation>Corredor</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Diameter of the inner circles</source>
+            <translation>Diámetro de los círculos interiores</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Diameter of the outer circles</source>
+            <translation>Diámetro de los círculos exteriores</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Double lane change</source>
+            <translation>Doble cambio de carril</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Formula Student Rules, D 4.1</source>
+            <translation>Reglamento de Formula Student, D 4.1</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Formula Student Rules, D 5.1</source>
+            <translation>Reglamento de Formula Student, D 5.1</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Formula Student acceleration</source>
+            <translation>Aceleración de Formula Student</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Formula Student skid pad</source>
+            <translation>Skid pad de Formula Student</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>From a gate to the nearest cone</source>
+            <translation>De una puerta al cono más cercano</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>From a line to the big cones before and behind it</source>
+            <translation>De una línea a los conos grandes de antes y después</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>From centre to centre of the circles</source>
+            <translation>De centro a centro de los círculos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>From cone to cone</source>
+            <translation>De cono a cono</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>From cone to cone along the lane</source>
+            <translation>De cono a cono a lo largo del carril</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>From cone to cone along the middle of the lane</source>
+            <translation>De cono a cono a lo largo del centro del carril</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>From cone to cone along the track</source>
+            <translation>De cono a cono a lo largo de la pista</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>From cone to cone along the ways in and out</source>
+            <translation>De cono a cono a lo largo de los caminos de entrada y salida</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>From pair to pair</source>
+            <translation>De par a par</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>From the left limit of the entry lane to the right one of the side lane</source>
+            <translation>Del límite izquierdo del carril de entrada al derecho del carril lateral</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>From the meeting point to the first cones of the ways in and out</source>
+            <translation>Del punto de encuentro a los primeros conos de los caminos de entrada y salida</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>From the middle of the path to these cones</source>
+            <translation>Del centro del camino a estos conos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>From the right limit of the entry lane to that of the side lane</source>
+            <translation>Del límite derecho del carril de entrada al del carril lateral</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>From the starting line to the finish line</source>
+            <translation>De la línea de salida a la de meta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>From the timing line to the big cones before and behind it</source>
+            <translation>De la línea de cronometraje a los conos grandes de antes y después</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>ISO 4138:2021, method 1</source>
+            <translation>ISO 4138:2021, método 1</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Lane before braking begins</source>
+            <translation>Carril antes de empezar a frenar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Lane to stop in behind the finish line</source>
+            <translation>Carril de parada tras la línea de meta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Least width of the exit lane</source>
+            <translation>Anchura mínima del carril de salida</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Length of the corridor</source>
+            <translation>Longitud del corredor</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Length of the way in that has cones</source>
+            <translation>Longitud con conos del camino de entrada</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Length of the way out that has cones</source>
+            <translation>Longitud con conos del camino de salida</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Obstacle avoidance</source>
+            <translation>Evitación de obstáculos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Part of each outer circle that has cones</source>
+            <translation>Parte de cada círculo exterior que tiene conos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Radius of the middle of the lane</source>
+            <translation>Radio del centro del carril</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Section 1: entry lane</source>
+            <translation>Sección 1: carril de entrada</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Section 2: way to the side lane</source>
+            <translation>Sección 2: camino al carril lateral</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Section 3: side lane</source>
+            <translation>Sección 3: carril lateral</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Section 4: way back</source>
+            <translation>Sección 4: camino de vuelta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Section 5: exit lane</source>
+            <translation>Sección 5: carril de salida</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Sections 5 and 6: exit lane</source>
+            <translation>Secciones 5 y 6: carril de salida</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Slalom</source>
+            <translation>Eslalon</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Speed at which braking begins</source>
+            <translation>Velocidad a la que empieza el frenado</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>To which side it goes first: 1 left, -1 right</source>
+            <translation>Hacia qué lado va primero: 1 izquierda, -1 derecha</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Vehicle widths in the width of the entry lane</source>
+            <translation>Anchuras de vehículo en la anchura del carril de entrada</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Vehicle widths in the width of the exit lane</source>
+            <translation>Anchuras de vehículo en la anchura del carril de salida</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Vehicle widths in the width of the side lane</source>
+            <translation>Anchuras de vehículo en la anchura del carril lateral</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>What is added to each of these widths</source>
+            <translation>Lo que se añade a cada una de estas anchuras</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>What is added to the width of the entry lane</source>
+            <translation>Lo que se añade a la anchura del carril de entrada</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>What is added to the width of the exit lane</source>
+            <translation>Lo que se añade a la anchura del carril de salida</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>What is added to the width of the side lane</source>
+            <translation>Lo que se añade a la anchura del carril lateral</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>What of the exit lane is in line with the entry lane: 1 left limit, 0 middle, -1 right limit</source>
+            <translation>Qué del carril de salida está alineado con el de entrada: 1 límite izquierdo, 0 centro, -1 límite derecho</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Which way it is driven: 1 left, -1 right</source>
+            <translation>En qué sentido se conduce: 1 izquierda, -1 derecha</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Width of the vehicle without mirrors</source>
+            <translation>Anchura del vehículo sin espejos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>give a number</source>
+            <translation>dé un número</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>give a whole number</source>
+            <translation>dé un número entero</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>give one of {choices}</source>
+            <translation>dé uno de {choices}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>give {least:g} or more</source>
+            <translation>dé {least:g} o más</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>length after UN R13-H; test after ISO 21994</source>
+            <translation>longitud según UN R13-H; ensayo según ISO 21994</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>none; 18 m as European testers drive it</source>
+            <translation>ninguna; 18 m, como la conducen los probadores europeos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>none; colours, width and spacing of Formula Student</source>
+            <translation>ninguna; colores, anchura y separación de Formula Student</translation>
+        </message>
+        <message>
             <location filename="../../plugin/locator/robot_filter.py" />
             <source>Robots</source>
             <translation>Robots</translation>
@@ -4093,11 +4859,6 @@
             <location filename="../../plugin/processing/assign_cones.py" />
             <source>Targets</source>
             <translation>Objetivos</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/assign_cones.py" />
-            <source>The assignment was cancelled.</source>
-            <translation>Se canceló la asignación.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/assign_cones.py" />
@@ -4543,11 +5304,6 @@
             <location filename="../../plugin/processing/export_navigation_map.py" />
             <source>Files</source>
             <translation>Archivos</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/export_navigation_map.py" />
-            <source>Folder</source>
-            <translation>Carpeta</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
@@ -5771,11 +6527,6 @@
         </message>
         <message>
             <location filename="../../plugin/processing/publish_site.py" />
-            <source>Sites</source>
-            <translation>Recintos</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/publish_site.py" />
             <source>There is nothing to publish: the layers hold nothing that can be read. See the warnings, or give BOUNDS to publish an empty site.</source>
             <translation>No hay nada que publicar: las capas no contienen nada legible. Vea los avisos, o dé BOUNDS para publicar un recinto vacío.</translation>
         </message>
@@ -6326,11 +7077,6 @@
         </message>
         <message>
             <location filename="../../plugin/roles/table_model.py" />
-            <source>Role</source>
-            <translation>Papel</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/roles/table_model.py" />
             <source>Template</source>
             <translation>Plantilla</translation>
         </message>
@@ -6398,11 +7144,6 @@
             <location filename="../../plugin/settings/connection_dialog.py" />
             <source>&amp;Authentication</source>
             <translation>&amp;Autenticación</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/settings/connection_dialog.py" />
-            <source>&amp;Name</source>
-            <translation>&amp;Nombre</translation>
         </message>
         <message>
             <location filename="../../plugin/settings/connection_dialog.py" />
@@ -6523,11 +7264,6 @@
             <location filename="../../plugin/settings/connections_widget.py" />
             <source>Name</source>
             <translation>Nombre</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/settings/connections_widget.py" />
-            <source>Operator</source>
-            <translation>Operador</translation>
         </message>
         <message>
             <location filename="../../plugin/settings/connections_widget.py" />

@@ -64,6 +64,298 @@
             <translation>a telephely ca.pem fájlja; üres: nyilvános kiállítók</translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/accounts/account_model.py" />
+            <source>Last connected</source>
+            <translation>Utoljára kapcsolódva</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/account_model.py" />
+            <source>Operator</source>
+            <translation>Kezelő</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/account_model.py" />
+            <source>Role</source>
+            <translation>Szerep</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/account_model.py" />
+            <source>Since</source>
+            <translation>Ettől</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/account_model.py" />
+            <source>Token</source>
+            <translation>Token</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/account_model.py" />
+            <source>connected now</source>
+            <translation>most kapcsolódva</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/account_model.py" />
+            <source>expired {time}</source>
+            <translation>lejárt: {time}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/account_model.py" />
+            <source>holds</source>
+            <translation>érvényes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/account_model.py" />
+            <source>holds until {time}</source>
+            <translation>érvényes eddig: {time}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/account_model.py" />
+            <source>none</source>
+            <translation>nincs</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/account_model.py" />
+            <source>revoked {time}</source>
+            <translation>visszavonva: {time}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/account_model.py" />
+            <source>{operator} (you)</source>
+            <translation>{operator} (Ön)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/accounts_action.py" />
+            <source>Accounts…</source>
+            <translation>Fiókok…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/accounts_action.py" />
+            <source>Who may connect to the gateway and do what; takes a supervisor</source>
+            <translation>Ki kapcsolódhat az átjáróhoz és mit tehet; felügyelő kell hozzá</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/desk/accounts/accounts_dialog.py" />
+            <source>%n accounts</source>
+            <translation>
+                <numerusform>%n fiók</numerusform>
+            </translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/accounts_dialog.py" />
+            <source>&amp;Add…</source>
+            <translation>&amp;Hozzáadás…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/accounts_dialog.py" />
+            <source>Accounts</source>
+            <translation>Fiókok</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/accounts_dialog.py" />
+            <source>Change &amp;role…</source>
+            <translation>&amp;Szerep módosítása…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/accounts_dialog.py" />
+            <source>New &amp;token…</source>
+            <translation>Új &amp;token…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/accounts_dialog.py" />
+            <source>New account {operator}</source>
+            <translation>Új fiók: {operator}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/accounts_dialog.py" />
+            <source>New token for {operator}</source>
+            <translation>Új token: {operator}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/accounts_dialog.py" />
+            <source>Re&amp;fresh</source>
+            <translation>&amp;Frissítés</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/accounts_dialog.py" />
+            <source>Re&amp;voke…</source>
+            <translation>&amp;Visszavonás…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/accounts_dialog.py" />
+            <source>Revoke {operator}</source>
+            <translation>Visszavonás: {operator}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/accounts_dialog.py" />
+            <source>Role of {operator}</source>
+            <translation>{operator} szerepe</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/accounts_dialog.py" />
+            <source>The token of {operator} is made.</source>
+            <translation>{operator} tokenje elkészült.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/accounts_dialog.py" />
+            <source>The token of {operator} is revoked.</source>
+            <translation>{operator} tokenje visszavonva.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/accounts_dialog.py" />
+            <source>This gateway has no accounts: everybody on its computer may do everything. The first account, a supervisor's, ends that.</source>
+            <translation>Ezen az átjárón nincsenek fiókok: a számítógépén bárki bármit megtehet. Az első fiók, egy felügyelőé, véget vet ennek.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/accounts_dialog.py" />
+            <source>{operator} is {role} now.</source>
+            <translation>{operator} szerepe mostantól: {role}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>&amp;Name</source>
+            <translation>&amp;Név</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>&amp;Role</source>
+            <translation>&amp;Szerep</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>&amp;Token holds</source>
+            <translation>&amp;Token érvényes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>Cancel</source>
+            <translation>Mégse</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>Change role</source>
+            <translation>Szerep módosítása</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>Make account</source>
+            <translation>Fiók létrehozása</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>Make token</source>
+            <translation>Token készítése</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>New account</source>
+            <translation>Új fiók</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>Revoke</source>
+            <translation>Visszavonás</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>Revoke the token of {operator}?</source>
+            <translation>Visszavonja {operator} tokenjét?</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>The gateway makes a token for the account. It is shown once, to be handed over.</source>
+            <translation>Az átjáró tokent készít a fiókhoz. Egyszer látható, hogy át lehessen adni.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>The token of {operator} ends at once, with every connection that it opened. The account stays, and a new token can be made for it. Robots go on with what they were told.</source>
+            <translation>{operator} tokenje azonnal érvényét veszti, és vele minden kapcsolat, amelyet megnyitott. A fiók megmarad, új token készíthető hozzá. A robotok folytatják, amit mondtak nekik.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>This gateway has no accounts yet: everybody on its computer may do everything. The first account ends that for good, and this connection too: connect again with its token. It has to be a supervisor's.</source>
+            <translation>Ezen az átjárón még nincsenek fiókok: a számítógépén bárki bármit megtehet. Az első fiók végleg véget vet ennek, és ennek a kapcsolatnak is: kapcsolódjon újra a tokenjével. Felügyelőé kell hogy legyen.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>This is your own account: this desk is cut off and does not come back by itself.</source>
+            <translation>Ez az Ön saját fiókja: ez a kezelőpult lekapcsolódik, és magától nem tér vissza.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>This is your own account: this desk is cut off until you enter the new token.</source>
+            <translation>Ez az Ön saját fiókja: ez a kezelőpult lekapcsolódik, amíg meg nem adja az új tokent.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>This is your own account: without being a supervisor you cannot undo it.</source>
+            <translation>Ez az Ön saját fiókja: ha nem felügyelő, nem vonhatja vissza.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>for 1 day</source>
+            <translation>1 napra</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>for 1 year</source>
+            <translation>1 évre</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>for 30 days</source>
+            <translation>30 napra</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>for 7 days</source>
+            <translation>7 napra</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>for 90 days</source>
+            <translation>90 napra</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>until it is revoked</source>
+            <translation>amíg vissza nem vonják</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>{operator} gets a new token. The one before ends at once, with every connection that it opened.</source>
+            <translation>{operator} új tokent kap. Az előző azonnal érvényét veszti, és vele minden kapcsolat, amelyet megnyitott.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/questions.py" />
+            <source>{operator} is {role}. Another role holds from the next thing on that is asked for, also over connections that are open.</source>
+            <translation>{operator} szerepe: {role}. Másik szerep a következő kéréstől érvényes, a nyitott kapcsolatokon is.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/token_dialog.py" />
+            <source>&amp;Copy</source>
+            <translation>&amp;Másolás</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/token_dialog.py" />
+            <source>Copied. It stays in the clipboard until something else is copied.</source>
+            <translation>Kimásolva. A vágólapon marad, amíg mást nem másol.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/token_dialog.py" />
+            <source>This desk was connected with what the token takes the place of, and is cut off. Enter the token in the Fleet panel under Access, then press Connect.</source>
+            <translation>Ez a kezelőpult azzal volt kapcsolódva, aminek a token a helyébe lép, ezért lekapcsolódik. Adja meg a tokent a Flotta panelen a Hozzáférés alatt, majd nyomja meg a Kapcsolódás gombot.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/token_dialog.py" />
+            <source>Token of {operator}</source>
+            <translation>{operator} tokenje</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/accounts/token_dialog.py" />
+            <source>{operator}, {role}: the token {until}. It is shown now and never again, and kept nowhere: hand it over on a way that others do not read. If it gets lost, make a new one.</source>
+            <translation>{operator}, {role}: a token {until}. Most látható és soha többé, és sehol sem őrződik meg: olyan úton adja át, amelyet mások nem olvasnak. Ha elvész, készítsen újat.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/actions.py" />
             <source>ABORT ALL</source>
             <translation>MIND MEGSZAKÍTÁSA</translation>
@@ -77,11 +369,6 @@
             <location filename="../../plugin/desk/actions.py" />
             <source>Add to queue</source>
             <translation>Várólistára</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/actions.py" />
-            <source>Cancel</source>
-            <translation>Mégse</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/actions.py" />
@@ -332,11 +619,6 @@
         </message>
         <message>
             <location filename="../../plugin/desk/alarms/alarm_model.py" />
-            <source>Since</source>
-            <translation>Ettől</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/alarms/alarm_model.py" />
             <source>State</source>
             <translation>Állapot</translation>
         </message>
@@ -456,6 +738,11 @@
             <translation>{count} sor kiírva ide: {path}</translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/alarms/message_log.py" />
+            <source>and {number} more alarms: see the log of alarms in the Fleet panel</source>
+            <translation>és még {number} riasztás: lásd a riasztások naplóját a flottapanelen</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/alarms/road_ground.py" />
             <source>layers of road surfaces cannot be read: {why}</source>
             <translation>az útfelületek rétegei nem olvashatók: {why}</translation>
@@ -539,11 +826,6 @@
             <location filename="../../plugin/desk/alarms/watch.py" />
             <source>Switched off: {kinds}.</source>
             <translation>Kikapcsolva: {kinds}.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/alarms/watch.py" />
-            <source>and {number} more alarms: see the log of alarms in the Fleet panel</source>
-            <translation>és még {number} riasztás: lásd a riasztások naplóját a flottapanelen</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/alarms/watch.py" />
@@ -694,11 +976,6 @@
             <location filename="../../plugin/desk/closure_dialog.py" />
             <source>The road is closed for every robot from this junction to the next. Robots whose way leads along it get another way; one that has no other way is stopped, unless the site's settings say otherwise.</source>
             <translation>Az út minden robot elől le lesz zárva ettől a kereszteződéstől a következőig. Azok a robotok, amelyek útja erre vezet, más utat kapnak; amelyiknek nincs más, megáll, hacsak a telephely beállításai mást nem mondanak.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/closure_dialog.py" />
-            <source>for 1 day</source>
-            <translation>1 napra</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/closure_dialog.py" />
@@ -1538,6 +1815,11 @@
             <location filename="../../plugin/desk/emergency_banner.py" />
             <source>{acknowledged} of {robots} robots acknowledged, {standing} seen to stand</source>
             <translation>{robots} robotból {acknowledged} nyugtázta, {standing} láthatóan áll</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/inquiries.py" />
+            <source>{words}: the gateway's answer cannot be read ({kind}). Update the gateway or the plugin, whichever is older.</source>
+            <translation>{words}: az átjáró válasza nem olvasható ({kind}). Frissítse az átjárót vagy a bővítményt, amelyik régebbi.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/layout_action.py" />
@@ -2523,6 +2805,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/plan_ways.py" />
+            <source>The assignment was cancelled.</source>
+            <translation>A kiosztást megszakították.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_ways.py" />
             <source>{name}, straight within {nearby:g} m</source>
             <translation>{name}, {nearby:g} m-en belül egyenesen</translation>
         </message>
@@ -3315,11 +3602,6 @@
         </message>
         <message>
             <location filename="../../plugin/desk/robots/detail_rows.py" />
-            <source>none</source>
-            <translation>nincs</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/robots/detail_rows.py" />
             <source>{state}, last heard {age:.1f} s ago over {link}</source>
             <translation>{state}, utolsó hír {age:.1f} s óta, ezen: {link}</translation>
         </message>
@@ -3484,6 +3766,21 @@
             <translation>nincs ilyen hely</translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/role_words.py" />
+            <source>operator</source>
+            <translation>kezelő</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/role_words.py" />
+            <source>supervisor</source>
+            <translation>felügyelő</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/role_words.py" />
+            <source>viewer</source>
+            <translation>megfigyelő</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/route_preview.py" />
             <source>corners tighter than the robot turns: {tight}</source>
             <translation>a robot fordulásánál élesebb sarkok: {tight}</translation>
@@ -3527,6 +3824,93 @@
             <location filename="../../plugin/desk/route_tool.py" />
             <source>This is the first vertex: another is put before one that comes later.</source>
             <translation>Ez az első töréspont: másikat csak egy későbbi elé lehet tenni.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/site_choice/site_choice_action.py" />
+            <source>Site…</source>
+            <translation>Telephely…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/site_choice/site_choice_action.py" />
+            <source>Which of the published sites the gateway serves; takes a supervisor</source>
+            <translation>Melyik közzétett telephelyet szolgálja ki az átjáró; felügyelő kell hozzá</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/desk/site_choice/site_choice_dialog.py" />
+            <source>%n sites</source>
+            <translation>
+                <numerusform>%n telephely</numerusform>
+            </translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/site_choice/site_choice_dialog.py" />
+            <source>&amp;Serve this site…</source>
+            <translation>E telephely &amp;kiszolgálása…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/site_choice/site_choice_dialog.py" />
+            <source>Serve {site}</source>
+            <translation>Kiszolgálás: {site}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/site_choice/site_choice_dialog.py" />
+            <source>Sites</source>
+            <translation>Telephelyek</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/site_choice/site_choice_dialog.py" />
+            <source>Which site is served</source>
+            <translation>Melyik telephelyet szolgálja ki</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/site_choice/site_choice_dialog.py" />
+            <source>{site} is served now.</source>
+            <translation>Most ezt szolgálja ki: {site}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/site_choice/site_model.py" />
+            <source>Folder</source>
+            <translation>Mappa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/site_choice/site_model.py" />
+            <source>Site</source>
+            <translation>Telephely</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/site_choice/site_model.py" />
+            <source>Version</source>
+            <translation>Verzió</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/site_choice/site_model.py" />
+            <source>can be chosen</source>
+            <translation>választható</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/site_choice/site_model.py" />
+            <source>served now</source>
+            <translation>most ezt szolgálja ki</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/site_choice/site_question.py" />
+            <source>Every robot is sent the map of {site} ({folder}), every desk shows it, and it is served until another one is chosen, also by a gateway that is started anew.</source>
+            <translation>Minden robot megkapja {site} ({folder}) térképét, minden kezelőpult ezt mutatja, és addig ezt szolgálja ki az átjáró, újraindítva is, amíg másikat nem választanak.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/site_choice/site_question.py" />
+            <source>No robot is stopped: commands and queues go on in the same metres, whatever roads and keepouts the new site has there. Stop robots first where that matters.</source>
+            <translation>Egyik robot sem áll meg: a parancsok és várólisták ugyanazokban a méterekben folytatódnak, bármilyen utak és tiltott területek vannak ott az új telephelyen. Ahol ez számít, előbb állítsa meg a robotokat.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/site_choice/site_question.py" />
+            <source>Serve this site</source>
+            <translation>Kiszolgálás</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/site_choice/site_question.py" />
+            <source>Serve {site}?</source>
+            <translation>Ezt szolgálja ki: {site}?</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/site_drop.py" />
@@ -3607,6 +3991,21 @@
             <location filename="../../plugin/desk/state_words.py" />
             <source>waiting</source>
             <translation>vár</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/supervisor_dialog.py" />
+            <source>Asking the gateway …</source>
+            <translation>Az átjáró kérdezése …</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/supervisor_dialog.py" />
+            <source>This gateway says nothing of roles: it is older than accounts. Update it.</source>
+            <translation>Ez az átjáró nem mond szerepeket: régebbi, mint a fiókok. Frissítse.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/supervisor_dialog.py" />
+            <source>This takes a supervisor, and {operator} is {role} here. If that was changed meanwhile, disconnect and connect again.</source>
+            <translation>Ehhez felügyelő kell, és {operator} szerepe itt: {role}. Ha ez közben megváltozott, bontsa a kapcsolatot, és kapcsolódjon újra.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/surface_action.py" />
@@ -3928,6 +4327,371 @@
             <translation>Fleet Supervisor: súgó</translation>
         </message>
         <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Across the base of a cone; the cones touch the track's limits</source>
+            <translation>A bója talpának szélessége; a bóják a pálya szélét érintik</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Braking lane</source>
+            <translation>Fékezősáv</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Clear width of the corridor</source>
+            <translation>A folyosó szabad szélessége</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Clear width of the gates</source>
+            <translation>A kapuk szabad szélessége</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Clear width of the lane</source>
+            <translation>A sáv szabad szélessége</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Clear width of the track</source>
+            <translation>A pálya szabad szélessége</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Clear width of the ways in and out</source>
+            <translation>A be- és kivezető út szabad szélessége</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Cones inside each inner circle</source>
+            <translation>Bóják minden belső körön belül</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Cones on each side of each lane</source>
+            <translation>Bóják minden sáv mindkét oldalán</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Cones outside each outer circle</source>
+            <translation>Bóják minden külső körön kívül</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Cones that close the end of the lane</source>
+            <translation>A sáv végét lezáró bóják</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Cones that close the way out</source>
+            <translation>A kivezető utat lezáró bóják</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Cones to go round</source>
+            <translation>Megkerülendő bóják</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Constant-radius circle</source>
+            <translation>Állandó sugarú kör</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Corridor</source>
+            <translation>Folyosó</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Diameter of the inner circles</source>
+            <translation>A belső körök átmérője</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Diameter of the outer circles</source>
+            <translation>A külső körök átmérője</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Double lane change</source>
+            <translation>Kettős sávváltás</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Formula Student Rules, D 4.1</source>
+            <translation>Formula Student szabályzat, D 4.1</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Formula Student Rules, D 5.1</source>
+            <translation>Formula Student szabályzat, D 5.1</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Formula Student acceleration</source>
+            <translation>Formula Student gyorsulás</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Formula Student skid pad</source>
+            <translation>Formula Student nyolcas kör (skid pad)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>From a gate to the nearest cone</source>
+            <translation>Egy kaputól a legközelebbi bójáig</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>From a line to the big cones before and behind it</source>
+            <translation>Egy vonaltól az előtte és mögötte álló nagy bójákig</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>From centre to centre of the circles</source>
+            <translation>A körök középpontjától középpontjáig</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>From cone to cone</source>
+            <translation>Bójától bójáig</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>From cone to cone along the lane</source>
+            <translation>Bójától bójáig a sáv mentén</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>From cone to cone along the middle of the lane</source>
+            <translation>Bójától bójáig a sáv közepe mentén</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>From cone to cone along the track</source>
+            <translation>Bójától bójáig a pálya mentén</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>From cone to cone along the ways in and out</source>
+            <translation>Bójától bójáig a be- és kivezető út mentén</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>From pair to pair</source>
+            <translation>Pártól párig</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>From the left limit of the entry lane to the right one of the side lane</source>
+            <translation>A bevezető sáv bal szélétől az oldalsó sáv jobb széléig</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>From the meeting point to the first cones of the ways in and out</source>
+            <translation>A találkozási ponttól a be- és kivezető út első bójáiig</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>From the middle of the path to these cones</source>
+            <translation>Az út közepétől ezekig a bójákig</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>From the right limit of the entry lane to that of the side lane</source>
+            <translation>A bevezető sáv jobb szélétől az oldalsó sávéig</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>From the starting line to the finish line</source>
+            <translation>A rajtvonaltól a célvonalig</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>From the timing line to the big cones before and behind it</source>
+            <translation>Az időmérő vonaltól az előtte és mögötte álló nagy bójákig</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>ISO 4138:2021, method 1</source>
+            <translation>ISO 4138:2021, 1. módszer</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Lane before braking begins</source>
+            <translation>Sáv a fékezés kezdete előtt</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Lane to stop in behind the finish line</source>
+            <translation>Megállósáv a célvonal mögött</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Least width of the exit lane</source>
+            <translation>A kivezető sáv legkisebb szélessége</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Length of the corridor</source>
+            <translation>A folyosó hossza</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Length of the way in that has cones</source>
+            <translation>A bevezető út bójás hossza</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Length of the way out that has cones</source>
+            <translation>A kivezető út bójás hossza</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Obstacle avoidance</source>
+            <translation>Akadálykikerülés</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Part of each outer circle that has cones</source>
+            <translation>A külső körök bójás része</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Radius of the middle of the lane</source>
+            <translation>A sáv közepének sugara</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Section 1: entry lane</source>
+            <translation>1. szakasz: bevezető sáv</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Section 2: way to the side lane</source>
+            <translation>2. szakasz: út az oldalsó sávba</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Section 3: side lane</source>
+            <translation>3. szakasz: oldalsó sáv</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Section 4: way back</source>
+            <translation>4. szakasz: visszaút</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Section 5: exit lane</source>
+            <translation>5. szakasz: kivezető sáv</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Sections 5 and 6: exit lane</source>
+            <translation>5. és 6. szakasz: kivezető sáv</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Slalom</source>
+            <translation>Szlalom</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Speed at which braking begins</source>
+            <translation>A fékezés kezdetének sebessége</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>To which side it goes first: 1 left, -1 right</source>
+            <translation>Először melyik oldalra megy: 1 balra, -1 jobbra</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Vehicle widths in the width of the entry lane</source>
+            <translation>Járműszélességek a bevezető sáv szélességében</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Vehicle widths in the width of the exit lane</source>
+            <translation>Járműszélességek a kivezető sáv szélességében</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Vehicle widths in the width of the side lane</source>
+            <translation>Járműszélességek az oldalsó sáv szélességében</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>What is added to each of these widths</source>
+            <translation>Amennyi ezekhez a szélességekhez hozzáadódik</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>What is added to the width of the entry lane</source>
+            <translation>Amennyi a bevezető sáv szélességéhez hozzáadódik</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>What is added to the width of the exit lane</source>
+            <translation>Amennyi a kivezető sáv szélességéhez hozzáadódik</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>What is added to the width of the side lane</source>
+            <translation>Amennyi az oldalsó sáv szélességéhez hozzáadódik</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>What of the exit lane is in line with the entry lane: 1 left limit, 0 middle, -1 right limit</source>
+            <translation>A kivezető sáv mely része esik egy vonalba a bevezetővel: 1 bal széle, 0 közepe, -1 jobb széle</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Which way it is driven: 1 left, -1 right</source>
+            <translation>Merre kell körbemenni: 1 balra, -1 jobbra</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>Width of the vehicle without mirrors</source>
+            <translation>A jármű szélessége tükrök nélkül</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>give a number</source>
+            <translation>adjon meg egy számot</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>give a whole number</source>
+            <translation>adjon meg egy egész számot</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>give one of {choices}</source>
+            <translation>ezek közül adjon meg egyet: {choices}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>give {least:g} or more</source>
+            <translation>legalább {least:g} kell</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>length after UN R13-H; test after ISO 21994</source>
+            <translation>hossza az UN R13-H, a vizsgálat az ISO 21994 szerint</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>none; 18 m as European testers drive it</source>
+            <translation>nincs; 18 m, ahogy az európai tesztelők hajtják</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>none; colours, width and spacing of Formula Student</source>
+            <translation>nincs; színek, szélesség és távolság a Formula Student szerint</translation>
+        </message>
+        <message>
             <location filename="../../plugin/locator/robot_filter.py" />
             <source>Robots</source>
             <translation>Robotok</translation>
@@ -4091,11 +4855,6 @@
             <location filename="../../plugin/processing/assign_cones.py" />
             <source>Targets</source>
             <translation>Célok</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/assign_cones.py" />
-            <source>The assignment was cancelled.</source>
-            <translation>A kiosztást megszakították.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/assign_cones.py" />
@@ -4541,11 +5300,6 @@
             <location filename="../../plugin/processing/export_navigation_map.py" />
             <source>Files</source>
             <translation>Fájlok</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/export_navigation_map.py" />
-            <source>Folder</source>
-            <translation>Mappa</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
@@ -5769,11 +6523,6 @@
         </message>
         <message>
             <location filename="../../plugin/processing/publish_site.py" />
-            <source>Sites</source>
-            <translation>Telephelyek</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/publish_site.py" />
             <source>There is nothing to publish: the layers hold nothing that can be read. See the warnings, or give BOUNDS to publish an empty site.</source>
             <translation>Nincs mit közzétenni: a rétegekben nincs semmi olvasható. Nézze meg a figyelmeztetéseket, vagy adjon BOUNDS értéket üres telephely közzétételéhez.</translation>
         </message>
@@ -6324,11 +7073,6 @@
         </message>
         <message>
             <location filename="../../plugin/roles/table_model.py" />
-            <source>Role</source>
-            <translation>Szerep</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/roles/table_model.py" />
             <source>Template</source>
             <translation>Sablon</translation>
         </message>
@@ -6396,11 +7140,6 @@
             <location filename="../../plugin/settings/connection_dialog.py" />
             <source>&amp;Authentication</source>
             <translation>&amp;Hitelesítés</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/settings/connection_dialog.py" />
-            <source>&amp;Name</source>
-            <translation>&amp;Név</translation>
         </message>
         <message>
             <location filename="../../plugin/settings/connection_dialog.py" />
@@ -6521,11 +7260,6 @@
             <location filename="../../plugin/settings/connections_widget.py" />
             <source>Name</source>
             <translation>Név</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/settings/connections_widget.py" />
-            <source>Operator</source>
-            <translation>Kezelő</translation>
         </message>
         <message>
             <location filename="../../plugin/settings/connections_widget.py" />

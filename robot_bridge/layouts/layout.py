@@ -6,6 +6,7 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
+from enum import Enum, auto
 from typing import Any, ClassVar
 
 from .cone import Cone, Spot, numbered
@@ -13,6 +14,15 @@ from .errors import DimensionError
 
 BASE_M = 0.285
 """Across the base of the cone of 505 mm of Formula Student; ISO 3888-2 asks for 500 mm of height or more."""
+
+
+class Fault(Enum):
+    """What a value of a dimension may be that it must not be."""
+
+    NO_NUMBER = auto()
+    NOT_CHOSEN = auto()
+    TOO_SMALL = auto()
+    NOT_WHOLE = auto()
 
 
 @dataclass(frozen=True)
@@ -31,15 +41,32 @@ class Dimension:
     whole: bool
     choices: tuple[float, ...]
 
-    def problem(self, value: float) -> str:
-        """Return what is wrong with ``value``, or nothing."""
+    @property
+    def choices_text(self) -> str:
+        """Return the choices, one after the other."""
+        return ", ".join(f"{choice:g}" for choice in self.choices)
+
+    def fault(self, value: float) -> Fault | None:
+        """Return what is wrong with ``value``, None where nothing is."""
         if not math.isfinite(value):
-            return "give a number"
+            return Fault.NO_NUMBER
         if self.choices and value not in self.choices:
-            return f"give one of {', '.join(f'{choice:g}' for choice in self.choices)}"
+            return Fault.NOT_CHOSEN
         if value < self.least:
-            return f"give {self.least:g} or more"
-        return "give a whole number" if self.whole and value != int(value) else ""
+            return Fault.TOO_SMALL
+        return Fault.NOT_WHOLE if self.whole and value != int(value) else None
+
+    def problem(self, value: float) -> str:
+        """Return what to give in place of ``value``, nothing where it is good."""
+        fault = self.fault(value)
+        if fault is None:
+            return ""
+        return {
+            Fault.NO_NUMBER: "give a number",
+            Fault.NOT_CHOSEN: f"give one of {self.choices_text}",
+            Fault.TOO_SMALL: f"give {self.least:g} or more",
+            Fault.NOT_WHOLE: "give a whole number",
+        }[fault]
 
 
 def dimension(standard: float, text: str, unit: str = "m", least: float = 0.0, **limits: Any) -> Any:

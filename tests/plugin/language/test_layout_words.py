@@ -1,0 +1,56 @@
+"""Every cone layout has words for the operator: in English those of the bridge, in other languages others."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from fleet_supervisor.plugin.language import Language, tr
+from fleet_supervisor.plugin.layout_words import (
+    DIMENSIONS,
+    STANDARDS,
+    TITLES,
+    dimension_in_words,
+    fault_in_words,
+    standard_in_words,
+)
+from fleet_supervisor.robot_bridge.layouts.catalogue import LAYOUTS
+
+EVERY = [(kind, one) for kind in LAYOUTS.values() for one in kind.dimensions()]
+
+
+def test_in_english_the_words_are_the_bridges():
+    assert {name: kind.TITLE for name, kind in LAYOUTS.items()} == TITLES
+    assert [standard_in_words(kind) for kind in LAYOUTS.values()] == [
+        one.STANDARD for one in LAYOUTS.values()
+    ]
+    assert set(STANDARDS) <= set(LAYOUTS)
+    wrong = [(kind.NAME, one.name) for kind, one in EVERY if dimension_in_words(kind, one) != one.text]
+    assert wrong == []
+
+
+def test_no_words_are_left_of_dimensions_that_are_gone():
+    named = {one.name for _, one in EVERY} | {f"{kind.NAME}.{one.name}" for kind, one in EVERY}
+    assert set(DIMENSIONS) <= named
+
+
+def test_what_is_wrong_is_said_as_the_bridge_says_it():
+    said = set()
+    for _, one in EVERY:
+        for value in (math.nan, -1e9, one.least + 0.5, one.least - 0.5, 0.25):
+            fault = one.fault(value)
+            words = "" if fault is None else fault_in_words(one, fault)
+            assert words == one.problem(value)
+            said.add(fault)
+    assert len(said) == 5, "every fault, and none"
+
+
+@pytest.mark.parametrize("locale", ["hu", "ca", "es"])
+def test_each_dimension_has_words_in_each_language(qgis_app, locale):
+    language = Language(locale)
+    try:
+        # Proper names may be the same; whole sentences may not.
+        same = [text for text in DIMENSIONS.values() if tr(text) == text]
+    finally:
+        language.remove()
+    assert same == []
