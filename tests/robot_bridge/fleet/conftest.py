@@ -3,9 +3,15 @@
 from __future__ import annotations
 
 import json
+import sys
+from pathlib import Path
 
 import pytest
 from database_client import DatabaseClient
+
+sys.path.insert(0, str(Path(__file__).parent))
+
+from queue_line import Line
 
 from robot_bridge.fleet import Fleet
 from robot_bridge.links.sql import SqlLink
@@ -120,6 +126,16 @@ async def yard(site_maps, database_url):
     yield yard
     await yard.database.close()
     yard.client.close()
+
+
+@pytest.fixture
+async def line(yard):
+    """A yard whose robot r1 stands at (20, 40)."""
+    for robot in ("r1", "r2"):
+        await yard.ready(robot)
+        await yard.take(robot)
+        await yard.at(20.0, 40.0, robot=robot)
+    return Line(yard)
 
 
 class RoadYard(Yard):

@@ -1,0 +1,74 @@
+"""A commit of which nobody knows whether it was done: no task is sent twice, no cone written down twice."""
+
+from __future__ import annotations
+
+import pytest
+from queue_line import PLACES, placed, task
+
+from robot_bridge.commanding.writing import write_drafts
+from robot_bridge.errors import UncertainError
+from robot_bridge.messages import (
+    PauseQueue,
+)
+from robot_bridge.queueing.settling import write_outcome
+
+
+@pytest.mark.parametrize("done", [True, False], ids=["done", "not done"])
+async def test_after_a_commit_of_which_nobody_knows_the_queue_is_what_the_database_holds(
+    line, done, monkeypatch
+):
+    await line.set(task("a"), task("b"))
+    run = line.yard.database.run
+
+    async def lost(*work):
+        monkeypatch.setattr(line.yard.database, "run", run)
+        if done:
+            await run(*work)
+        raise UncertainError("the connection was lost during the commit")
+
+    monkeypatch.setattr(line.yard.database, "run", lost)
+    with pytest.raises(UncertainError):
+        await line.queues.pause(PauseQueue("r1"), "Ada")
+    await line.reach(*PLACES["a"])
+    assert (await line.seen()).state.value == ("paused" if done else "running")
+    assert await line.states() == {"a": "done", "b": "waiting" if done else "current"}
+
+
+@pytest.mark.parametrize("done", [True, False], ids=["done", "not done"])
+async def test_a_task_of_which_nobody_knows_whether_it_was_sent_is_sent_once(line, done, monkeypatch):
+    run = line.yard.database.run
+
+    async def lost(work, *arguments):
+        if work is not write_drafts:
+            return await run(work, *arguments)
+        monkeypatch.setattr(line.yard.database, "run", run)
+        if done:
+            await run(work, *arguments)
+        raise UncertainError("the connection was lost during the commit")
+
+    monkeypatch.setattr(line.yard.database, "run", lost)
+    await line.set(task("a"), task("b"))
+    await line.go()
+    await line.reach(*PLACES["a"])
+    assert await line.states() == {"a": "done", "b": "current"}
+    assert await line.sent() == [PLACES["a"], PLACES["b"]]
+
+
+async def test_a_cone_of_which_nobody_knows_whether_it_was_written_down_is_so_once(line, monkeypatch):
+    await line.set(task("a", "place"), task("b"))
+    await line.yard.take()
+    await line.yard.at(*PLACES["a"])
+    run = line.yard.database.run
+
+    async def lost(work, *arguments):
+        done = await run(work, *arguments)
+        if work is write_outcome:
+            monkeypatch.setattr(line.yard.database, "run", run)
+            raise UncertainError("the connection was lost during the commit")
+        return done
+
+    monkeypatch.setattr(line.yard.database, "run", lost)
+    await line.go()
+    await line.go()
+    assert len(await placed(line)) == 1
+    assert await line.states() == {"a": "done", "b": "current"}
