@@ -130,14 +130,29 @@ def test_a_battery_is_not_driven_empty(objective: str) -> None:
     assert_is_best(replace(job, robots=robots), objective, NOTHING)
 
 
+def second_stage(seed: int) -> tuple[Job, list[Day], float]:
+    """Return a job of which the second robot has placed one cone, far off, for which the others waited."""
+    job = loaded(seed, STAY, 5, 4)
+    targets = (replace(job.targets[0], x=180.0, y=150.0), *(replace(one, stage=1) for one in job.targets[1:]))
+    job = replace(job, targets=targets)
+    before: list[Day] = [[[]], [[job.first_target]]]
+    return job, before, by_hand(job, before, 0.0)[0]
+
+
 @OBJECTIVES
-def test_a_later_stage_goes_on_from_where_the_robots_are(objective: str) -> None:
-    job = loaded(1, STAY, 6, 4)
-    job = replace(job, targets=tuple(replace(one, stage=int(k > 1)) for k, one in enumerate(job.targets)))
-    first, second = job.first_target, job.first_target + 1
-    before: list[Day] = [[[first]], [[second]]]
-    gate_s = by_hand(job, before, 0.0)[0]
-    assert_is_best(job, objective, before, gate_s)
+def test_a_later_stage_goes_on_when_and_where_the_robots_are(objective: str) -> None:
+    for seed in range(3):
+        assert_is_best(second_stage(seed)[0], objective, *second_stage(seed)[1:])
+
+
+@OBJECTIVES
+def test_what_was_driven_in_earlier_stages_is_gone_from_the_battery(objective: str) -> None:
+    job, before, gate_s = second_stage(0)
+    job = replace(job, robots=(replace(job.robots[0], aboard=2), job.robots[1]))
+    whole = found(job, objective, before, gate_s)
+    drives = by_hand(job, [[[]], whole[1]], gate_s)[1]
+    robots = (replace(job.robots[0], aboard=4), replace(job.robots[1], range_m=drives - 1.0))
+    assert_is_best(replace(job, robots=robots), objective, before, gate_s)
 
 
 @OBJECTIVES
