@@ -44,6 +44,7 @@ class FleetSupervisor:
         if self._iface is None:
             return
         # Only here: qgis_process has no window, and needs nothing of what the window is made of.
+        from .desk.accounts.accounts_action import AccountsAction
         from .desk.layout_action import LayoutAction
         from .desk.live_layers import LiveLayers
         from .desk.menu_letters import MenuLetters
@@ -54,6 +55,7 @@ class FleetSupervisor:
         from .desk.replay.replay_action import ReplayAction
         from .desk.robot_feed import RobotFeed
         from .desk.shortcuts import Shortcuts
+        from .desk.site_choice.site_choice_action import SiteChoiceAction
         from .desk.site_drop import SiteDrop
         from .desk.surface_action import SurfaceAction
         from .desk.tour.tour_action import TourAction
@@ -67,6 +69,7 @@ class FleetSupervisor:
         live_layers = LiveLayers(QgsProject.instance())
         window = self._window = DeskWindow(iface)
         alarms = WindowAlarms(iface, window, self._surfaces)
+        connections = window.dock.connection_panel.menu
         self._parts = [
             # The first ones, so that they go last: everything else has left menu and project by then.
             PluginMenu(iface.mainWindow(), MENU),
@@ -84,6 +87,8 @@ class FleetSupervisor:
             PlansAction(iface, MENU, window.desk),
             ObservationsAction(iface, MENU, window.desk),
             ReplayAction(iface, MENU, window.desk),
+            AccountsAction(iface, MENU, connections, window.desk),
+            SiteChoiceAction(iface, MENU, connections, window.desk),
             TourAction(iface, MENU, window),
         ]
         entries = [*window.actions.all(), *(part.action for part in self._parts if hasattr(part, "action"))]

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from qgis.core import QgsApplication
 from qgis.PyQt.QtCore import QObject, Qt, pyqtSignal
-from qgis.PyQt.QtWidgets import QMenu, QToolButton, QWidget
+from qgis.PyQt.QtWidgets import QAction, QMenu, QToolButton, QWidget
 
 from ..language import tr
 from ..settings.connection_dialog import ConnectionDialog
@@ -27,7 +27,8 @@ class ConnectionMenu(QObject):
     ):
         super().__init__(parent)
         self._connections, self._as_it_stands = connections, as_it_stands
-        self._window, self._marked = parent, ""
+        self._window, self._marked, self._is_held = parent, "", False
+        self._more: list[QAction] = []
         self.button = QToolButton(parent)
         self.button.setObjectName("fleet_connections_button")
         self.button.setIcon(QgsApplication.getThemeIcon("/mIconConnect.svg"))
@@ -44,6 +45,19 @@ class ConnectionMenu(QObject):
         self._marked = name
         self.button.setToolTip(tr("Connection: {name}", name=name) if name else NONE_CHOSEN)
 
+    def hold(self, held: bool) -> None:
+        """Let no other connection be picked, as while one is open."""
+        self._is_held = held
+
+    def offer(self, action: QAction) -> None:
+        """List an action of the gateway's beneath the connections."""
+        self._more.append(action)
+
+    def withdraw(self, action: QAction) -> None:
+        """List an action no longer."""
+        self._more.remove(action)
+        self.menu.removeAction(action)
+
     def fill(self) -> None:
         """List the connections as they are kept now."""
         self.menu.clear()
@@ -53,14 +67,18 @@ class ConnectionMenu(QObject):
             entry.setCheckable(True)
             entry.setChecked(one.name == self._marked)
             entry.setToolTip(one.url)
+            entry.setEnabled(not self._is_held)
             entry.triggered.connect(lambda _=False, one=one: self.chosen.emit(one))
         self.menu.addSeparator()
         keep = self.menu.addAction(tr("&Keep under a name…"))
         keep.setObjectName("fleet_keep_connection")
+        keep.setEnabled(not self._is_held)
         keep.triggered.connect(self._keep)
         manage = self.menu.addAction(tr("&Manage connections…"))
         manage.setObjectName("fleet_manage_connections")
         manage.triggered.connect(lambda: ConnectionsDialog(self._window.window()).open())
+        self.menu.addSeparator()
+        self.menu.addActions(self._more)
 
     def _keep(self) -> None:
         dialog = ConnectionDialog(self._as_it_stands(), self._connections, self._window.window())

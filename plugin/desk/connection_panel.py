@@ -55,8 +55,8 @@ class ConnectionPanel(QWidget):
         self._operator = QLineEdit(settings.value(OPERATOR_KEY, "") or _user())
         self._operator.setObjectName("fleet_operator")
         self._operator.setToolTip(tr("Who you are: it stands beside every command in every log"))
-        self._menu = ConnectionMenu(self._connections, self._as_it_stands, self)
-        self._menu.chosen.connect(self.use)
+        self.menu = ConnectionMenu(self._connections, self._as_it_stands, self)
+        self.menu.chosen.connect(self.use)
         self._access = AccessFields()
         self._more = _more_button()
         self._more.toggled.connect(self._access.setVisible)
@@ -90,7 +90,7 @@ class ConnectionPanel(QWidget):
             self._operator.setText(connection.operator)
         self._chosen = connection
         self._access.use(connection.auth, connection.ca_file)
-        self._menu.mark(connection.name)
+        self.menu.mark(connection.name)
         self._show_access()
 
     def remember(self) -> None:
@@ -114,7 +114,7 @@ class ConnectionPanel(QWidget):
             if field.isReadOnly() != wanted:
                 field.setReadOnly(wanted)
         self._access.setEnabled(not wanted)
-        self._menu.button.setEnabled(not wanted)
+        self.menu.hold(wanted)
         if link.wants_token and link != self._shown:
             self._more.setChecked(True)
         self._shown = link
@@ -128,7 +128,7 @@ class ConnectionPanel(QWidget):
             # Its token is for the other gateway.
             self._chosen = None
             self._access.use("")
-            self._menu.mark("")
+            self.menu.mark("")
         self._show_access()
 
     def _show_access(self) -> None:
@@ -148,14 +148,14 @@ class ConnectionPanel(QWidget):
         where = QHBoxLayout()
         where.setSpacing(2)
         where.addWidget(self._url)
-        where.addWidget(self._menu.button)
+        where.addWidget(self.menu.button)
         grid.addLayout(where, 0, 1)
         grid.addWidget(self._more, 0, 2)
         grid.addWidget(self._operator, 1, 1)
         grid.addWidget(connect, 1, 2)
         grid.addWidget(self._access, 2, 0, 1, 3)
         grid.addWidget(self._state, 3, 0, 1, 3)
-        in_order = (self._url, self._menu.button, self._more, self._operator, connect, self._access)
+        in_order = (self._url, self.menu.button, self._more, self._operator, connect, self._access)
         for before, after in pairwise(in_order):
             self.setTabOrder(before, after)
 

@@ -18,6 +18,8 @@ class Topic:
 START = Topic("operator")
 CONNECTIONS = Topic("operator", "connections")
 OPTIONS = Topic("operator", "options")
+ACCOUNTS = Topic("operator", "accounts")
+SITES = Topic("operator", "which-site-is-served")
 
 TOPICS = {
     "fleet_url": Topic("operator", "connect"),

@@ -70,6 +70,8 @@ class SmallGateway:
         self.site = site
         self.port = 0
         self.protocol = 1
+        self.who: dict[str, str] = {}
+        """What it tells a desk of who that is: ``operator`` and ``role``, as gateways with accounts do."""
         self.robots: dict[str, RobotReport] = {}
         self.commands: dict[str, CommandReport] = {}
         self.requests: list[tuple[str, dict]] = []
@@ -172,7 +174,7 @@ class SmallGateway:
             return {**answer, **self.answers[method](params)}
         if method == "hello":
             facts = {"site": to_json(self.site), "emergency": to_json(self.emergency)}
-            return {**answer, "result": {"protocol": self.protocol, **facts}}
+            return {**answer, "result": {"protocol": self.protocol, **facts, **self.who}}
         if method == "send":
             return {**answer, "result": to_json(self._queue(**params))}
         if method in ("emergency_stop", "clear_emergency_stop"):

@@ -119,14 +119,21 @@ def test_enter_has_one_meaning_in_every_dialog(dialogs):
 
 
 def test_enter_does_not_let_robots_go(dialogs):
-    """What stops robots or lets them go by a slip of the hand is not behind Enter."""
-    found = dict.fromkeys(("clear", "override"))
+    """What stops robots, lets them go or cuts an operator off by a slip of the hand is not behind Enter."""
+    doing = {
+        "revocation": "fleet_revocation_confirm",
+        "new_token": "fleet_another_token_confirm",
+        "role": "fleet_another_role_confirm",
+        "site_question": "fleet_site_confirm",
+    }
+    found = dict.fromkeys(("clear", "override", *doing))
     for name, dialog in dialogs():
         if name in found:
             found[name] = defaults_of(dialog)[0]
             if name == "override":
                 assert not dialog.findChild(QPushButton, "fleet_override_confirm").isEnabled()
     assert found["clear"] == "fleet_clear_keep"
+    assert not [name for name, button in doing.items() if found[name] in (None, button)]
 
 
 def test_tab_goes_through_every_dialog_from_top_to_bottom(dialogs):

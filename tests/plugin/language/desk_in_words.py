@@ -251,6 +251,15 @@ def each_tab(widget: QWidget) -> Iterator[tuple[int, QWidget]]:
 
 def dialogs(window, desk_window) -> Iterator[tuple[str, QDialog]]:
     """Yield every dialog with something to say."""
+    from fleet_supervisor.plugin.desk.accounts.account_model import Account
+    from fleet_supervisor.plugin.desk.accounts.accounts_dialog import AccountsDialog
+    from fleet_supervisor.plugin.desk.accounts.questions import (
+        AnotherRole,
+        AnotherToken,
+        NewAccount,
+        revocation,
+    )
+    from fleet_supervisor.plugin.desk.accounts.token_dialog import TokenDialog
     from fleet_supervisor.plugin.desk.alarms.log_dialog import AlarmLogDialog
     from fleet_supervisor.plugin.desk.alarms.thresholds import Thresholds
     from fleet_supervisor.plugin.desk.alarms.thresholds_dialog import ThresholdsDialog
@@ -259,6 +268,8 @@ def dialogs(window, desk_window) -> Iterator[tuple[str, QDialog]]:
     from fleet_supervisor.plugin.desk.commands.coordinates_dialog import CoordinatesDialog
     from fleet_supervisor.plugin.desk.commands.override_dialog import OverrideDialog
     from fleet_supervisor.plugin.desk.drafts import CONE, Draft, Findings
+    from fleet_supervisor.plugin.desk.site_choice.site_choice_dialog import SiteChoiceDialog
+    from fleet_supervisor.plugin.desk.site_choice.site_question import site_question
     from fleet_supervisor.plugin.help.help_window import HelpWindow
     from fleet_supervisor.plugin.help.topics import START
     from fleet_supervisor.plugin.roles.roles_dialog import RolesDialog
@@ -266,7 +277,14 @@ def dialogs(window, desk_window) -> Iterator[tuple[str, QDialog]]:
     from fleet_supervisor.plugin.settings.connections import Connections
     from fleet_supervisor.plugin.settings.connections_dialog import ConnectionsDialog
     from fleet_supervisor.plugin.settings.gateway_connection import GatewayConnection
-    from fleet_supervisor.robot_bridge.messages import EmergencyReport
+    from fleet_supervisor.robot_bridge.messages import (
+        EmergencyReport,
+        NewToken,
+        OperatorReport,
+        Role,
+        SiteOffer,
+        TokenState,
+    )
 
     site = GatewayConnection("Proving ground", "wss://gateway.example.org:8765/desk", "anna")
     Connections().put(site)
@@ -281,6 +299,17 @@ def dialogs(window, desk_window) -> Iterator[tuple[str, QDialog]]:
     yield "override", OverrideDialog(Draft("r1", CONE, ((60.0, 50.0),), found), window)
     stop = EmergencyReport(True, "s1", time.time(), "anna", robots=5, waiting=["r1", "r2"])
     yield "clear", ClearDialog(stop, window)
+    yield "accounts", AccountsDialog(desk_window.desk, window)
+    own = Account(OperatorReport("Ada", Role.SUPERVISOR, time.time(), TokenState.VALID), is_own=True)
+    yield "new_account", NewAccount(True, window)
+    yield "role", AnotherRole(own, window)
+    yield "new_token", AnotherToken(own, window)
+    yield "revocation", revocation(own, window, lambda: None)
+    made = NewToken("Ada", Role.SUPERVISOR, f"fleet_op_{0:043d}", time.time())
+    yield "token", TokenDialog(made, ends_link=True, parent=window)
+    yield "sites", SiteChoiceDialog(desk_window.desk, window)
+    offer = SiteOffer("south", False, "south", "South field", 1)
+    yield "site_question", site_question(offer, window, lambda: None)
     help_window = HelpWindow(window)
     help_window.show_topic(START)
     yield "help", help_window

@@ -1,0 +1,36 @@
+"""The sites that a gateway may serve, as rows of a table."""
+
+from __future__ import annotations
+
+from qgis.PyQt.QtCore import QModelIndex, QObject, Qt
+
+from ....robot_bridge.messages import SiteOffer
+from ...language import tr
+from ..row_model import RowModel
+
+COLUMNS = (tr("Site"), tr("Folder"), tr("Version"), tr("State"))
+SERVED = tr("served now")
+READY = tr("can be chosen")
+
+
+class SiteModel(RowModel):
+    """One row for each site."""
+
+    def __init__(self, parent: QObject | None = None):
+        super().__init__(COLUMNS, parent)
+
+    def data(self, index: QModelIndex, role: int = 0) -> object:
+        if role in (Qt.ItemDataRole.DisplayRole, Qt.ItemDataRole.ToolTipRole):
+            return cells(self.rows[index.row()])[index.column()]
+        return None
+
+
+def cells(offer: SiteOffer) -> tuple[str, ...]:
+    """Return what the columns show of a site."""
+    version = "–" if offer.version is None else str(offer.version)
+    return offer.name or "–", offer.site, version, state_in_words(offer)
+
+
+def state_in_words(offer: SiteOffer) -> str:
+    """Return whether a site is served, or can be, or why not."""
+    return SERVED if offer.served else offer.refusal or READY
