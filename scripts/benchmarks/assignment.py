@@ -55,7 +55,7 @@ Balanced, the last robot finishes at (seconds; 10 s for each cone, 30 s at each 
 {ends}
 
 Robots here and there on a field of 100 m that have all cones aboard, without a store, each to end where it began;
-metres of all robots where the fewest are asked for, and when the last one finishes where an even share is:
+metres of all robots where the fewest are asked for, and the seconds after which the last one is home where even work is:
 
 | | metres: preview | ours, {short:g} s | last finishes: preview | ours, {short:g} s |
 |---|---|---|---|---|
