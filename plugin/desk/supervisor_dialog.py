@@ -221,5 +221,7 @@ def _table(model: RowModel, name: str) -> QTableView:
     view.setAlternatingRowColors(True)
     view.setShowGrid(False)
     view.setWordWrap(False)
+    # Bold heads over a selected row would be wider than their columns.
+    view.horizontalHeader().setHighlightSections(False)
     view.verticalHeader().hide()
     return view
