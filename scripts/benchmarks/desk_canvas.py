@@ -163,9 +163,14 @@ def layer(data: str, number: int) -> None:
 
 
 def live(data: str, number: int, rate: float = 10.0) -> None:
-    """Print frames a second and the milliseconds from a message's sending to its painting."""
+    """Print frames a second, what one takes, and the milliseconds from sending to painting."""
     stage = Stage(data, number)
-    desk, view, site = open_desk(stage)
+    watch_live(stage, open_desk(stage), number, rate)
+
+
+def watch_live(stage: Stage, opened: tuple[Any, Any, Any], number: int, rate: float) -> None:
+    """Print the same of what was ``opened``: a desk, its live view, and the site."""
+    desk, view, site = opened
     told = json.dumps(dataclasses.asdict(site))
     given = [told, *map(str, (number, rate, *stage.area))]
     command = [sys.executable, "-m", "benchmarks.desk_feed", *given]
@@ -182,14 +187,15 @@ def live(data: str, number: int, rate: float = 10.0) -> None:
                 newest = desk.picture.view("robot-0", 0.0)
                 delays.append((time.monotonic() - newest.told["device_time"]) * 1e3)
 
-        before = view.overlay.frames
+        before, began = view.overlay.frames, time.thread_time()
         stage.run(SECONDS, look)
-        frames = (view.overlay.frames - before) / SECONDS
+        busy, painted = time.thread_time() - began, view.overlay.frames - before
     finally:
         feed.kill()
         feed.wait()
     p50, p99 = np.percentile(delays, (50, 99)).tolist()
-    stage.end({"frames": frames, "new": len(delays) / SECONDS, "p50": p50, "p99": p99})
+    rates = {"frames": painted / SECONDS, "new": len(delays) / SECONDS, "computing": busy / painted * 1e3}
+    stage.end({**rates, "p50": p50, "p99": p99})
 
 
 def hour(data: str, number: int) -> None:
@@ -216,14 +222,11 @@ def hour(data: str, number: int) -> None:
 
 def open_desk(stage: Stage, clock: Callable[[], float] = time.monotonic) -> tuple[Any, Any, Any]:
     """Return a desk that knows its site, its live view, and the site."""
-    _register()
+    register()
     from fleet_supervisor.plugin.desk.desk import Desk
     from fleet_supervisor.plugin.desk.live.live_view import LiveView
-    from fleet_supervisor.robot_bridge.messages import SiteReport
 
-    x, y, width, height = stage.area
-    bounds = (x, y, x + width, y + height)
-    site = SiteReport("track", "Track", 1, CRS, stage.origin, 0.0, bounds, 0.2, 3.0, 10.0)
+    site = site_of(stage)
     desk = Desk(stage.canvas, QgsProject.instance(), clock=clock)
     view = LiveView(desk)
     desk._take_site(site)
@@ -233,7 +236,16 @@ def open_desk(stage: Stage, clock: Callable[[], float] = time.monotonic) -> tupl
     return desk, view, site
 
 
-def _register() -> None:
+def site_of(stage: Stage) -> Any:
+    """Return the site that a gateway would tell of: what the canvas shows."""
+    from fleet_supervisor.robot_bridge.messages import SiteReport
+
+    x, y, width, height = stage.area
+    bounds = (x, y, x + width, y + height)
+    return SiteReport("track", "Track", 1, CRS, stage.origin, 0.0, bounds, 0.2, 3.0, 10.0)
+
+
+def register() -> None:
     """Make the repository's root importable under the name that QGIS gives it."""
     name = "fleet_supervisor"
     spec = importlib.util.spec_from_file_location(
