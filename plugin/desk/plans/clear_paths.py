@@ -17,39 +17,40 @@ _MOST_DETOURS = 50
 
 
 class ClearTravel:
-    """The ways of ``inner``, led round ``obstacles``, (n, 2) in the site frame, by ``clearance`` metres.
+    """The ways of ``inner``, led round ``obstacles``, (n, 2) in the site frame, by ``clearances`` (n,) metres.
 
     ``places`` (m, 2) are those that ``inner`` numbers. Distances stay those of ``inner``: a detour round a
     cone is shorter than what a distance is known by.
     """
 
-    def __init__(self, inner: Travel, places: Floats, obstacles: Floats, clearance: float) -> None:
-        self._inner, self._places, self._clearance = inner, places, clearance
+    def __init__(self, inner: Travel, places: Floats, obstacles: Floats, clearances: Floats) -> None:
+        self._inner, self._places, self._clearances = inner, places, clearances
         self._obstacles = obstacles
         self.name, self.metres = inner.name, inner.metres
 
     def path(self, start: int, goal: int) -> Floats:
         """Return the points from place to place."""
         points = self._inner.path(start, goal)
-        return led_round(points, self._obstacles, self._clearance)
+        return led_round(points, self._obstacles, self._clearances)
 
 
-def led_round(points: Floats, obstacles: Floats, clearance: float) -> Floats:
-    """Return the way ``points``, (n, 2), led round all ``obstacles``, (m, 2), by ``clearance`` metres.
+def led_round(points: Floats, obstacles: Floats, clearances: Floats) -> Floats:
+    """Return the way ``points``, (n, 2), led round all ``obstacles``, (m, 2), by ``clearances``, (m,) metres.
 
     Obstacles that the way begins or ends at are passed over: the robot stands there, or is to. Where others
     leave no room the way is returned as far as it could be led.
     """
-    if len(points) < 2 or len(obstacles) == 0 or clearance <= 0:
+    if len(points) < 2 or len(obstacles) == 0:
         return points
     ends = points[[0, -1]]
     away = np.hypot(*(obstacles[:, None, :] - ends[None, :, :]).transpose(2, 0, 1)).min(axis=1)
-    standing = obstacles[away > clearance]
+    in_the_way = (away > clearances) & (clearances > 0)
+    standing, room = obstacles[in_the_way], clearances[in_the_way]
     for _ in range(_MOST_DETOURS):
-        found = _first_met(points, standing, clearance)
+        found = _first_met(points, standing, room)
         if found is None:
             return points
-        points = _round_one(points, standing, found, clearance)
+        points = _round_one(points, standing, found, room)
     return points
 
 
@@ -62,32 +63,32 @@ def distances(points: Floats, obstacles: Floats) -> Floats:
     return np.hypot(*(nearest - obstacles[:, None, :]).transpose(2, 0, 1)).min(axis=1)
 
 
-def _first_met(points: Floats, standing: Floats, clearance: float) -> int | None:
+def _first_met(points: Floats, standing: Floats, room: Floats) -> int | None:
     if len(standing) == 0:
         return None
-    near = np.flatnonzero(distances(points, standing) < clearance - 1e-6)
+    near = np.flatnonzero(distances(points, standing) < room - 1e-6)
     if len(near) == 0:
         return None
-    stations = [_entry(points, standing[k], clearance)[0] for k in near]
+    stations = [_entry(points, standing[k], room[k])[0] for k in near]
     return int(near[int(np.argmin(stations))])
 
 
-def _round_one(points: Floats, standing: Floats, which: int, clearance: float) -> Floats:
+def _round_one(points: Floats, standing: Floats, which: int, room: Floats) -> Floats:
     """Return the way led round one obstacle, on a side that is clear of the others, else the shorter."""
     centre = standing[which]
     # Chords of the circle's arc stay outside of it when the arc is a little wider.
-    radius = clearance / math.cos(math.pi / _ROUND) * 1.02
+    radius = room[which] / math.cos(math.pi / _ROUND) * 1.02
     first, entry = _entry(points, centre, radius)
     last, leave = _leave(points, centre, radius)
     begin, end = (math.atan2(*(at - centre)[::-1]) for at in (entry, leave))
-    others = np.delete(standing, which, axis=0)
+    others, their_room = np.delete(standing, which, axis=0), np.delete(room, which)
     ways = []
     for turn in (1.0, -1.0):
         span = (turn * (end - begin)) % math.tau
         count = max(math.ceil(span / (math.tau / _ROUND)), 1)
         angles = begin + turn * span * np.arange(count + 1) / count
         arc = centre + radius * np.column_stack([np.cos(angles), np.sin(angles)])
-        blocked = len(others) > 0 and bool((distances(arc, others) < clearance - 1e-6).any())
+        blocked = len(others) > 0 and bool((distances(arc, others) < their_room - 1e-6).any())
         ways.append((blocked, span, arc))
     arc = min(ways, key=lambda way: way[:2])[2]
     return np.concatenate([points[: first + 1], arc, points[last + 1 :]])

@@ -146,7 +146,8 @@ class DraftPlan(QObject):
         except AssignmentError as error:
             raise PlanningError(str(error)) from error
         ways = PlanWays(self._desk.project, frame, self.settings)
-        ways.standing = self._standing({one.placement for one in facts.values()})
+        ways.cones = self._cones_of_before({one.placement for one in facts.values()})
+        ways.robots = self._standing_robots()
         blank = Draft(Plan((), (), (), "", "", "", ""), ways, facts, uuid.uuid4().hex)
         ways.closures = self._desk.roads.closures
         self.run(
@@ -203,20 +204,24 @@ class DraftPlan(QObject):
             self.settings.of_robot(view.name).robot(view.name, view.report.x, view.report.y) for view in used
         )
 
-    def _standing(self, collected: set[int | None]) -> np.ndarray:
-        """Return where cones of before stand and robots that do not take part, (n, 2)."""
+    def _cones_of_before(self, collected: set[int | None]) -> np.ndarray:
+        """Return where cones stand that the plan does not collect, (n, 2)."""
         cones = [
             (one.x, one.y)
             for one in self._desk.placements
             if one.collected_at is None and one.placement not in collected
         ]
+        return np.array(cones, dtype=float).reshape(-1, 2)
+
+    def _standing_robots(self) -> np.ndarray:
+        """Return where robots are that do not take part, (n, 2)."""
         views = self._desk.picture.views(self._desk.clock())
         others = [
             (view.report.x, view.report.y)
             for view in views
             if view.has_pose and not (self.settings.of_robot(view.name).used and is_there(view))
         ]
-        return np.array([*cones, *others], dtype=float).reshape(-1, 2)
+        return np.array(others, dtype=float).reshape(-1, 2)
 
 
 def is_there(view) -> bool:

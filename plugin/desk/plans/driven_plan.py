@@ -169,15 +169,14 @@ class DrivenPlan(QObject):
 
     def _plan_rest(self, trouble: Trouble, try_again: bool) -> None:
         driven, progress = self.driven, self.progress
-        places, standing = {}, []
-        for view in self._desk.picture.views(self._desk.clock()):
-            if view.has_pose:
-                places[view.name] = (view.report.x, view.report.y)
-                if view.name in trouble.away:
-                    standing.append(places[view.name])
-        standing += [(one.x, one.y) for one in progress.placed.values() if one.collected_at is None]
+        views = [view for view in self._desk.picture.views(self._desk.clock()) if view.has_pose]
+        places = {view.name: (view.report.x, view.report.y) for view in views}
+        drive = {one.robot.id for one in driven.plan.robots if not one.lost} - set(trouble.away)
+        placed = [(one.x, one.y) for one in progress.placed.values() if one.collected_at is None]
         driven.ways.closures = self._desk.roads.closures
-        driven.ways.standing = np.array([*driven.ways.standing, *standing], dtype=float).reshape(-1, 2)
+        driven.ways.cones = np.array([*driven.ways.cones, *placed], dtype=float).reshape(-1, 2)
+        standing = [place for name, place in places.items() if name not in drive]
+        driven.ways.robots = np.array(standing, dtype=float).reshape(-1, 2)
         now = situation_of(driven.plan, progress, places, trouble, time.time(), try_again=try_again)
         wanted = Wanted(driven.plan.objective, time_limit_s=min(self._drafts.settings.seconds, _REPLANNING_S))
         self._drafts.run(

@@ -40,13 +40,15 @@ Floats = npt.NDArray[np.float64]
 class PlanWays:
     """The ground of one plan; made in the window's thread, used by one task after the other.
 
-    ``standing`` (n, 2) is what stands beside the plan's own cones: cones of before, robots that are lost.
-    ``closures`` are the roads that are closed at the gateway; both hold for the next plan that is made.
+    ``cones`` (n, 2) are those of before, beside the plan's own; ``robots`` (n, 2) are where robots stand that
+    do not drive by it. ``closures`` are the roads that are closed at the gateway. All hold for the next plan
+    that is made.
     """
 
     def __init__(self, project: QgsProject, frame: SiteFrame, settings: PlanSettings) -> None:
         self.settings = settings
-        self.standing: Floats = np.empty((0, 2))
+        self.cones: Floats = np.empty((0, 2))
+        self.robots: Floats = np.empty((0, 2))
         self.closures: Sequence[ClosureReport] = ()
         self._router: Router | None = None
         self._shut: set[int] = set()
@@ -77,8 +79,15 @@ class PlanWays:
         if router is not None:
             roads = RoadTravel(job, router, progress=lambda share: _ask(goes_on))
             travel = _NearOrByRoad(job, travel, roads, self.settings.direct_m)
-        obstacles = np.concatenate([job.places[job.first_target :], self.standing])
-        clear = ClearTravel(travel, job.places, obstacles, self.settings.clearance_m)
+        cones = np.concatenate([job.places[job.first_target :], self.cones])
+        clear = ClearTravel(
+            travel,
+            job.places,
+            np.concatenate([cones, self.robots]),
+            np.repeat(
+                [self.settings.clearance_m, self.settings.off_standing_m], [len(cones), len(self.robots)]
+            ),
+        )
         return CancellableTravel(clear, goes_on)
 
     def _opened(self, goes_on: Callable[[], bool]) -> Router | None:

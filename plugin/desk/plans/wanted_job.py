@@ -56,6 +56,11 @@ class PlanSettings:
     by_itself: bool = False
     robots: dict[str, RobotSettings] = field(default_factory=dict)
 
+    @property
+    def off_standing_m(self) -> float:
+        """How far to keep from a robot that stands: half of what two keep that drive, for only one errs."""
+        return max(self.clearance_m, self.apart_m / 2)
+
     def of_robot(self, name: str) -> RobotSettings:
         """Return the settings of a robot, the usual ones where it has none."""
         return self.robots.get(name, RobotSettings())
