@@ -18,6 +18,7 @@ from .commands.start_tool import StartTool
 from .cone_tool import ConeTool
 from .desk import Desk
 from .dock import FleetDock
+from .emergency_key import EmergencyKey
 from .live.following import Whom
 from .live.live_view import LiveView
 from .live.select_tool import SelectTool
@@ -42,6 +43,7 @@ class DeskWindow(QObject):
         canvas = iface.mapCanvas()
         self.desk = Desk(canvas, QgsProject.instance(), self)
         self.actions = Actions(self)
+        self._key = EmergencyKey(self.actions.emergency, self)
         self.notices = Notices(iface.messageBar(), self)
         self.view = LiveView(self.desk, self)
         self.queue_edits = QueueEdits(self.desk, self)

@@ -17,7 +17,8 @@ _MOST_DETOURS = 50
 
 
 class ClearTravel:
-    """The ways of ``inner``, led round ``obstacles``, (n, 2) in the site frame, by ``clearances`` (n,) metres.
+    """The ways of ``inner``, led round ``obstacles``, (n, 2) in the site frame, each by its metres of
+    ``clearances``, (n,).
 
     ``places`` (m, 2) are those that ``inner`` numbers. Distances stay those of ``inner``: a detour round a
     cone is shorter than what a distance is known by.

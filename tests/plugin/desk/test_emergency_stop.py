@@ -7,9 +7,18 @@ from fleet_supervisor.plugin.desk.clear_dialog import ClearDialog
 from fleet_supervisor.plugin.desk.emergency_banner import in_words
 from fleet_supervisor.plugin.desk.tall_content import TallContent
 from fleet_supervisor.robot_bridge.messages import EmergencyReport, SetPosEnd
-from qgis.PyQt.QtCore import Qt
+from qgis.PyQt.QtCore import QEvent, Qt
 from qgis.PyQt.QtTest import QTest
-from qgis.PyQt.QtWidgets import QAbstractButton, QLabel, QLineEdit, QPushButton, QToolButton
+from qgis.PyQt.QtWidgets import (
+    QAbstractButton,
+    QApplication,
+    QDialog,
+    QLabel,
+    QLineEdit,
+    QMessageBox,
+    QPushButton,
+    QToolButton,
+)
 
 LEFT = Qt.MouseButton.LeftButton
 
@@ -76,6 +85,46 @@ def test_one_key_does_the_same_wherever_the_focus_is(at_desk, gateway, iface, wa
         widget.setFocus()
         QTest.keyClick(widget, key)
         wait(lambda before=before: len(gateway.asked("emergency_stop")) == before + 1)
+
+
+def opened_box(window):
+    box = QMessageBox(QMessageBox.Icon.Question, "", "Sure?", parent=window)
+    box.open()
+    return box
+
+
+def opened_dialog(window):
+    dialog = QDialog(window)
+    dialog.open()
+    return dialog
+
+
+def dialog_over_a_dialog(window):
+    return opened_dialog(opened_dialog(window))
+
+
+def dialog_that_blocks_all(window):
+    dialog = QDialog(window)
+    dialog.setWindowModality(Qt.WindowModality.ApplicationModal)
+    dialog.show()
+    return dialog
+
+
+@pytest.mark.parametrize("opened", [opened_box, opened_dialog, dialog_over_a_dialog, dialog_that_blocks_all])
+def test_the_key_works_over_whatever_blocks_the_window(at_desk, gateway, iface, wait, opened):
+    dialog = opened(iface)
+    wait(lambda: QApplication.activeWindow() is dialog, what="the dialog")
+    QTest.keyClick(dialog, Qt.Key.Key_F10)
+    wait(lambda: len(gateway.asked("emergency_stop")) == 1, what="the request")
+    assert dialog.isVisible()
+
+
+def test_an_unloaded_plugin_takes_its_key_out_of_open_dialogs(plugin, iface, wait):
+    dialog = opened_dialog(iface)
+    wait(lambda: [action.objectName() for action in dialog.actions()] == ["fleet_emergency_stop"])
+    plugin.unload()
+    QApplication.sendPostedEvents(None, QEvent.Type.DeferredDelete)
+    assert dialog.actions() == []
 
 
 def test_each_step_of_the_robots_is_shown(stopped, gateway, wait):
