@@ -40,9 +40,16 @@ class FleetSupervisor:
         self._functions = ExpressionFunctions(self._surfaces, self._fleet)
 
     def initGui(self):
-        self.initProcessing()
-        if self._iface is None:
-            return
+        try:
+            self.initProcessing()
+            if self._iface is not None:
+                self._open_desk()
+        except Exception:
+            # QGIS forgets a plugin that does not start; what it had put into QGIS by then would stay.
+            self.unload()
+            raise
+
+    def _open_desk(self):
         # Only here: qgis_process has no window, and needs nothing of what the window is made of.
         from .desk.accounts.accounts_action import AccountsAction
         from .desk.layout_action import LayoutAction
@@ -65,37 +72,36 @@ class FleetSupervisor:
         from .locator.robot_locator import RobotLocator
         from .roles.roles_action import RolesAction
 
-        iface = self._iface
-        live_layers = LiveLayers(QgsProject.instance())
-        window = self._window = DeskWindow(iface)
-        alarms = WindowAlarms(iface, window, self._surfaces)
+        iface, project, add = self._iface, QgsProject.instance(), self._add
+        # The first ones, so that they go last: everything else has left menu and project by then.
+        add(PluginMenu(iface.mainWindow(), MENU))
+        add(LiveLayers(project))
+        window = self._window = add(DeskWindow(iface))
+        alarms = add(WindowAlarms(iface, window, self._surfaces))
         connections = window.dock.connection_panel.menu
-        self._parts = [
-            # The first ones, so that they go last: everything else has left menu and project by then.
-            PluginMenu(iface.mainWindow(), MENU),
-            live_layers,
-            window,
-            alarms,
-            RobotFeed(window.desk, self._fleet),
-            OptionsFactory(iface, window, alarms.watch.set_limits),
-            RobotLocator(iface, self._fleet, window.go_to),
-            SiteDrop(iface, QgsProject.instance(), window.notices),
-            HelpDesk(iface, MENU, window.dock),
-            RolesAction(iface, MENU),
-            LayoutAction(iface, MENU),
-            SurfaceAction(iface, MENU, self._surfaces),
-            PlansAction(iface, MENU, window.desk),
-            ObservationsAction(iface, MENU, window.desk),
-            ReplayAction(iface, MENU, window.desk),
-            AccountsAction(iface, MENU, connections, window.desk),
-            SiteChoiceAction(iface, MENU, connections, window.desk),
-            TourAction(iface, MENU, window),
-        ]
+        add(RobotFeed(window.desk, self._fleet))
+        add(OptionsFactory(iface, window, alarms.watch.set_limits))
+        add(RobotLocator(iface, self._fleet, window.go_to))
+        add(SiteDrop(iface, project, window.notices))
+        add(HelpDesk(iface, MENU, window.dock))
+        add(RolesAction(iface, MENU))
+        add(LayoutAction(iface, MENU))
+        add(SurfaceAction(iface, MENU, self._surfaces))
+        add(PlansAction(iface, MENU, window.desk))
+        add(ObservationsAction(iface, MENU, window.desk))
+        add(ReplayAction(iface, MENU, window.desk))
+        add(AccountsAction(iface, MENU, connections, window.desk))
+        add(SiteChoiceAction(iface, MENU, connections, window.desk))
+        add(TourAction(iface, MENU, window))
         entries = [*window.actions.all(), *(part.action for part in self._parts if hasattr(part, "action"))]
         # The last ones, so that they go first: while every action is still there.
-        self._parts.append(Shortcuts(iface.mainWindow(), entries))
+        add(Shortcuts(iface.mainWindow(), entries))
         # Letters may run out in a long menu: what has no key gets one first.
-        self._parts.append(MenuLetters(sorted(entries, key=lambda entry: not entry.shortcut().isEmpty())))
+        add(MenuLetters(sorted(entries, key=lambda entry: not entry.shortcut().isEmpty())))
+
+    def _add(self, part):
+        self._parts.append(part)
+        return part
 
     def unload(self):
         while self._parts:

@@ -6,8 +6,9 @@ import math
 
 import numpy as np
 from qgis.core import QgsPointXY
-from qgis.gui import QgsMapMouseEvent, QgsMapTool
+from qgis.gui import QgsMapMouseEvent, QgsMapTool, QgsVertexMarker
 from qgis.PyQt.QtCore import QPoint, Qt
+from qgis.PyQt.QtGui import QKeyEvent
 from qgis.PyQt.QtWidgets import QWidget
 
 from ...robot_bridge.messages import ClosureReport
@@ -27,19 +28,70 @@ LEAST_REACH = 3.0
 
 
 class ClosureTool(QgsMapTool):
-    """A click on a road asks why and for how long it is closed; a click on a closed one asks to open it."""
+    """A click on a road asks why and for how long it is closed; a click on a closed one asks to open it.
+
+    Enter does what a click would: at the mouse, or in the middle of the map, which the arrow keys move.
+    """
 
     def __init__(self, desk: Desk, window: QWidget):
         super().__init__(desk.canvas)
         self._desk = desk
         self._window = window
+        self._mouse: QPoint | None = None
+        self._middle: QgsVertexMarker | None = None
         self.setCursor(Qt.CursorShape.CrossCursor)
 
+    def activate(self) -> None:
+        super().activate()
+        self.canvas().extentsChanged.connect(self._show_middle)
+        self.canvas().setFocus()
+        self._aim_at(None)
+
+    def deactivate(self) -> None:
+        self.canvas().extentsChanged.disconnect(self._show_middle)
+        self._clear_middle()
+        super().deactivate()
+
+    def canvasMoveEvent(self, event: QgsMapMouseEvent) -> None:
+        self._aim_at(event.pos())
+
     def canvasReleaseEvent(self, event: QgsMapMouseEvent) -> None:
-        if event.button() != Qt.MouseButton.LeftButton:
+        if event.button() == Qt.MouseButton.LeftButton:
+            self._ask_at(event.pos())
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        if event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter):
+            self._ask_at(self.canvas().viewport().rect().center() if self._mouse is None else self._mouse)
+        elif event.key() == Qt.Key.Key_Escape:
+            self.canvas().unsetMapTool(self)
+        else:
+            self._aim_at(None)
+            super().keyPressEvent(event)
             return
+        event.accept()
+
+    def _aim_at(self, mouse: QPoint | None) -> None:
+        self._mouse = mouse
+        self._show_middle()
+
+    def _show_middle(self) -> None:
+        """Show where Enter would click, unless that is where the mouse is."""
+        self._clear_middle()
+        if self._mouse is None:
+            self._middle = QgsVertexMarker(self.canvas())
+            self._middle.setIconType(QgsVertexMarker.IconType.ICON_CROSS)
+            self._middle.setIconSize(round(2 * REACH))
+            self._middle.setPenWidth(2)
+            self._middle.setCenter(self.canvas().center())
+
+    def _clear_middle(self) -> None:
+        if self._middle is not None:
+            self.canvas().scene().removeItem(self._middle)
+            self._middle = None
+
+    def _ask_at(self, pixel: QPoint) -> None:
         try:
-            place, reach = self._place(event)
+            place, reach = self._place(pixel)
         except FleetError as error:
             self._desk.complained.emit(str(error))
             return
@@ -49,11 +101,11 @@ class ClosureTool(QgsMapTool):
         else:
             self._ask_to_open(closed)
 
-    def _place(self, event: QgsMapMouseEvent) -> tuple[Point, float]:
+    def _place(self, pixel: QPoint) -> tuple[Point, float]:
         """Return the place of a click in the site frame, and the metres by which it may miss a road."""
         placement = self._desk.placement()
-        place = placement.to_site(event.mapPoint())
-        beside = self.toMapCoordinates(event.pos() + QPoint(round(REACH), 0))
+        place = placement.to_site(self.toMapCoordinates(pixel))
+        beside = self.toMapCoordinates(pixel + QPoint(round(REACH), 0))
         return place, max(math.dist(place, placement.to_site(QgsPointXY(beside))), LEAST_REACH)
 
     def _closed_at(self, place: Point, reach: float) -> ClosureReport | None:

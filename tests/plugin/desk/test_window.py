@@ -2,30 +2,28 @@
 
 from __future__ import annotations
 
-import gc
 import threading
 import time
 from itertools import pairwise
-from pathlib import Path
 
 import pytest
 from fleet_supervisor.plugin.supervisor import FleetSupervisor
 from fleet_supervisor.robot_bridge.messages import CommandState
 from qgis.core import QgsApplication, QgsProject, QgsSettings, QgsVectorLayer
-from qgis.PyQt.QtCore import QCoreApplication, QEvent, Qt, QThread, QTimer
+from qgis.PyQt.QtCore import QCoreApplication, QEvent, Qt, QTimer
 from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import (
     QAction,
     QApplication,
-    QDockWidget,
     QLabel,
     QLineEdit,
     QPushButton,
     QTableView,
-    QToolBar,
     QToolButton,
     QTreeView,
 )
+
+from tests.plugin.desk.left_behind import left_behind
 
 LEFT = Qt.MouseButton.LeftButton
 
@@ -415,27 +413,6 @@ def test_long_texts_are_shown_whole(plugin, iface):
 
 
 # --- unloading ---
-
-
-def left_behind(iface):
-    QCoreApplication.sendPostedEvents(None, QEvent.Type.DeferredDelete)
-    QApplication.processEvents()
-    gc.collect()
-    return {
-        "docks": len(iface.findChildren(QDockWidget)),
-        "toolbars": len(iface.findChildren(QToolBar)),
-        "actions": len(iface.findChildren(QAction)),
-        "menu entries": len(iface.plugins.actions()),
-        "timers": len(iface.findChildren(QTimer)),
-        "canvas items": len(iface.canvas.scene().items()),
-        "layers": len(QgsProject.instance().mapLayers()),
-        "groups": len(QgsProject.instance().layerTreeRoot().children()),
-        "threads": len([t for t in gc.get_objects() if isinstance(t, QThread) and t.isRunning()]),
-        "named threads": len([p for p in Path("/proc/self/task").glob("*/comm") if "fleet" in p.read_text()]),
-        "notices": len(iface.texts()),
-        "providers": len(QgsApplication.processingRegistry().providers()),
-        "children": len(iface.children()),
-    }
 
 
 def test_unloading_leaves_nothing_twice(iface, gateway, make_robot, wait):
