@@ -23,7 +23,7 @@ from fleet_supervisor.robot_bridge.messages import (
 )
 from inside_qgis.mouse import move_mouse
 from qgis.core import QgsCoordinateReferenceSystem, QgsLocator, QgsProject, QgsRectangle, QgsSettings
-from qgis.gui import QgsMapCanvas, QgsMapToolPan, QgsMessageBar
+from qgis.gui import QgsGui, QgsMapCanvas, QgsMapToolPan, QgsMessageBar
 from qgis.PyQt import sip
 from qgis.PyQt.QtCore import QCoreApplication, QEvent, QPoint, Qt
 from qgis.PyQt.QtTest import QTest
@@ -334,6 +334,9 @@ def iface(qgis_app):
     window.canvas.stopRendering()
     QgsProject.instance().clear()
     if not sip.isdeleted(window):
+        # QGIS's list of shortcuts does not notice that an action is deleted.
+        for action in window.findChildren(QAction):
+            QgsGui.shortcutsManager().unregisterAction(action)
         window.close()
         window.deleteLater()
     let_deleted_go()
