@@ -91,16 +91,15 @@ def start(work: Callable[[Session], None]) -> None:
 
 
 def end() -> None:
-    """Leave QGIS by its own menu, as a user does: it closes the project and takes the plugin out.
+    """Close the project and leave QGIS by its own menu, as a user does: that takes the plugin out.
 
     Left by ``QgsApplication.exit`` it takes its window apart with the project open, and QGIS 3.44 crashes.
-    It would ask about changes that are not saved and about tasks that run, and nobody is there to answer.
+    With a project open, QGIS may ask about changes, or about layers that lie in the folder for temporary
+    files, as those of a copy of this project may; about tasks that run it asks in any case. Nobody is there
+    to answer.
     """
     while QgsApplication.taskManager().countActiveTasks():
         QTest.qWait(POLL_MS)
-    project = QgsProject.instance()
-    for layer in project.mapLayers().values():
-        layer.setCustomProperty("skipMemoryLayersCheck", 1)
-    # Nothing may change the project between this and leaving.
-    project.setDirty(False)
+    iface.newProject(False)
+    QgsProject.instance().setDirty(False)
     iface.actionExit().trigger()
