@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from qgis.core import QgsApplication
 from qgis.PyQt.QtCore import QObject
 from qgis.PyQt.QtWidgets import QAction, QApplication
 
@@ -12,7 +13,7 @@ class EmergencyKey(QObject):
     def __init__(self, action: QAction, parent: QObject):
         super().__init__(parent)
         self._action = action
-        QApplication.instance().focusWindowChanged.connect(self._lend)
+        QgsApplication.instance().focusWindowChanged.connect(self._lend)
 
     def _lend(self) -> None:
         dialog = QApplication.activeModalWidget()

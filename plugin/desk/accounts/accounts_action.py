@@ -15,11 +15,12 @@ class AccountsAction(DialogAction):
     """The entry and its window."""
 
     def __init__(self, iface: QgisInterface, menu: str, connections: ConnectionMenu, desk: Desk):
+        self._accounts = AccountsDialog(desk, iface.mainWindow())
         super().__init__(
             iface,
             menu,
             connections,
-            AccountsDialog(desk, iface.mainWindow()),
+            self._accounts,
             icon="accounts.svg",
             text=tr("Accounts…"),
             name="fleet_accounts",
@@ -27,5 +28,5 @@ class AccountsAction(DialogAction):
         )
 
     def remove(self) -> None:
-        self.dialog.close_tokens()
+        self._accounts.close_tokens()
         super().remove()

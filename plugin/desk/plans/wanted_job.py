@@ -51,7 +51,7 @@ class PlanSettings:
     store_s: float = 30.0
     on_roads: bool = True
     direct_m: float = 25.0
-    clearance_m: float = 0.6
+    clearance_m: float = 0.8
     apart_m: float = 2.0
     by_itself: bool = False
     robots: dict[str, RobotSettings] = field(default_factory=dict)
