@@ -37,3 +37,18 @@ class RowModel(QAbstractTableModel):
         self.beginResetModel()
         self.rows = rows
         self.endResetModel()
+
+
+class TextModel(RowModel):
+    """Shows of each row the texts that ``cells`` makes of it, one for each head, and as tips too."""
+
+    def __init__(
+        self, heads: Sequence[str], cells: Callable[[Any], Sequence[str]], parent: QObject | None = None
+    ):
+        super().__init__(heads, parent)
+        self._cells = cells
+
+    def data(self, index: QModelIndex, role: int = 0) -> object:
+        if role in (Qt.ItemDataRole.DisplayRole, Qt.ItemDataRole.ToolTipRole):
+            return self._cells(self.rows[index.row()])[index.column()]
+        return None

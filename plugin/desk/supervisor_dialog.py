@@ -138,7 +138,7 @@ class SupervisorDialog(QDialog):
         self._close_question()
         self._question = question
         question.finished.connect(self._forget_question)
-        # Message boxes are modal unless told otherwise, and would hold up the key of the emergency stop.
+        # Message boxes are modal unless told otherwise, and would hold up the map.
         question.setModal(False)
         question.show()
 

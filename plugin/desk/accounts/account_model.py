@@ -6,12 +6,12 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from datetime import datetime
 
-from qgis.PyQt.QtCore import QModelIndex, QObject, Qt
+from qgis.PyQt.QtCore import QObject
 
 from ....robot_bridge.messages import OperatorReport, SessionReport, TokenState
 from ...language import tr
 from ..role_words import ROLES
-from ..row_model import RowModel
+from ..row_model import TextModel
 
 COLUMNS = (tr("Operator"), tr("Role"), tr("Since"), tr("Last connected"), tr("Token"))
 NOW = tr("connected now")
@@ -38,16 +38,11 @@ def accounts_of(
     return [Account(one, one.operator == own, one.operator in connected) for one in operators]
 
 
-class AccountModel(RowModel):
+class AccountModel(TextModel):
     """One row for each account."""
 
     def __init__(self, parent: QObject | None = None):
-        super().__init__(COLUMNS, parent)
-
-    def data(self, index: QModelIndex, role: int = 0) -> object:
-        if role in (Qt.ItemDataRole.DisplayRole, Qt.ItemDataRole.ToolTipRole):
-            return cells(self.rows[index.row()])[index.column()]
-        return None
+        super().__init__(COLUMNS, cells, parent)
 
 
 def cells(account: Account) -> tuple[str, ...]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from qgis.PyQt.QtCore import QModelIndex, QObject, Qt
+from qgis.PyQt.QtCore import QObject
 from qgis.PyQt.QtWidgets import (
     QDialog,
     QDialogButtonBox,
@@ -18,7 +18,7 @@ from ...errors import FleetError
 from ...language import tr
 from ...settings.preferences import export_path
 from ..csv_files import iso_time, write_csv
-from ..row_model import RowModel
+from ..row_model import TextModel
 from .alarm import AlarmEvent
 from .alarm_model import time_of_day
 from .words import CHANGES, KINDS, who
@@ -82,23 +82,21 @@ class AlarmLogDialog(QDialog):
             self.export(path)
 
 
-class EventModel(RowModel):
+class EventModel(TextModel):
     """One row for each event."""
 
     def __init__(self, parent: QObject | None = None):
-        super().__init__(COLUMNS, parent)
-
-    def data(self, index: QModelIndex, role: int = 0) -> object:
-        if role not in (Qt.ItemDataRole.DisplayRole, Qt.ItemDataRole.ToolTipRole):
-            return None
-        event = self.rows[index.row()]
-        alarm = event.alarm
-        what = CHANGES[event.change], KINDS[alarm.kind], who(alarm), alarm.text
-        return (time_of_day(event.at), *what, event.by)[index.column()]
+        super().__init__(COLUMNS, _cells, parent)
 
     def show_events(self, events: list[AlarmEvent]) -> None:
         """Show these, in this order."""
         self.show_rows(events)
+
+
+def _cells(event: AlarmEvent) -> tuple[str, ...]:
+    alarm = event.alarm
+    what = CHANGES[event.change], KINDS[alarm.kind], who(alarm), alarm.text
+    return (time_of_day(event.at), *what, event.by)
 
 
 def _csv_row(event: AlarmEvent) -> tuple[object, ...]:

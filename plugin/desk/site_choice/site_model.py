@@ -2,27 +2,22 @@
 
 from __future__ import annotations
 
-from qgis.PyQt.QtCore import QModelIndex, QObject, Qt
+from qgis.PyQt.QtCore import QObject
 
 from ....robot_bridge.messages import SiteOffer
 from ...language import tr
-from ..row_model import RowModel
+from ..row_model import TextModel
 
 COLUMNS = (tr("Site"), tr("Folder"), tr("Version"), tr("State"))
 SERVED = tr("served now")
 READY = tr("can be chosen")
 
 
-class SiteModel(RowModel):
+class SiteModel(TextModel):
     """One row for each site."""
 
     def __init__(self, parent: QObject | None = None):
-        super().__init__(COLUMNS, parent)
-
-    def data(self, index: QModelIndex, role: int = 0) -> object:
-        if role in (Qt.ItemDataRole.DisplayRole, Qt.ItemDataRole.ToolTipRole):
-            return cells(self.rows[index.row()])[index.column()]
-        return None
+        super().__init__(COLUMNS, cells, parent)
 
 
 def cells(offer: SiteOffer) -> tuple[str, ...]:
