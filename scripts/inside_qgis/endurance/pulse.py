@@ -112,7 +112,9 @@ class Pulse:
         return list(self.gaps)
 
     def _collecting(self, phase: str, info: dict[str, int]) -> None:
-        if phase == "start" and info["generation"] == 2 and threading.get_ident() == self._window:
+        # While it holds, it is the script that collects.
+        of_window = not self._holding and threading.get_ident() == self._window
+        if phase == "start" and info["generation"] == 2 and of_window:
             self._collected = True
 
     def _look(self) -> None:

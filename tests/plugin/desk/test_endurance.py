@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import gc
 import shutil
+import time
 
 import pytest
 from benchmarks.endurance import Run, Sample, endure, faults, growth
 from inside_qgis.endurance.play import Player
+from inside_qgis.endurance.pulse import LATE, Pulse
 
 ROBOTS = 40
 
@@ -63,3 +65,37 @@ def test_a_script_that_nobody_holds_is_played_to_its_end(qgis_app, wait):
     wait(lambda: (gc.collect(), ended)[1], what="the script's end")
     assert (steps, ended) == ([0, 1, 2], [None])
     assert Player.under_way == []
+
+
+@pytest.fixture
+def pulse(qgis_app):
+    """A pulse that feels, while Python collects no garbage unasked."""
+    gc.collect()
+    gc.disable()
+    pulse = Pulse()
+    pulse.go_on()
+    yield pulse
+    pulse.remove()
+    gc.enable()
+
+
+def test_a_collection_that_holds_up_the_window_is_named(pulse, wait):
+    gc.collect()
+    _work()
+    wait(lambda: "Python's garbage collection" in pulse.gaps_at, what="a gap with a collection in it")
+
+
+def test_a_collection_by_the_script_is_not_counted(pulse, wait):
+    """It collects before each sample, while the pulse holds."""
+    pulse.hold()
+    gc.collect()
+    pulse.go_on()
+    _work()
+    wait(lambda: pulse.gaps_at, what="a gap")
+    assert "Python's garbage collection" not in pulse.gaps_at
+
+
+def _work():
+    until = time.thread_time() + 3 * LATE
+    while time.thread_time() < until:
+        continue
