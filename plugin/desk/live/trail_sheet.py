@@ -16,8 +16,11 @@ from .trails import Trails
 
 Points = npt.NDArray[np.float64]
 Pixels = npt.NDArray[np.intp]
+Shades = npt.NDArray[np.uint8]
 
 SHADES = 64
+FADED = SHADES - 1
+"""The last shade, of which nothing is seen."""
 BANDS = 16
 """Frames after which the whole image has faded by as much as it has to: each does the same part of it."""
 FILL_SECONDS = 0.003
@@ -122,18 +125,25 @@ class TrailSheet:
         if times.max() < now - self._epoch - self._trails.length.seconds:
             self._argb[top:bottom] = 0
             return
-        times = _spread(times, self._reach)
-        band = self._core[self._shade(times[inside], now)]
+        core = _spread(self._shade(times, now), self._reach)
+        casing = _spread(core, self._reach)
+        # Most of a map has no trail: to look up only what has one is several times as fast.
+        seen = np.flatnonzero(casing[inside] < FADED)
+        shades = core[inside].ravel()[seen]
+        colours = self._core[shades]
         if self._reach:
-            times = _spread(times, self._reach)
-            band = np.where(band == 0, self._casing[self._shade(times[inside], now)], band)
-        self._argb[top:bottom] = band
+            colours = np.where(shades < FADED, colours, self._casing[casing[inside].ravel()[seen]])
+        band = self._argb[top:bottom].reshape(-1)
+        band[:] = 0
+        band[seen] = colours
 
-    def _shade(self, times: npt.NDArray[np.float32], now: float) -> npt.NDArray[np.uint8]:
-        """Return indices into the shades: 0 for what is new, the last one for what has faded away."""
+    def _shade(self, times: npt.NDArray[np.float32], now: float) -> Shades:
+        """Return indices into the shades: 0 for what is new, :data:`FADED` for what has faded away."""
         age = np.float32(now - self._epoch) - times
-        age *= np.float32((SHADES - 1) / self._trails.length.seconds)
-        return np.clip(age, 0, SHADES - 1, out=age).astype(np.uint8)
+        age *= np.float32(FADED / self._trails.length.seconds)
+        # np.clip takes ten times as long.
+        np.minimum(age, FADED, out=age)
+        return np.maximum(age, 0, out=age).astype(np.uint8)
 
 
 def _on_lines(
@@ -162,16 +172,16 @@ def _on_lines(
     return x[inside], y[inside], times[lines[which[inside]]]
 
 
-def _spread(times: npt.NDArray[np.float32], reach: int) -> npt.NDArray[np.float32]:
-    """Return for each pixel the newest of those at most ``reach`` steps away."""
+def _spread(shades: Shades, reach: int) -> Shades:
+    """Return for each pixel the newest of the shades at most ``reach`` steps away."""
     for _ in range(reach):
-        out = times.copy()
-        np.maximum(out[1:], times[:-1], out=out[1:])
-        np.maximum(out[:-1], times[1:], out=out[:-1])
-        np.maximum(out[:, 1:], times[:, :-1], out=out[:, 1:])
-        np.maximum(out[:, :-1], times[:, 1:], out=out[:, :-1])
-        times = out
-    return times
+        out = shades.copy()
+        np.minimum(out[1:], shades[:-1], out=out[1:])
+        np.minimum(out[:-1], shades[1:], out=out[:-1])
+        np.minimum(out[:, 1:], shades[:, :-1], out=out[:, 1:])
+        np.minimum(out[:, :-1], shades[:, 1:], out=out[:, :-1])
+        shades = out
+    return shades
 
 
 def _shades(colour: QColor, strength: float) -> npt.NDArray[np.uint32]:
