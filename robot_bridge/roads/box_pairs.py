@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from typing import TypeVar
+
 import numpy as np
 
 from .centrelines import Floats, Ints, ranges
+
+_Numbers = TypeVar("_Numbers", int, Ints)
 
 _CELLS_FOR_EACH_BOX = 8.0
 """How many cells a box covers on average at most: more cells cost memory, fewer cost comparisons."""
@@ -54,6 +58,6 @@ def cells_of(boxes: Floats, low: Floats, cell: float) -> tuple[Ints, Ints]:
     return box, cell_number(begin[box, 0] + number % wide, begin[box, 1] + number // wide)
 
 
-def cell_number(column: Ints, row: Ints) -> Ints:
+def cell_number(column: _Numbers, row: _Numbers) -> _Numbers:
     """Return one number for a column and a row of the grid."""
-    return (row << np.int64(31)) + column
+    return (row << 31) + column

@@ -55,6 +55,15 @@ class Restrictions:
         return fit
 
 
+@dataclass
+class _Ready:
+    """What finds ways under some restrictions, which edges ``fit`` these, and which of them are ``open``."""
+
+    engine: Engine
+    fit: NDArray[np.bool_]
+    open: NDArray[np.bool_]
+
+
 class Router:
     """Finds routes on one network. Closed edges are closed for every query from then on.
 
@@ -70,8 +79,9 @@ class Router:
         self._engines = engines_for(self._graph, engine) if isinstance(engine, str) else engine(self._graph)
         self._nearest = NearestEdge(network)
         self._closed = network.edges.closed.copy()
+        self._along = int((network.edges.direction != BACKWARD).sum())
         self._arcs_of_edge = _arcs_of_edges(network)
-        self._ready: OrderedDict[Restrictions, tuple[Engine, NDArray[np.bool_]]] = OrderedDict()
+        self._ready: OrderedDict[Restrictions, _Ready] = OrderedDict()
 
     @property
     def nearest(self) -> NearestEdge:
@@ -81,7 +91,7 @@ class Router:
     @property
     def engine_name(self) -> str:
         """What finds the ways, as people are told."""
-        return self._engine(Restrictions())[0].name
+        return self._ready_for(Restrictions()).engine.name
 
     def close(self, edges: Sequence[int]) -> None:
         """Close ``edges`` for every route from now on."""
@@ -107,18 +117,17 @@ class Router:
             NoRouteError when no way leads from one to the other.
         """
         wanted = wanted or Restrictions()
-        engine, fit = self._engine(wanted)
-        allowed = fit & ~self._closed
-        begin = self._foothold("start", start, reach, allowed)
-        end = self._foothold("goal", goal, reach, allowed)
+        ready = self._ready_for(wanted)
+        begin = self._foothold("start", start, reach, ready.open)
+        end = self._foothold("goal", goal, reach, ready.open)
         with self._without(avoid):
-            stretches = self._stretches(begin, end, engine, wanted)
+            stretches = self._stretches(begin, end, ready.engine, wanted)
         if stretches is None:
             raise NoRouteError(
                 f"No way leads from {_told(start)} to {_told(goal)} on the roads that may be used: "
                 "check closed roads, one-way roads, surfaces and widths, or repair the network."
             )
-        return Route(self.network, *stretches, begin.away, end.away, engine.name)
+        return Route(self.network, *stretches, begin.away, end.away, ready.engine.name)
 
     @property
     def closed(self) -> NDArray[np.bool_]:
@@ -154,12 +163,12 @@ class Router:
         lengths = self.network.lengths
         return lengths / self.network.edges.speed if wanted.fastest else lengths
 
-    def _engine(self, wanted: Restrictions) -> tuple[Engine, NDArray[np.bool_]]:
-        """Return the engine for ``wanted`` and which edges it may use as far as they are open."""
+    def _ready_for(self, wanted: Restrictions) -> _Ready:
         if wanted not in self._ready:
             fit = wanted.fit(self.network)
-            costs = np.where(fit & ~self._closed, self._costs(wanted), np.inf)
-            self._ready[wanted] = self._engines(costs[self._edge]), fit
+            free = fit & ~self._closed
+            costs = np.where(free, self._costs(wanted), np.inf)
+            self._ready[wanted] = _Ready(self._engines(costs[self._edge]), fit, free)
             while len(self._ready) > _KEPT:
                 self._ready.popitem(last=False)
         self._ready.move_to_end(wanted)
@@ -170,10 +179,10 @@ class Router:
         self._closed[changed] = closed
         arcs = self._arcs_of_edge[changed].ravel()
         arcs = arcs[arcs >= 0]
-        for wanted, (engine, fit) in self._ready.items():
-            free = fit & ~self._closed
-            edge = self._edge[arcs]
-            engine.set_costs(arcs, np.where(free[edge], self._costs(wanted)[edge], np.inf))
+        edge = self._edge[arcs]
+        for wanted, ready in self._ready.items():
+            ready.open[changed] = ready.fit[changed] & (not closed)
+            ready.engine.set_costs(arcs, np.where(ready.open[edge], self._costs(wanted)[edge], np.inf))
 
     def _stretches(
         self, begin: Foothold, end: Foothold, engine: Engine, wanted: Restrictions
@@ -244,8 +253,9 @@ class Router:
         arcs = np.array(way, dtype=np.int64)
         edge = self._edge[arcs]
         length = self.network.lengths[edge]
-        along = self._arcs_of_edge[edge, 0] == arcs
-        return edge, np.where(along, 0.0, length), np.where(along, length, 0.0)
+        # Arcs along the edges come before those against them.
+        high = np.where(arcs < self._along, length, 0.0)
+        return edge, length - high, high
 
     def _cost(self, stretches: Stretches, wanted: Restrictions) -> float:
         edge, begin, end = stretches

@@ -102,7 +102,10 @@ class _Metric:
         # one the costs cannot be changed. To make one takes less than to hand the question to its thread.
         query = self._kit.CCHQuery(self._metric)
         result = query.run_multi(starts, goals)
-        return None if result.distance is None else list(result.arc_path)
+        if result.distance is None:
+            return None
+        way: list[int] = result.arc_path
+        return way
 
 
 def _without_costs(*ends: Ends) -> tuple[list[tuple[int, int]], ...]:

@@ -105,6 +105,16 @@ def test_a_closed_edge_is_driven_round_at_once_and_opened_again(engine: str) -> 
     assert router.route(*there).metres == pytest.approx(20.0)
 
 
+def test_a_road_that_is_too_narrow_stays_so_when_it_is_opened_again(engine: str) -> None:
+    router = Router(square(width=[2, 9, 9, 9]), engine)
+    there, wide = ((5.0, 0.0), (5.0, 10.0)), Restrictions(least_width=3.0)
+    assert router.route(*there, wide, reach=6.0).off_start == pytest.approx(5.0)
+    router.close([0, 1])
+    router.open([0, 1])
+    assert router.route(*there, wide, reach=6.0).off_start == pytest.approx(5.0)
+    assert router.route(*there).off_start == 0.0
+
+
 def test_roads_closed_from_the_beginning_are_not_used(engine: str) -> None:
     router = Router(square(closed=[True, False, False, False]), engine)
     assert router.route((0.0, 0.0), (10.0, 0.0)).metres == pytest.approx(30.0)
