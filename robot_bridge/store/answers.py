@@ -9,7 +9,7 @@ from typing import NamedTuple
 from sqlalchemy import Connection, and_, bindparam, delete, insert, or_, select
 
 from ..messages import Abort, Answer, SetMap, to_json
-from .rows import Row, add_messages, delete_rows
+from .rows import Row, add_messages, delete_messages
 from .schema import sa
 
 # Built once: SQLAlchemy takes longer to build a statement than the database to do it.
@@ -25,6 +25,8 @@ _READ = (
 _NAMES = ("robot", "op", "params", "payload", "urgent")
 _REMOVE_OWN = delete(sa).where(sa.c.robot == bindparam("of"), sa.c.id == bindparam("one"))
 _WAITING = select(sa.c.id).where(sa.c.id.in_(bindparam("ids", expanding=True)))
+# Found first, and then deleted by their ids: a deletion that looks for its rows waits at those of others.
+_KINDS = select(sa.c.id).where(sa.c.op.in_(bindparam("ops", expanding=True)))
 
 
 class AnswerRow(NamedTuple):
@@ -79,7 +81,7 @@ def read(connection: Connection, robot: str, after: int = 0, after_urgent: int =
 
 def remove(connection: Connection, ids: Sequence[int]) -> None:
     """Delete answers that were delivered, or that are void."""
-    delete_rows(connection, sa, "id", ids)
+    delete_messages(connection, sa, ids)
 
 
 def remove_own(connection: Connection, robot: str, id: int) -> None:
@@ -89,12 +91,12 @@ def remove_own(connection: Connection, robot: str, id: int) -> None:
 
 def remove_kinds(connection: Connection, robot: str, ops: Sequence[str]) -> None:
     """Delete the robot's answers of the kinds ``ops``."""
-    connection.execute(delete(sa).where(sa.c.robot == robot, sa.c.op.in_(ops)))
+    remove(connection, list(connection.scalars(_KINDS.where(sa.c.robot == robot), {"ops": ops})))
 
 
 def remove_everywhere(connection: Connection, ops: Sequence[str]) -> None:
     """Delete the answers of the kinds ``ops``, whoever they are for."""
-    connection.execute(delete(sa).where(sa.c.op.in_(ops)))
+    remove(connection, list(connection.scalars(_KINDS, {"ops": ops})))
 
 
 def waiting(connection: Connection, ids: Sequence[int]) -> set[int]:

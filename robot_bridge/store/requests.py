@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from sqlalchemy import Connection, LargeBinary, Text, cast, func, select
 
-from .rows import add_messages, delete_rows
+from .rows import add_messages, delete_messages
 from .schema import rr
 
 AT_ONCE = 500
@@ -46,7 +46,7 @@ def payload(connection: Connection, id: int, check_size: Callable[[int], None]) 
 
 def remove(connection: Connection, ids: Sequence[int]) -> None:
     """Delete requests that have been dealt with."""
-    delete_rows(connection, rr, "id", ids)
+    delete_messages(connection, rr, ids)
 
 
 def add_all(connection: Connection, rows: Sequence[tuple[str, str, str, bytes | None]]) -> None:

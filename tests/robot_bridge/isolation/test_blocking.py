@@ -9,7 +9,9 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 from yards import GATEWAY, MINE, OTHER, RefusedError
 
-from robot_bridge.messages import Abort
+from robot_bridge import exchange
+from robot_bridge.exchange import Outcome
+from robot_bridge.messages import Abort, OpAck, SetMap
 from robot_bridge.store import answers, requests
 from robot_bridge.store.accounts.stuck import end_stuck
 from robot_bridge.store.database import Database, run_once
@@ -91,6 +93,34 @@ def test_what_a_robot_has_not_committed_holds_up_no_other_robots_requests(yard):
         other.run("insert into rr (op, payload) values ('SendImage', 'x')")
         hesitant.run("rollback")
     assert yard.sql("select robot, op from rr order by id") == [(OTHER, "Alive"), (OTHER, "SendImage")]
+
+
+def answer_at_once(connection):
+    """Deal with the other robot's requests, and stop everybody, as the gateway does; fail where it waits."""
+    connection.exec_driver_sql(AT_ONCE["mariadb" if connection.dialect.name == "mariadb" else "postgresql"])
+    rows, _ = exchange.look(connection, [])
+    done = [Outcome(row.robot, OpAck(id=row.id), SetMap(b"")) for row in rows if row.robot == OTHER]
+    told = [message for outcome in done for message in outcome.rows(acks=True)]
+    exchange.finish(connection, done, told, [row.id for row in rows if row.robot == OTHER], [])
+    answers.remove_everywhere(connection, ["SetPath"])
+
+
+@pytest.mark.parametrize("number", [1, 2, 12, 300])
+def test_what_a_robot_has_not_committed_holds_up_no_other_robots_answers(yard, number):
+    yard.sql(f"insert into sa (robot, op) values ('{OTHER}', 'SetMap'), ('{OTHER}', 'SetPath')")
+    with yard.session(MINE) as hesitant:
+        if yard.kind == "mariadb":
+            hesitant.run("set session transaction isolation level read committed")
+        hesitant.run("begin")
+        hesitant.run("insert into rr (op) values ('Alive')")
+        hesitant.run("delete from sa")
+        for _ in range(number - 1):
+            yard.of(OTHER).run("insert into rr (op) values ('Alive')")
+        run_once(yard.address(GATEWAY), answer_at_once)
+        hesitant.run("commit")
+    assert [robot for (robot,) in yard.sql("select robot from rr")] == [MINE, MINE]
+    told = [op for _, op in yard.sql("select robot, op from sa order by id") if op != "Start"]
+    assert told == ["OpAck", "SetMap"] * number
 
 
 async def test_a_lock_for_update_holds_it_up_no_longer(mariadb):
