@@ -45,9 +45,12 @@ EMERGENCY_STYLE = (
     "QPushButton:pressed { background: #E0A800; }"
 )
 
+LEAST_WIDTH = 404
+"""Pixels of its parts, however few their words need."""
+
 
 class FleetDock(QgsDockWidget):
-    """Lays the parts out so that a panel of 420 pixels shows all of them uncut."""
+    """As narrow as it can be made, it still shows all of its parts uncut."""
 
     def __init__(self, desk: Desk, actions: Actions, edits: QueueEdits, parent: QWidget | None = None):
         super().__init__(tr("Fleet"), parent)
@@ -65,6 +68,8 @@ class FleetDock(QgsDockWidget):
         rows = QVBoxLayout(body)
         rows.setContentsMargins(8, 6, 8, 8)
         rows.setSpacing(6)
+        # A least width of the widget would stand in place of what its words need, where that is more.
+        rows.addStrut(LEAST_WIDTH)
         self.banner = EmergencyBanner(desk, actions.clear_emergency)
         rows.addWidget(self.connection_panel)
         rows.addWidget(_line())
@@ -82,7 +87,6 @@ class FleetDock(QgsDockWidget):
         stops.addWidget(_stop_button(actions.emergency, EMERGENCY_STYLE))
         rows.addLayout(stops)
         self.setWidget(body)
-        body.setMinimumWidth(420)
         self.setToggleVisibilityAction(actions.panel)
         desk.pulled.connect(self._show_link)
         desk.link_changed.connect(self._show_link)

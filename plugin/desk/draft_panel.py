@@ -40,6 +40,11 @@ class DraftPanel(QWidget):
         rows.addWidget(self._text)
         self._changes = QWidget()
         changes = _row((actions.undo, actions.redo, actions.reverse, actions.override))
+        for known in (0, 1):
+            # Their arrows are known from every program; with words they made the panel too broad.
+            button = changes.itemAt(known).widget()
+            button.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonIconOnly)
+            button.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
         self._changes.setLayout(changes)
         rows.addWidget(self._changes)
         rows.addLayout(_row((actions.send, actions.enqueue, actions.cancel)))

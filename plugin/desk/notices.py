@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from qgis.core import Qgis, QgsMessageLog
 from qgis.gui import QgsMessageBar, QgsMessageBarItem
-from qgis.PyQt.QtCore import QObject, Qt
+from qgis.PyQt.QtCore import QObject, QSize, Qt
 from qgis.PyQt.QtGui import QResizeEvent
 from qgis.PyQt.QtWidgets import QLabel, QSizePolicy
 
@@ -65,7 +65,11 @@ class Notices(QObject):
 
 
 class NoticeLabel(QLabel):
-    """A text on as many lines as it needs; an item of QGIS's own cuts it after one and a half."""
+    """A text on as many lines as it needs; an item of QGIS's own cuts it after one and a half.
+
+    It asks for the width of its longest word and takes what there is: QGIS's bar makes the whole window as
+    wide as what hangs in it wishes to be.
+    """
 
     def __init__(self, text: str, bar: QgsMessageBar):
         super().__init__(f"{TITLE}: {text}", bar)
@@ -74,15 +78,23 @@ class NoticeLabel(QLabel):
         self.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
         self.setWordWrap(True)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
-        self.setFixedHeight(self.heightForWidth(max(200, bar.width() - BESIDE_TEXT)))
+        self._fit(max(200, bar.width() - BESIDE_TEXT))
 
     def show_text(self, text: str) -> None:
         """Show ``text`` in place of the other one; laying out QGIS's bar anew takes time."""
         if self.text() == f"{TITLE}: {text}":
             return
         self.setText(f"{TITLE}: {text}")
-        self.setFixedHeight(self.heightForWidth(self.width()))
+        self._fit(self.width())
+
+    def sizeHint(self) -> QSize:
+        return QSize(self.minimumSizeHint().width(), super().sizeHint().height())
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
-        self.setFixedHeight(self.heightForWidth(self.width()))
+        self._fit(self.width())
+
+    def _fit(self, width: int) -> None:
+        # Qt counts the least height that was set before among what the text takes.
+        self.setMinimumHeight(0)
+        self.setFixedHeight(self.heightForWidth(width))

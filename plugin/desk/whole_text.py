@@ -30,4 +30,6 @@ class WholeText(QLabel):
         self._fit()
 
     def _fit(self) -> None:
+        # Qt counts the least height that was set before among what the text takes.
+        self.setMinimumHeight(0)
         self.setMinimumHeight(max(self._least, self.heightForWidth(self.width())))

@@ -5,12 +5,13 @@ from __future__ import annotations
 from qgis.core import Qgis
 from qgis.gui import QgsMessageBar, QgsMessageBarItem
 from qgis.PyQt.QtCore import QObject, pyqtSignal
-from qgis.PyQt.QtWidgets import QHBoxLayout, QToolButton, QWidget
+from qgis.PyQt.QtWidgets import QToolButton
 
 from ...language import tr, tr_count
 from ..notices import NoticeLabel
 from .alarm import Alarm, AlarmChange
 from .colours import PRESSING
+from .notice_body import NoticeBody
 from .watch import AlarmWatch
 
 NAMED = 2
@@ -62,15 +63,14 @@ class AlarmBar(QObject):
 
     def _hang_up(self, level: Qgis.MessageLevel) -> None:
         self._level = level
-        body = QWidget(self._bar)
-        body.setObjectName("fleet_alarm_bar")
-        row = QHBoxLayout(body)
-        row.setContentsMargins(0, 0, 0, 0)
         self._label = NoticeLabel("", self._bar)
         self._label.setObjectName("fleet_alarm_text")
-        row.addWidget(self._label, 1)
-        row.addWidget(_button("fleet_show_alarms", tr("Show"), self.wanted.emit))
-        row.addWidget(_button("fleet_bar_acknowledge", tr("Acknowledge all"), self._watch.acknowledge_all))
+        buttons = (
+            _button("fleet_show_alarms", tr("Show"), self.wanted.emit),
+            _button("fleet_bar_acknowledge", tr("Acknowledge all"), self._watch.acknowledge_all),
+        )
+        body = NoticeBody(self._label, buttons, self._bar)
+        body.setObjectName("fleet_alarm_bar")
         self._item = QgsMessageBarItem(body, level, 0)
         self._bar.pushItem(self._item)
 

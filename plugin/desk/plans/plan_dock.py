@@ -6,13 +6,11 @@ from dataclasses import replace
 
 from qgis.core import QgsPointXY
 from qgis.gui import QgsDockWidget
-from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtWidgets import (
     QHBoxLayout,
     QMessageBox,
     QProgressBar,
     QPushButton,
-    QScrollArea,
     QSizePolicy,
     QTabWidget,
     QVBoxLayout,
@@ -25,6 +23,7 @@ from ...language import tr
 from ..desk import Desk
 from ..placement_book import MOST_ASKED
 from ..safe_question import safe_question
+from ..tall_content import TallContent
 from .as_placed_page import AsPlacedPage
 from .collecting import Collecting
 from .draft_plan import DraftPlan
@@ -204,13 +203,7 @@ class PlanDock(QgsDockWidget):
         outer.setContentsMargins(8, 6, 8, 8)
         outer.addWidget(self.tabs)
         self.tree.setMinimumHeight(100)
-        area = QScrollArea()
-        area.setWidgetResizable(True)
-        area.setFrameShape(QScrollArea.Shape.NoFrame)
-        area.setWidget(body)
-        area.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        self.setWidget(area)
-        area.setMinimumWidth(330)
+        self.setWidget(TallContent(body))
 
     def _wire(self) -> None:
         desk, bar = self._desk, self.bar

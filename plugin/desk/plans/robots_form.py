@@ -31,7 +31,10 @@ class RobotsForm(QTableWidget):
         self.setHorizontalHeaderLabels(HEADS)
         self.verticalHeader().hide()
         self.verticalHeader().setDefaultSectionSize(22)
-        self.horizontalHeader().setSectionResizeMode(QHeaderView.ResizeMode.Stretch)
+        heads = self.horizontalHeader()
+        heads.setSectionResizeMode(QHeaderView.ResizeMode.ResizeToContents)
+        heads.setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)
+        self.setMinimumWidth(sum(map(heads.sectionSizeHint, range(len(HEADS)))) + 2 * self.frameWidth())
         self.setSelectionMode(QAbstractItemView.SelectionMode.SingleSelection)
         self.setToolTip(
             tr("Aboard: cones on the robot now. Range: metres of battery, 0 if it does not matter")

@@ -57,6 +57,7 @@ class RobotDetails(QWidget):
         self._title = QLabel()
         self._title.setObjectName("fleet_details_title")
         self._title.setTextFormat(Qt.TextFormat.PlainText)
+        self._title.setWordWrap(True)
         font = QFont(self._title.font())
         font.setBold(True)
         self._title.setFont(font)

@@ -20,9 +20,18 @@ from pathlib import Path
 
 from inside_qgis.cut_off import cut_off, too_large
 from qgis.core import QgsApplication, QgsProject, QgsSettings
-from qgis.PyQt.QtCore import QCoreApplication, QEvent, QSettings, QSize
+from qgis.PyQt.QtCore import QCoreApplication, QEvent, QSettings, QSize, Qt
 from qgis.PyQt.QtTest import QTest
-from qgis.PyQt.QtWidgets import QDialog, QDialogButtonBox, QVBoxLayout, QWidget
+from qgis.PyQt.QtWidgets import (
+    QDialog,
+    QDialogButtonBox,
+    QDockWidget,
+    QMainWindow,
+    QSizePolicy,
+    QToolButton,
+    QVBoxLayout,
+    QWidget,
+)
 from stretched import StretchedLanguage
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -30,8 +39,10 @@ ROOM = QSize(1280, 800)
 """The smallest screen that the desk is made for."""
 OPTIONS_ROOM = QSize(960, 620)
 """What QGIS's options, as large as such a screen, leave for a page."""
-MAP_AT_LEAST = 480
-"""Pixels of width that are left for the map beside the fleet panel."""
+LAYERS_WIDTH = 200
+"""Pixels of QGIS's panel at the left, in which the names of layers can be read."""
+MAP_AT_LEAST = 400
+"""Pixels of width that are left for the map between that and the fleet panel."""
 PANELS = ("observation_dock", "replay_dock", "plan_dock")
 
 
@@ -55,6 +66,9 @@ class Show:
 
     def look(self, name: str, widget: QWidget, room: QSize = ROOM) -> None:
         """Take down what is wrong with ``widget``, and its picture."""
+        if isinstance(widget, QMainWindow):
+            make_panels_narrow(widget)
+            widget.resize(room)
         settle()
         if widget.isWindow():
             # A platform without a window manager does not do what the layout asks for.
@@ -73,6 +87,12 @@ class Show:
         dialog.close()
         dialog.deleteLater()
         settle()
+
+
+def make_panels_narrow(window: QMainWindow) -> None:
+    """Drag the edges of the panels until they give way no more, as QGIS does where room is short."""
+    docks = [dock for dock in window.findChildren(QDockWidget) if dock.isVisible()]
+    window.resizeDocks(docks, [1] * len(docks), Qt.Orientation.Horizontal)
 
 
 def settle() -> None:
@@ -126,6 +146,7 @@ def show_all(show: Show) -> None:
 
     QgsSettings().setValue("fleet_supervisor/tour_offered", True)
     window = desk_tests.Window()
+    arrange_as_qgis_does(window)
     window.resize(ROOM)
     window.show()
     gateway = desk_tests.SmallGateway(yard())
@@ -134,7 +155,7 @@ def show_all(show: Show) -> None:
     plugin.initGui()
     try:
         look_at_panel(show, window, plugin.window, gateway, desk_tests)
-        look_at_docks(show, window, plugin)
+        look_at_docks(show, window, plugin, desk_tests)
         for name, dialog in dialogs(window, plugin.window):
             show.dialog(name, dialog)
         look_at_options(show, window)
@@ -146,6 +167,21 @@ def show_all(show: Show) -> None:
         window.close()
         QgsProject.instance().clear()
         settle()
+
+
+def arrange_as_qgis_does(window) -> None:
+    """Put a panel at the left, and the message bar over the map: what it needs, the window needs."""
+    middle = QWidget()
+    rows = QVBoxLayout(middle)
+    rows.setContentsMargins(0, 0, 0, 0)
+    window.bar.setSizePolicy(QSizePolicy.Policy.Minimum, QSizePolicy.Policy.Fixed)
+    rows.addWidget(window.bar)
+    rows.addWidget(window.takeCentralWidget(), 1)
+    window.setCentralWidget(middle)
+    layers = QDockWidget("Layers", window)
+    layers.setWidget(QWidget())
+    layers.widget().setFixedWidth(LAYERS_WIDTH)
+    window.addDockWidget(Qt.DockWidgetArea.LeftDockWidgetArea, layers)
 
 
 def yard():
@@ -176,6 +212,7 @@ def look_at_panel(show: Show, window, desk_window, gateway, desk_tests) -> None:
     dock.connection_panel._operator.setText("anna")
     desk_window.actions.connect.trigger()
     desk_tests.wait_until(lambda: len(desk.picture) == 5, what="five robots")
+    desk_tests.wait_until(lambda: alarm_bar(window) is not None, what="the alarm of a low battery")
     desk.select("r1")
     order(desk, gateway, desk_tests)
     for tab in range(dock.tabs.count()):
@@ -195,6 +232,10 @@ def look_at_panel(show: Show, window, desk_window, gateway, desk_tests) -> None:
     show.look("panel_emergency", window)
     gateway.stand(in_force=False)
     desk_tests.wait_until(lambda: dock.banner.isHidden(), what="the end of the banner")
+
+
+def alarm_bar(window) -> QWidget | None:
+    return window.bar.findChild(QWidget, "fleet_alarm_bar")
 
 
 def order(desk, gateway, desk_tests) -> None:
@@ -219,8 +260,11 @@ def order(desk, gateway, desk_tests) -> None:
     desk_tests.wait_until(lambda: len(desk.observations) == 2, what="the observations")
 
 
-def look_at_docks(show: Show, window, plugin) -> None:
+def look_at_docks(show: Show, window, plugin, desk_tests) -> None:
     """The panels that the menu shows, one at a time as they are tabs of one another."""
+    # With this large a font, a third panel and the bar of alarms side by side take a larger screen.
+    alarm_bar(window).findChild(QToolButton, "fleet_bar_acknowledge").click()
+    desk_tests.wait_until(lambda: alarm_bar(window) is None, what="the end of the bar of alarms")
     for part in plugin._parts:
         dock = getattr(part, "dock", None)
         if dock is not None and dock.objectName().startswith(tuple(f"fleet_{name}" for name in PANELS)):
