@@ -107,16 +107,16 @@ class RobotPicture:
             for row, code, seconds in zip(rows, state.tolist(), age.tolist(), strict=True)
         ]
 
-    def arrays(self, now: float) -> RobotArrays:
-        """Return every robot at ``now``, those that never said where they are with NaN for a place."""
+    def arrays(self, now: float, rows: slice = slice(None)) -> RobotArrays:
+        """Return the robots in ``rows`` at ``now``; NaN is the place of one that never said where it is."""
         seen = self._seen
-        state, age = self._aged(now, slice(None))
+        state, age = self._aged(now, rows)
         return RobotArrays(
-            names=list(seen.names),
-            xy=np.column_stack([seen.column("x"), seen.column("y")]),
-            theta=seen.column("theta").copy(),
-            v=seen.column("v").copy(),
-            accuracy=seen.column("accuracy").copy(),
+            names=seen.names[rows],
+            xy=np.column_stack([seen.column("x")[rows], seen.column("y")[rows]]),
+            theta=seen.column("theta")[rows].copy(),
+            v=seen.column("v")[rows].copy(),
+            accuracy=seen.column("accuracy")[rows].copy(),
             state=state,
             age=age,
         )
@@ -125,12 +125,13 @@ class RobotPicture:
         """Return (n,) of one of :data:`~.sightings.COLUMNS` of every robot, NaN where nothing was told."""
         return self._seen.column(name).copy()
 
-    def texts(self, name: str) -> list[str]:
-        """Return what every robot told last as the text ``name``, empty where nothing."""
+    def texts(self, name: str, rows: slice = slice(None)) -> list[str]:
+        """Return what the robots in ``rows`` told last as the text ``name``, empty where nothing."""
         places, words = self._seen.texts(name)
         # What is not known points behind the last word.
         found = [*words, ""]
-        return [found[place] for place in np.nan_to_num(places, nan=len(words)).astype(np.intp).tolist()]
+        at = np.nan_to_num(places[rows], nan=len(words)).astype(np.intp)
+        return [found[place] for place in at.tolist()]
 
     def says(self, name: str, word: str) -> npt.NDArray[np.bool_]:
         """Tell which robots' text ``name`` holds ``word``, in lower case; the empty word is in any text."""

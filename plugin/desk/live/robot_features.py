@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 from qgis.core import (
     QgsCategorizedSymbolRenderer,
     QgsCoordinateReferenceSystem,
@@ -19,7 +19,7 @@ from qgis.core import (
 from ....robot_bridge.sites.frame import SiteFrame
 from ...language import tr
 from ..colours import STATE_COLOURS
-from ..picture import STATES, RobotView
+from ..picture import STATES, RobotPicture
 from ..state_words import ROBOT_STATES
 
 NAME = tr("Robots (live)")
@@ -36,6 +36,19 @@ FIELDS = (
     "command:string",
     "accuracy:double",
 )
+NAME_AT, STATE_AT, AGE_AT = (FIELDS.index(field) for field in ("robot:string", "state:string", "age:double"))
+
+
+class RobotFeature(NamedTuple):
+    """A robot as the layer shows it: a value for each of :data:`FIELDS`; the place in the site's CRS."""
+
+    values: list[Any]
+    place: tuple[float, float] | None
+
+    def since(self, before: RobotFeature) -> dict[int, Any]:
+        """Return the values that are others than ``before``, by their fields' places."""
+        pairs = zip(self.values, before.values, strict=True)
+        return {at: value for at, (value, old) in enumerate(pairs) if value != old}
 
 
 def made_layer(crs: QgsCoordinateReferenceSystem) -> QgsVectorLayer:
@@ -50,30 +63,38 @@ def made_layer(crs: QgsCoordinateReferenceSystem) -> QgsVectorLayer:
     return layer
 
 
-def rows_of(views: Sequence[RobotView], frame: SiteFrame) -> Iterator[tuple[dict[int, object], QgsGeometry]]:
-    """Yield the attributes and the geometry of each robot, empty for one without a pose."""
-    places = [(view.told["x"], view.told["y"]) if view.has_pose else (0.0, 0.0) for view in views]
-    on_map = frame.to_crs(np.array(places, dtype=np.float64).reshape(-1, 2)).tolist()
+def features_of(picture: RobotPicture, now: float, rows: slice, frame: SiteFrame) -> list[RobotFeature]:
+    """Return what the layer has to say at ``now`` of the robots in ``rows`` of ``picture``."""
+    robots = picture.arrays(now, rows)
     turn = frame.heading_to_crs(0.0)
-    for view, (x, y) in zip(views, on_map, strict=True):
-        told = view.told
-        theta = told.get("theta")
-        compass = None if theta is None else round((90.0 - math.degrees(theta + turn)) % 360.0, 2)
-        values = (
-            view.name,
-            view.state.value,
-            theta,
-            compass,
-            told.get("v"),
-            told.get("battery"),
-            told.get("status"),
-            round(view.age, 1),
-            told.get("link"),
-            told.get("command"),
-            told.get("accuracy"),
-        )
-        geometry = QgsGeometry.fromPointXY(QgsPointXY(x, y)) if view.has_pose else QgsGeometry()
-        yield dict(enumerate(values)), geometry
+    columns = (
+        robots.names,
+        [STATES[state].value for state in robots.state.tolist()],
+        _or_none(robots.theta),
+        _or_none(np.round((90.0 - np.degrees(robots.theta + turn)) % 360.0, 2)),
+        _or_none(robots.v),
+        _or_none(picture.column("battery")[rows]),
+        [text or None for text in picture.texts("status", rows)],
+        np.round(robots.age, 1).tolist(),
+        picture.texts("link", rows),
+        [text or None for text in picture.texts("command", rows)],
+        _or_none(robots.accuracy),
+    )
+    on_map = frame.to_crs(robots.xy)
+    there = np.isfinite(on_map).all(axis=1).tolist()
+    places = [
+        tuple(place) if is_there else None for place, is_there in zip(on_map.tolist(), there, strict=True)
+    ]
+    return [RobotFeature(values, place) for *values, place in zip(*columns, places, strict=True)]
+
+
+def geometry_at(place: tuple[float, float] | None) -> QgsGeometry:
+    """Return a point, or an empty geometry for no place."""
+    return QgsGeometry() if place is None else QgsGeometry.fromPointXY(QgsPointXY(*place))
+
+
+def _or_none(column: npt.NDArray[np.float64]) -> list[float | None]:
+    return [None if value != value else value for value in column.tolist()]
 
 
 def _renderer() -> QgsCategorizedSymbolRenderer:

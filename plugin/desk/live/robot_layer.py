@@ -15,13 +15,12 @@ from qgis.core import (
 from qgis.gui import QgsMapCanvas
 from qgis.PyQt import sip
 from qgis.PyQt.QtCore import QObject, QTimer, pyqtSignal
-from qgis.PyQt.QtWidgets import QApplication, QDialog
 
 from ....robot_bridge.messages import RobotState, SiteReport
 from ....robot_bridge.sites.frame import SiteFrame
 from ..live_layers import MARK, give_style
-from ..picture import RobotPicture, RobotView
-from .robot_features import made_layer, rows_of
+from ..picture import RobotPicture
+from .robot_features import AGE_AT, NAME_AT, STATE_AT, RobotFeature, features_of, geometry_at, made_layer
 
 GROUP = "Fleet"
 KIND = "robots"
@@ -46,8 +45,8 @@ class RobotLayer(QObject):
         self._frame: SiteFrame | None = None
         self._style: QgsMapLayerStyle | None = None
         self._ids: dict[str, int] = {}
-        self._written: dict[str, RobotView] = {}
-        self._waiting: list[int] = []
+        self._written: dict[str, RobotFeature] = {}
+        self._waiting = range(0)
         self._marking = False
         self.is_new = False
         """Whether the last write brought robots that were not there before."""
@@ -83,7 +82,7 @@ class RobotLayer(QObject):
     def begin(self, robots: int) -> None:
         """Have every one of the first ``robots`` rows written, unless the last round is still under way."""
         if not self._waiting:
-            self._waiting = list(range(robots))
+            self._waiting = range(robots)
 
     def go_on(self, picture: RobotPicture, now: float) -> None:
         """Write some of those that wait; the canvas takes it up when all are written."""
@@ -91,9 +90,7 @@ class RobotLayer(QObject):
         if self._layer is None or not self._waiting:
             return
         rows, self._waiting = self._waiting[:AT_ONCE], self._waiting[AT_ONCE:]
-        views = [view for view in picture.views(now, rows) if self._has_changed(view)]
-        self._written.update({view.name: view for view in views})
-        self._write(views)
+        self._write(features_of(picture, now, slice(rows.start, rows.stop), self._frame))
         if not self._waiting:
             self._show_written()
 
@@ -136,41 +133,47 @@ class RobotLayer(QObject):
             above.removeChildNode(group)
         self._leave_clean(was_dirty)
 
-    def _has_changed(self, view: RobotView) -> bool:
-        known = self._written.get(view.name)
-        return (
-            known is None
-            or known.told != view.told
-            or known.state is not view.state
-            # The age of a robot that talks is not worth writing all of them anew.
-            or view.state is not RobotState.FRESH
-        )
+    def _write(self, features: list[RobotFeature]) -> None:
+        """Write what is not in the layer yet, and no value that is: the provider looks at each one given."""
+        attributes, geometries, new = {}, {}, []
+        for feature in features:
+            name = feature.values[NAME_AT]
+            before = self._written.get(name)
+            if before is None:
+                new.append(feature)
+                continue
+            changed = feature.since(before)
+            has_moved = feature.place != before.place
+            if not has_moved and (not changed or _is_only_age(feature, changed)):
+                continue
+            self._written[name] = feature
+            if changed:
+                attributes[self._ids[name]] = changed
+            if has_moved:
+                geometries[self._ids[name]] = geometry_at(feature.place)
+        if attributes or geometries:
+            self._layer.dataProvider().changeFeatures(attributes, geometries)
+        if new:
+            self._add(new)
 
-    def _write(self, views: list[RobotView]) -> None:
-        provider = self._layer.dataProvider()
-        attributes, geometries, added = {}, {}, []
-        for view, (values, geometry) in zip(views, rows_of(views, self._frame), strict=True):
-            if view.name in self._ids:
-                attributes[self._ids[view.name]] = values
-                geometries[self._ids[view.name]] = geometry
-            else:
-                feature = QgsFeature(self._layer.fields())
-                feature.setAttributes(list(values.values()))
-                feature.setGeometry(geometry)
-                added.append(feature)
-        if attributes:
-            provider.changeFeatures(attributes, geometries)
-        if added:
-            _, stored = provider.addFeatures(added)
-            self._ids.update({feature["robot"]: feature.id() for feature in stored})
-            self._layer.updateExtents()
-            self.is_new = True
+    def _add(self, features: list[RobotFeature]) -> None:
+        made = []
+        for feature in features:
+            made.append(QgsFeature(self._layer.fields()))
+            made[-1].setAttributes(feature.values)
+            made[-1].setGeometry(geometry_at(feature.place))
+        _, stored = self._layer.dataProvider().addFeatures(made)
+        for feature, in_layer in zip(features, stored, strict=True):
+            self._ids[feature.values[NAME_AT]] = in_layer.id()
+            self._written[feature.values[NAME_AT]] = feature
+        self._layer.updateExtents()
+        self.is_new = True
 
     def _show_written(self) -> None:
         # A canvas that is still drawing would begin anew and, on a slow map, never come to its end.
         self._layer.triggerRepaint(self._canvas.isDrawing())
-        if _is_in_a_table(self._layer):
-            self._layer.dataChanged.emit()
+        # An attribute table learns of writes in no other way; to look whether one is open takes 40 ms.
+        self._layer.dataChanged.emit()
 
     def _leave_clean(self, was_dirty: bool) -> None:
         """A layer that comes anew with each link is no change that the user would want to save."""
@@ -202,16 +205,9 @@ class RobotLayer(QObject):
     def _forget(self) -> None:
         self._ids.clear()
         self._written.clear()
-        self._waiting.clear()
+        self._waiting = range(0)
 
 
-def _is_in_a_table(layer: QgsVectorLayer) -> bool:
-    """Tell whether an attribute table shows ``layer``; it learns of writes in no other way.
-
-    By the name that QGIS gives such a window: looking at every part of QGIS for its type takes 50 ms.
-    """
-    name = f"QgsAttributeTableDialog/{layer.id()}"
-    windows = QApplication.topLevelWidgets()
-    return any(
-        window.objectName() == name or window.findChild(QDialog, name) is not None for window in windows
-    )
+def _is_only_age(feature: RobotFeature, changed: Iterable[int]) -> bool:
+    """Tell whether it is only the age of a robot that talks: not worth writing all of them anew."""
+    return feature.values[STATE_AT] == RobotState.FRESH.value and set(changed) == {AGE_AT}
