@@ -96,7 +96,10 @@ class BuildRoadNetwork(FleetAlgorithm):
             reading = self._source.read(feedback)
             if reading is None:
                 return {}
-            network, repairs = network_of_roads(self, parameters, context, reading, feedback)
+            built = network_of_roads(self, parameters, context, reading, feedback)
+            if built is None:
+                return {}
+            network, repairs = built
             feedback.setProgress(80)
             made = {}
             tables = (

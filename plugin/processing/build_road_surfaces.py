@@ -12,8 +12,9 @@ from qgis.core import (
     QgsWkbTypes,
 )
 
+from ...robot_bridge.roads.errors import CancelledError
 from ...robot_bridge.roads.surfaces.generation import PRECEDENCE as USUAL_ORDER
-from ...robot_bridge.roads.surfaces.generation import CancelledError, generate
+from ...robot_bridge.roads.surfaces.generation import generate
 from ...robot_bridge.roads.surfaces.outlines import areas_of, edges_of
 from ...robot_bridge.roads.surfaces.surface import GENERATED, Surface
 from ...robot_bridge.sites.frame import SiteFrame

@@ -12,11 +12,10 @@ from qgis.core import (
 )
 
 from ...robot_bridge.roads.findings import REPAIRED, Kind, count_by_kind, find
-from ...robot_bridge.roads.network import build_network
 from ..language import tr, tr_page
 from .errors import shown_by_processing
 from .fleet_algorithm import FleetAlgorithm, fields_of
-from .road_source import TOLERANCE, WARNING_COUNT, RoadSource, road_parameters
+from .road_source import TOLERANCE, WARNING_COUNT, RoadSource, network_as_drawn, road_parameters
 from .sinks import fill
 
 FINDINGS = "FINDINGS"
@@ -78,7 +77,10 @@ class CheckRoadNetwork(FleetAlgorithm):
             for warning in reading.warnings:
                 feedback.pushWarning(warning)
             tolerance = self.parameterAsDouble(parameters, TOLERANCE, context)
-            findings = find(build_network(reading.roads), tolerance)
+            network = network_as_drawn(reading, feedback)
+            if network is None:
+                return {}
+            findings = find(network, tolerance)
             feedback.setProgress(90)
             kind = QgsWkbTypes.Type.Point
             sink, source = self.parameterAsSink(

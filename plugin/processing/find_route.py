@@ -147,7 +147,10 @@ class FindRoute(FleetAlgorithm):
             reading = self._source.read(feedback)
             if reading is None:
                 return {}
-            network, _ = network_of_roads(self, parameters, context, reading, feedback)
+            built = network_of_roads(self, parameters, context, reading, feedback)
+            if built is None:
+                return {}
+            network, _ = built
             router = _router(network, self.parameterAsEnumString(parameters, ENGINE, context))
             closed, warnings = self._keepouts.edges_through(network, reading.crs, feedback)
             for warning in warnings:

@@ -92,10 +92,11 @@ class TravelSource:
         reading = self._roads.read(feedback)
         if reading is None:
             return None
-        self._network, _ = network_of_roads(
-            self._algorithm, self._parameters, self._context, reading, feedback
-        )
-        return None if feedback.isCanceled() else reading.crs
+        built = network_of_roads(self._algorithm, self._parameters, self._context, reading, feedback)
+        if built is None or feedback.isCanceled():
+            return None
+        self._network, _ = built
+        return reading.crs
 
     def _crs(self, jobs: JobSource) -> QgsCoordinateReferenceSystem:
         algorithm, parameters, context = self._algorithm, self._parameters, self._context

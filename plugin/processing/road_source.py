@@ -18,7 +18,9 @@ from qgis.core import (
     QgsProcessingParameterNumber,
 )
 
+from ...robot_bridge.roads.asking import Ask
 from ...robot_bridge.roads.centrelines import DEFAULT_SPEED, Centrelines, centrelines
+from ...robot_bridge.roads.errors import CancelledError
 from ...robot_bridge.roads.findings import Finding
 from ...robot_bridge.roads.network import Network, build_network
 from ...robot_bridge.roads.repairs import repaired_network
@@ -240,14 +242,21 @@ def _lines_in_metres(feature, placing: LayerPlacing, notes: list[str]) -> list[n
 
 def network_of_roads(
     algorithm: QgsProcessingAlgorithm, parameters, context, reading: RoadReading, feedback
-) -> tuple[Network, list[Finding]]:
-    """Return the network and what was repaired in it, nothing where REPAIR is not asked for."""
+) -> tuple[Network, list[Finding]] | None:
+    """Return the network and what was repaired in it, nothing where REPAIR is not asked for.
+
+    After a cancel return None.
+    """
     for warning in reading.warnings:
         feedback.pushWarning(warning)
     if not algorithm.parameterAsBool(parameters, REPAIR, context):
-        return build_network(reading.roads), []
+        network = network_as_drawn(reading, feedback)
+        return None if network is None else (network, [])
     tolerance = algorithm.parameterAsDouble(parameters, TOLERANCE, context)
-    network, repairs = repaired_network(reading.roads, tolerance)
+    try:
+        network, repairs = repaired_network(reading.roads, tolerance, _asking(feedback))
+    except CancelledError:
+        return None
     for repair in repairs:
         feature, text = reading.features[repair.road], repair.told(reading.features)
         where = f"({repair.x:.3f}, {repair.y:.3f})"
@@ -261,3 +270,19 @@ def network_of_roads(
             )
         )
     return network, repairs
+
+
+def network_as_drawn(reading: RoadReading, feedback) -> Network | None:
+    """Return the network with nothing repaired; None after a cancel."""
+    try:
+        return build_network(reading.roads, _asking(feedback))
+    except CancelledError:
+        return None
+
+
+def _asking(feedback) -> Ask:
+    def ask() -> None:
+        if feedback.isCanceled():
+            raise CancelledError
+
+    return ask

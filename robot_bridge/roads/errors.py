@@ -19,5 +19,9 @@ class NoRouteError(RoadsError):
     """No way leads from one place to the other under the restrictions that were given."""
 
 
+class CancelledError(RoadsError):
+    """Whoever watches long work said to stop."""
+
+
 class MissingEngineError(RoadsError):
     """An engine was asked for by name whose package this Python does not have."""

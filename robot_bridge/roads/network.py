@@ -7,6 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
+from .asking import Ask, go_on
 from .centrelines import BACKWARD, FORWARD, Centrelines, Floats, Ints
 from .noding import noded
 from .points import connected
@@ -62,6 +63,9 @@ def network_of(pieces: Centrelines) -> Network:
     return Network(nodes.reshape(-1, 2), pieces, index[: len(pieces)], index[len(pieces) :])
 
 
-def build_network(roads: Centrelines) -> Network:
-    """Return the network of ``roads`` as they are: split where they meet, nothing repaired."""
-    return network_of(noded(roads))
+def build_network(roads: Centrelines, ask: Ask = go_on) -> Network:
+    """Return the network of ``roads`` as they are: split where they meet, nothing repaired.
+
+    What ``ask`` raises between two steps ends the work.
+    """
+    return network_of(noded(roads, ask))

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from .asking import Ask, go_on
 from .box_pairs import boxes_of, touching
 from .centrelines import Centrelines, Floats, Ints, ranges
 from .points import flags, foot_on, same_points
@@ -35,15 +36,16 @@ class _Segments:
         return cls(at, road, roads.xy[at], roads.xy[at + 1])
 
 
-def noded(roads: Centrelines) -> Centrelines:
+def noded(roads: Centrelines, ask: Ask = go_on) -> Centrelines:
     """Return ``roads`` as pieces that meet at their ends only; ends that are one have one coordinate.
 
-    Points that repeat the one before are left out, and so are roads without length.
+    Points that repeat the one before are left out, and so are roads without length. ``ask`` may raise.
     """
     roads = _without_repeats(roads)
     if not len(roads):
         return roads
-    place, xy = _meetings(roads)
+    place, xy = _meetings(roads, ask)
+    ask()
     return _split(roads, place, xy)
 
 
@@ -59,11 +61,12 @@ def _without_repeats(roads: Centrelines) -> Centrelines:
     return roads.with_lines(roads.xy[keep], first, np.flatnonzero(lasting))
 
 
-def _meetings(roads: Centrelines) -> tuple[Floats, Floats]:
+def _meetings(roads: Centrelines, ask: Ask) -> tuple[Floats, Floats]:
     """Return where roads meet or end: the place of each, a vertex's index plus a share, and its point."""
     segments = _Segments.of(roads)
     boxes = boxes_of(segments.a, segments.b, SAME)
     i, j = touching(boxes, boxes)
+    ask()
     apart = (segments.road[i] != segments.road[j]) | (segments.at[j] - segments.at[i] > 1)
     i, j = i[(i < j) & apart], j[(i < j) & apart]
     level = roads.level[segments.road]
@@ -72,6 +75,7 @@ def _meetings(roads: Centrelines) -> tuple[Floats, Floats]:
     ends = flags(len(roads.xy), np.concatenate([roads.first[:-1], roads.first[1:] - 1]))
     for one, other in ((i, j), (j, i)):
         for last in (0, 1):
+            ask()
             found += _touches(segments, one, other, last, same_level, ends)
     own = np.flatnonzero(ends)
     found.append((own.astype(float), roads.xy[own]))

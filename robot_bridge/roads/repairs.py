@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from .asking import Ask, go_on
 from .centrelines import Centrelines
 from .ends import Breaks, Gap, breaks_of
 from .findings import Finding, broken
@@ -14,31 +15,32 @@ _PASSES = 10
 """Each pass may bring ends within reach of others; real data needs two or three."""
 
 
-def repaired_network(roads: Centrelines, tolerance: float) -> tuple[Network, list[Finding]]:
+def repaired_network(roads: Centrelines, tolerance: float, ask: Ask = go_on) -> tuple[Network, list[Finding]]:
     """Return the network of ``roads`` with what could be mended mended, and a finding for each repair.
 
     Ends within ``tolerance`` metres of a road are moved onto it, ends that reach beyond one by less are cut
-    off, and of roads drawn twice the first is kept.
+    off, and of roads drawn twice the first is kept. What ``ask`` raises between two steps ends the work.
     """
-    network = build_network(roads)
+    network = build_network(roads, ask)
     done: list[Finding] = []
     for _ in range(_PASSES):
+        ask()
         breaks = breaks_of(network, tolerance)
         if not breaks.any():
             break
-        mended, told = _mended(network, breaks)
+        mended, told = _mended(network, breaks, ask)
         done += broken(network, told)
         network = mended
     return network, done
 
 
-def _mended(network: Network, breaks: Breaks) -> tuple[Network, Breaks]:
+def _mended(network: Network, breaks: Breaks, ask: Ask) -> tuple[Network, Breaks]:
     """Return the network after one pass, and which of ``breaks`` were mended in it."""
     if breaks.edges():
         keep = np.setdiff1d(np.arange(len(network)), breaks.edges())
         return network_of(network.edges.taken(keep)), Breaks(breaks.duplicates, breaks.overshoots, [])
     joined = _without_swaps(breaks.gaps)
-    return network_of(noded(_joined(network, joined))), Breaks(gaps=joined)
+    return network_of(noded(_joined(network, joined), ask)), Breaks(gaps=joined)
 
 
 def _without_swaps(gaps: list[Gap]) -> list[Gap]:

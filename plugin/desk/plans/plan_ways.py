@@ -114,7 +114,7 @@ class PlanWays:
         _ask(goes_on)
         if not roads:
             return None
-        network = build_network(road_lines(roads))
+        network = build_network(road_lines(roads), lambda: _ask(goes_on))
         _ask(goes_on)
         router = Router(network)
         areas = read_areas(self._keepouts, self._site, KEEPOUT, feedback).items

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..centrelines import Centrelines
-from ..errors import RoadsError
+from ..errors import CancelledError, RoadsError
 from .joins import wedges
 from .strips import strips_of
 from .surface import GENERATED, Surface
@@ -24,10 +24,6 @@ _AT_ONCE = 2000
 
 Progress = Callable[[float], bool]
 """Told how much is done, 0 to 1; says whether to go on."""
-
-
-class CancelledError(RoadsError):
-    """Whoever watches the progress said to stop."""
 
 
 def generate(

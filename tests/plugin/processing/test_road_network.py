@@ -6,6 +6,7 @@ import pytest
 from fleet_supervisor.plugin.processing.find_route import FindRoute
 from fleet_supervisor.plugin.processing.graph_engine import GraphEngine
 from fleet_supervisor.plugin.sites.roles import LayerExpressions, LayerSetup, keep_setup
+from fleet_supervisor.robot_bridge.roads import noding
 from fleet_supervisor.robot_bridge.roads.centrelines import centrelines
 from fleet_supervisor.robot_bridge.roads.errors import NoRouteError
 from fleet_supervisor.robot_bridge.roads.network import build_network
@@ -233,6 +234,33 @@ def test_qgis_finds_what_the_plain_search_finds(qgis_app):
 
 def test_a_cancel_leaves_nothing(run, make_layer, cancels_at):
     assert run("buildroadnetwork", square(make_layer), feedback=cancels_at(0)) == {}
+
+
+@pytest.mark.parametrize(
+    ("name", "given"),
+    [
+        ("buildroadnetwork", {}),
+        ("buildroadnetwork", {"REPAIR": True}),
+        ("checkroadnetwork", {}),
+        ("route", PLACES),
+        ("route", {**PLACES, "REPAIR": True}),
+    ],
+)
+def test_a_cancel_while_the_network_is_made_ends_it_there(
+    run, make_layer, listener, monkeypatch, name, given
+):
+    meetings = noding._meetings
+
+    def while_cancelled(roads, ask):
+        listener.cancel()
+        return meetings(roads, ask)
+
+    def never(*roads):
+        raise AssertionError("went on after the cancel")
+
+    monkeypatch.setattr(noding, "_meetings", while_cancelled)
+    monkeypatch.setattr(noding, "_split", never)
+    assert run(name, square(make_layer), **given) == {}
 
 
 @pytest.mark.parametrize("name", ["buildroadnetwork", "checkroadnetwork", "route"])

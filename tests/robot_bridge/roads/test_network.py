@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 
+from robot_bridge.roads.asking import Ask
 from robot_bridge.roads.centrelines import BOTH, FORWARD, Centrelines, centrelines
 from robot_bridge.roads.errors import RoadInputError
 from robot_bridge.roads.findings import Finding, Kind, count_by_kind, find
@@ -223,3 +226,34 @@ def test_no_metre_of_random_roads_is_lost_and_no_two_edges_cross() -> None:
         assert shapely.difference(meet, shapely.buffer(shapely.MultiPoint(list(shared)), 1e-6)).is_empty
     union = shapely.union_all([shapely.LineString(line) for line in lines])
     assert len(network) == int((shapely.length(shapely.get_parts(union)) > SAME).sum())
+
+
+class GivenUpError(Exception):
+    """What whoever waits raises."""
+
+
+def test_making_and_mending_end_at_whichever_question_says_so() -> None:
+    roads = centrelines([EAST, [(10.3, 0.0), (20.0, 0.0)], [(5.0, -0.2), (5.0, 5.0)]])
+
+    def asked_of(making: Callable[[Ask], object], last: float = np.inf) -> int:
+        asked = 0
+
+        def ask() -> None:
+            nonlocal asked
+            asked += 1
+            if asked >= last:
+                raise GivenUpError
+
+        if last == np.inf:
+            making(ask)
+        else:
+            with pytest.raises(GivenUpError):
+                making(ask)
+        return asked
+
+    built = asked_of(lambda ask: build_network(roads, ask))
+    mended = asked_of(lambda ask: repaired_network(roads, 0.5, ask))
+    # Two passes mend something, by noding once more, and one finds nothing.
+    assert (built, mended) == (6, 6 + 1 + 1 + 6 + 1)
+    for last in range(1, mended + 1):
+        assert asked_of(lambda ask: repaired_network(roads, 0.5, ask), last) == last

@@ -11,8 +11,8 @@ import pytest
 import shapely
 
 from robot_bridge.roads.centrelines import FORWARD, centrelines
-from robot_bridge.roads.errors import RoadsError
-from robot_bridge.roads.surfaces.generation import CancelledError, generate, polygon_of
+from robot_bridge.roads.errors import CancelledError, RoadsError
+from robot_bridge.roads.surfaces.generation import generate, polygon_of
 from robot_bridge.roads.surfaces.index import NOWHERE, SurfaceIndex
 from robot_bridge.roads.surfaces.surface import DRAWN, GENERATED, Surface
 from robot_bridge.sites.publication import read_site
