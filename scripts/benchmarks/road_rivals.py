@@ -1,4 +1,4 @@
-"""What else finds ways on a network: networkx and QGIS, on the same graph."""
+"""What else finds ways on a network: RoutingKit alone, networkx and QGIS, on the same graph."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import sys
 from collections.abc import Callable
 
 import networkx
+import numpy as np
 from qgis.analysis import QgsNativeAlgorithms
 from qgis.core import (
     QgsApplication,
@@ -19,6 +20,7 @@ from qgis.core import (
     QgsVectorLayer,
 )
 
+from robot_bridge.roads.engines.contraction import ContractionEngines
 from robot_bridge.roads.engines.engine import Graph
 from robot_bridge.roads.network import Network
 
@@ -44,6 +46,22 @@ def by_networkx(network: Network, graph: networkx.DiGraph) -> Query:
         return ((x - u) ** 2 + (y - v) ** 2) ** 0.5
 
     return lambda a, b: networkx.astar_path(graph, a, b, heuristic=straight)
+
+
+def by_routingkit(network: Network) -> tuple[Query, Query]:
+    """Return RoutingKit with nothing around it: with one query kept for all, and one made for each.
+
+    A query that is kept belongs to one thread, and until it is gone no cost can be changed.
+    """
+    edge, tail, head = network.arcs()
+    made = ContractionEngines(Graph(network.nodes, tail, head))
+    tenths_of_mm = np.maximum(np.rint(network.lengths[edge] * 1e4), 1).astype(np.int64)
+    metric = made.kit.CCHMetric(made.hierarchy, tenths_of_mm.tolist())
+    kept = made.kit.CCHQuery(metric)
+    return (
+        lambda a, b: kept.run(a, b).arc_path,
+        lambda a, b: made.kit.CCHQuery(metric).run(a, b).arc_path,
+    )
 
 
 def by_graph_analyzer(network: Network, engine: type) -> Query:

@@ -24,7 +24,7 @@ from robot_bridge.roads.routes import Router
 
 from .page import Part
 from .road_data import four_islands, grid, malta, track, track_surface
-from .road_rivals import by_graph_analyzer, by_native, by_networkx, directed, start_qgis
+from .road_rivals import by_graph_analyzer, by_native, by_networkx, by_routingkit, directed, start_qgis
 from .road_traffic import traffic
 
 TOLERANCE = 0.5
@@ -56,7 +56,9 @@ places taken to the nearest edge, the way, and its stretches; those of the other
 |---|---|---|---|
 {speeds}
 
-A grid is the hardest of networks for contraction hierarchies: no few crossings part it.
+A grid is the hardest of networks for contraction hierarchies: no few crossings part it. A query of RoutingKit
+that is kept is for one thread only, and no road can be closed while there is one: the gateway makes one for
+each way.
 
 Getting ready for ways costs {ready}. Closing 100 edges, then a way: {closing}.
 
@@ -134,8 +136,8 @@ def _speeds(networks: dict[str, Network]) -> tuple[list[str], str, str]:
             if engine == "contraction":
                 ready.append(f"{seconds + _first(router):.1f} s on {name}")
                 closing.append(f"{_closing(router):.1f} ms on {name}")
-        for rival, query in _rivals(network).items():
-            rows.setdefault(rival, []).append(_rate(query, network, 2 if rival.startswith("native") else 10))
+        for rival, (query, count) in _rivals(network).items():
+            rows.setdefault(rival, []).append(_rate(query, network, count))
     assert application is not None
     return (
         [f"| {name} | {' | '.join(rates)} |" for name, rates in rows.items()],
@@ -144,11 +146,15 @@ def _speeds(networks: dict[str, Network]) -> tuple[list[str], str, str]:
     )
 
 
-def _rivals(network: Network) -> dict[str, Callable[[int, int], object]]:
+def _rivals(network: Network) -> dict[str, tuple[Callable[[int, int], object], int]]:
+    """Return, of each rival, what asks it for a way and how many ways are asked for."""
+    kept, made_for_each = by_routingkit(network)
     return {
-        "networkx, A*": by_networkx(network, directed(network)),
-        "QgsGraphAnalyzer, graph kept": by_graph_analyzer(network, _graph_engine()),
-        "native:shortestpathpointtopoint": by_native(network),
+        "RoutingKit alone, a query for each way": (made_for_each, PAIRS),
+        "RoutingKit alone, one query kept": (kept, PAIRS),
+        "networkx, A*": (by_networkx(network, directed(network)), 10),
+        "QgsGraphAnalyzer, graph kept": (by_graph_analyzer(network, _graph_engine()), 10),
+        "native:shortestpathpointtopoint": (by_native(network), 2),
     }
 
 
