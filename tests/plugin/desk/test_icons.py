@@ -12,9 +12,10 @@ ICONS = Path(__file__).parents[3] / "resources" / "icons"
 SIZE = 24
 STANDS_OUT = 3.0
 """The least contrast of graphics that have to be understood (WCAG 2.1, 1.4.11)."""
-PART = 0.03
-"""Of the icon's square: a line across it, a pixel wide, is more."""
-GROUNDS = {"light": "#EFEFEF", "dark": "#323232"}
+PART = 0.06
+"""Of the icon's square: a line across it, a pixel and a half wide, is as much."""
+GROUNDS = {"light": "#EFEFEF", "grey": "#727272", "dark": "#323232"}
+"""Of QGIS's own look, and its themes Blend of Gray and Night Mapping."""
 
 
 def luminance(rgb):
