@@ -15,7 +15,7 @@ MIRROR=${MIRROR:-http://deb.debian.org/debian}
 OURS=$PLACE/.fleet-newer # says that this program made the folder, and may empty it
 TREE=$PLACE/srv/fleet/main
 CERTIFICATES=/etc/ssl/certs/ca-certificates.crt
-PACKAGES="qgis python3-qgis python3-venv xvfb make git ca-certificates postgresql mariadb-server nodejs npm"
+PACKAGES="qgis python3-qgis python3-venv xvfb make git ca-certificates postgresql mariadb-server python3-mysqldb nodejs npm"
 
 say() { printf 'newer: %s\n' "$*"; }
 

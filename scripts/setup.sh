@@ -46,10 +46,12 @@ missing_packages() {
     has Xvfb || echo xvfb
 }
 
-# What the tests start servers of their own from; nothing else needs them.
+# What the tests start servers of their own from, and the driver of robots on MariaDB in tests and benchmarks;
+# nothing else needs them.
 missing_servers() {
     has postgres || ls /usr/lib/postgresql/*/bin/postgres >/dev/null 2>&1 || echo postgresql
     has mariadbd || [ -x /usr/sbin/mariadbd ] || echo mariadb-server
+    "$python" -c 'import MySQLdb' >/dev/null 2>&1 || echo python3-mysqldb
 }
 
 as_root() {
@@ -147,13 +149,12 @@ python=${PYTHON:-$(find_pyqgis)}
 packages=$(missing_packages | sort -u | tr '\n' ' ')
 # shellcheck disable=SC2086 - one word for each package
 [ -z "$packages" ] || install_packages $packages
-servers=$(missing_servers | tr '\n' ' ')
-# shellcheck disable=SC2086 - one word for each package
-[ -z "$servers" ] || install_servers $servers
-
 python=${python:-$(find_pyqgis)}
 [ -n "$python" ] || stop "QGIS is installed, but no python3 on PATH can import qgis.core." \
     "Tell which Python QGIS uses: make setup PYTHON=/path/to/python3"
+servers=$(missing_servers | tr '\n' ' ')
+# shellcheck disable=SC2086 - one word for each package
+[ -z "$servers" ] || install_servers $servers
 check_versions "$python"
 make_venv "$python"
 scripts/asyncapi_parser.sh || say "without AsyncAPI's parser the test that asks it is skipped"
