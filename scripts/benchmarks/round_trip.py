@@ -49,11 +49,11 @@ TEXT = """\
 A request (`Stopped`) and its OpAck. A real gateway with everything running on the sample site, with one
 operator who watches; its robots, a thread and a connection each with the rights of a robot's account, run in
 one other process on the same machine, as does the database server, which waits for the disk at every commit
-that is asked of it durably. The robots' drivers are in C, on MariaDB `python3-mysqldb`: in the field every robot
-has a computer of its own, and what its driver takes is here taken from the server and the gateway. PostgreSQL
-tells robots that there is something new (NOTIFY), and the gateway when it has nothing to do. On SQLite the
-robots look after {sqlite:g} ms, on MariaDB after {mariadb:g} ms, then less and less often, and the gateway
-every 0.3 ms to 20 ms, on PostgreSQL too while requests come. Each figure is of {seconds:g} s.
+that is asked of it durably. The robots' drivers are in C, on MariaDB `python3-mysqldb`: in the field every
+robot has a computer of its own, and what its driver takes is here taken from the server and the gateway.
+PostgreSQL tells robots that there is something new (NOTIFY), and the gateway when it has nothing to do. On
+SQLite the robots look after {sqlite:g} ms, on MariaDB after {mariadb:g} ms, then less and less often, and the
+gateway every 0.3 ms to 20 ms, on PostgreSQL too while requests come. Each figure is of {seconds:g} s.
 
 *Robots not waiting for the disk* begin their sessions on PostgreSQL with `set synchronous_commit = off`, as
 the reference robot does; on SQLite all do the like (`synchronous = normal`). What a power cut takes of a
