@@ -10,12 +10,14 @@ from qgis.core import (
     QgsGeometry,
     QgsProcessing,
     QgsProcessingException,
+    QgsProcessingFeatureSource,
     QgsProcessingOutputNumber,
     QgsProcessingParameterFeatureSink,
     QgsProcessingParameterFeatureSource,
     QgsProcessingParameterMultipleLayers,
     QgsProcessingUtils,
     QgsProject,
+    QgsWkbTypes,
 )
 
 from ...robot_bridge.roads.surfaces.surface import Surface
@@ -86,10 +88,8 @@ class SurfaceAtPoint(FleetAlgorithm):
         return True
 
     def processAlgorithm(self, parameters, context, feedback):
-        points = self.parameterAsSource(parameters, POINTS, context)
-        if points is None:
-            raise QgsProcessingException(self.invalidSourceError(parameters, POINTS))
         with shown_by_processing():
+            points = self._points(parameters, context)
             if self._sources is None:
                 raise ParameterError(
                     tr(
@@ -128,6 +128,20 @@ class SurfaceAtPoint(FleetAlgorithm):
             )
         )
         return {OUTPUT: made, **dict(zip(NUMBERS, (counts[True], counts[False], warnings), strict=True))}
+
+    def _points(self, parameters, context) -> QgsProcessingFeatureSource:
+        points = self.parameterAsSource(parameters, POINTS, context)
+        if points is None:
+            raise QgsProcessingException(self.invalidSourceError(parameters, POINTS))
+        if points.wkbType() == QgsWkbTypes.Type.NoGeometry:
+            raise ParameterError(
+                tr(
+                    "POINTS {name} is a table without places: make points of its columns first, by "
+                    "native:createpointslayerfromtable.",
+                    name=points.sourceName(),
+                )
+            )
+        return points
 
 
 def _batches(points, feedback) -> Iterator[list[QgsFeature]]:

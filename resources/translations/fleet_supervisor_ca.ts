@@ -6737,6 +6737,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/surface_at_point.py" />
+            <source>POINTS {name} is a table without places: make points of its columns first, by native:createpointslayerfromtable.</source>
+            <translation>POINTS {name} és una taula sense llocs: feu primer punts de les seves columnes amb native:createpointslayerfromtable.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/surface_at_point.py" />
             <source>Points</source>
             <translation>Punts</translation>
         </message>

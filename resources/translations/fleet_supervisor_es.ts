@@ -6737,6 +6737,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/surface_at_point.py" />
+            <source>POINTS {name} is a table without places: make points of its columns first, by native:createpointslayerfromtable.</source>
+            <translation>POINTS {name} es una tabla sin lugares: haga primero puntos de sus columnas con native:createpointslayerfromtable.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/surface_at_point.py" />
             <source>Points</source>
             <translation>Puntos</translation>
         </message>

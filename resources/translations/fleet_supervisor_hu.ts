@@ -6733,6 +6733,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/surface_at_point.py" />
+            <source>POINTS {name} is a table without places: make points of its columns first, by native:createpointslayerfromtable.</source>
+            <translation>A POINTS {name} helyek nélküli táblázat: előbb készítsen pontokat az oszlopaiból a native:createpointslayerfromtable algoritmussal.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/surface_at_point.py" />
             <source>Points</source>
             <translation>Pontok</translation>
         </message>

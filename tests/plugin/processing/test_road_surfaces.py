@@ -14,6 +14,7 @@ from qgis.core import (
     QgsProcessingContext,
     QgsProcessingException,
     QgsProject,
+    QgsVectorLayer,
 )
 
 ROAD = "&field=width_m:double&field=surface:string"
@@ -213,6 +214,12 @@ def test_points_without_a_place_and_several_in_one(run, make_layer, grounds, lis
     assert told(made["OUTPUT"]) == [None, "asphalt", None]
     assert listener.warnings == ["Feature 3 has points on several surfaces; none is given for it"]
     assert made["WARNING_COUNT"] == 1
+
+
+def test_a_table_without_places_is_refused_with_what_to_do(run, grounds):
+    table = QgsVectorLayer("NoGeometry?field=x:double&field=y:double", "drive", "memory")
+    with pytest.raises(QgsProcessingException, match=r"POINTS drive is a table without places: .*fromtable"):
+        run("surfaceatpoint", POINTS=table, SURFACES=[grounds])
 
 
 def test_a_point_beyond_the_reach_of_a_crs_is_on_no_surface_and_the_others_are(run, make_layer):
