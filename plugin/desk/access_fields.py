@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from qgis.core import QgsSettings
-from qgis.gui import QgsFileWidget
 from qgis.PyQt.QtWidgets import QCheckBox, QGridLayout, QLabel, QLineEdit, QWidget
 
+from ..file_dialogs import file_field
 from ..language import tr
 from ..settings.token_store import TokenStore
 from ..wire.addresses import Credentials
@@ -31,7 +31,7 @@ class AccessFields(QWidget):
         self._keep.setObjectName("fleet_keep_token")
         self._keep.setToolTip(tr("Encrypted, under the master password of the QGIS authentication manager"))
         self._keep.setEnabled(self._store.is_there)
-        self._ca = QgsFileWidget()
+        self._ca = file_field()
         self._ca.setObjectName("fleet_ca_file")
         self._ca.setFilter(tr("Certificates (*.pem *.crt *.cer);;All files (*)"))
         self._ca.setDialogTitle(tr("The site's ca.pem"))

@@ -12,7 +12,6 @@ from qgis.PyQt.QtWidgets import (
     QComboBox,
     QDialog,
     QDialogButtonBox,
-    QFileDialog,
     QHBoxLayout,
     QHeaderView,
     QLabel,
@@ -25,6 +24,7 @@ from qgis.PyQt.QtWidgets import (
 
 from ..desk.column_heads import fit_heads
 from ..errors import FleetError
+from ..file_dialogs import file_to_read
 from ..language import tr
 from ..sites.profile_file import SUFFIXES, read_profile, shipped_profiles
 from ..sites.roles import keep_setup, setup_of
@@ -240,7 +240,7 @@ class RolesDialog(QDialog):
 
     def _choose_profile(self) -> None:
         kinds = " ".join(f"*{suffix}" for suffix in SUFFIXES)
-        name, _ = QFileDialog.getOpenFileName(
+        name = file_to_read(
             self,
             tr("Map profile"),
             "",

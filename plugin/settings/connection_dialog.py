@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from qgis.gui import QgsAuthConfigSelect, QgsFileWidget
+from qgis.gui import QgsAuthConfigSelect
 from qgis.PyQt.QtCore import Qt, pyqtSignal
 from qgis.PyQt.QtWidgets import (
     QDialog,
@@ -17,6 +17,7 @@ from qgis.PyQt.QtWidgets import (
 )
 
 from ..errors import FleetError
+from ..file_dialogs import file_field
 from ..help.help_window import show_help
 from ..help.topics import CONNECTIONS
 from ..language import tr
@@ -53,7 +54,7 @@ class ConnectionDialog(QDialog):
         self._auth = QgsAuthConfigSelect()
         self._auth.setObjectName("fleet_connection_auth")
         self._auth.setConfigId(connection.auth)
-        self._ca = QgsFileWidget()
+        self._ca = file_field()
         self._ca.setObjectName("fleet_connection_ca")
         self._ca.setFilter(tr("Certificates (*.pem *.crt *.cer);;All files (*)"))
         self._ca.setFilePath(connection.ca_file)

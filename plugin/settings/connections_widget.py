@@ -8,7 +8,6 @@ from qgis.core import QgsFileUtils
 from qgis.PyQt.QtCore import QModelIndex
 from qgis.PyQt.QtWidgets import (
     QAbstractItemView,
-    QFileDialog,
     QHBoxLayout,
     QPushButton,
     QTreeWidget,
@@ -18,6 +17,7 @@ from qgis.PyQt.QtWidgets import (
 )
 
 from ..errors import FleetError
+from ..file_dialogs import file_to_read, file_to_write
 from ..language import tr
 from ..wire.addresses import DEFAULT_URL, Credentials
 from .connection_dialog import ConnectionDialog
@@ -177,12 +177,12 @@ class ConnectionsWidget(QWidget):
         dialog.open()
 
     def _choose_import(self) -> None:
-        file, _ = QFileDialog.getOpenFileName(self, tr("Import connections"), exports_folder(), FILTER)
+        file = file_to_read(self, tr("Import connections"), exports_folder(), FILTER)
         if file:
             self.read_file(file)
 
     def _choose_export(self) -> None:
-        file, _ = QFileDialog.getSaveFileName(self, tr("Export connections"), exports_folder(), FILTER)
+        file = file_to_write(self, tr("Export connections"), exports_folder(), FILTER)
         if file:
             self.write_file(QgsFileUtils.ensureFileNameHasExtension(file, ["json"]))
 

@@ -6,7 +6,6 @@ from qgis.PyQt.QtCore import QObject
 from qgis.PyQt.QtWidgets import (
     QDialog,
     QDialogButtonBox,
-    QFileDialog,
     QHeaderView,
     QLabel,
     QTableView,
@@ -15,6 +14,7 @@ from qgis.PyQt.QtWidgets import (
 )
 
 from ...errors import FleetError
+from ...file_dialogs import file_to_write
 from ...language import tr
 from ...settings.preferences import export_path
 from ..csv_files import iso_time, write_csv
@@ -77,7 +77,7 @@ class AlarmLogDialog(QDialog):
 
     def _ask_where(self) -> None:
         title = tr("Export the log of alarms")
-        path, _ = QFileDialog.getSaveFileName(self, title, export_path("alarms.csv"), tr("CSV (*.csv)"))
+        path = file_to_write(self, title, export_path("alarms.csv"), tr("CSV (*.csv)"))
         if path:
             self.export(path)
 

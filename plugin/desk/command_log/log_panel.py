@@ -6,7 +6,6 @@ from qgis.PyQt.QtCore import QModelIndex, Qt, pyqtSignal
 from qgis.PyQt.QtWidgets import (
     QAbstractItemView,
     QComboBox,
-    QFileDialog,
     QHBoxLayout,
     QHeaderView,
     QLabel,
@@ -18,6 +17,7 @@ from qgis.PyQt.QtWidgets import (
 
 from ....robot_bridge.messages import CommandReport, GetCommands
 from ...errors import FleetError
+from ...file_dialogs import file_to_write
 from ...language import tr
 from ...settings.preferences import export_path
 from ..command_book import MOST_COMMANDS, in_words, place_of
@@ -206,9 +206,7 @@ class CommandLog(QWidget):
             self.refresh()
 
     def _ask_where(self) -> None:
-        path, _ = QFileDialog.getSaveFileName(
-            self, tr("Export commands"), export_path("commands.csv"), tr("CSV (*.csv)")
-        )
+        path = file_to_write(self, tr("Export commands"), export_path("commands.csv"), tr("CSV (*.csv)"))
         if path:
             self.export(path)
 

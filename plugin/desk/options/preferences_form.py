@@ -5,6 +5,7 @@ from __future__ import annotations
 from qgis.gui import QgsFileWidget
 from qgis.PyQt.QtWidgets import QDoubleSpinBox, QFormLayout, QLabel, QWidget
 
+from ...file_dialogs import file_field
 from ...language import tr
 from ...settings.preferences import RANGES, Preferences
 
@@ -48,7 +49,7 @@ class PreferencesForm(QWidget):
             spin.setToolTip(tip)
             self._spins[name] = spin
             _add(form, text, spin)
-        self._folder = QgsFileWidget()
+        self._folder = file_field()
         self._folder.setObjectName("fleet_folder")
         self._folder.setStorageMode(QgsFileWidget.StorageMode.GetDirectory)
         self._folder.lineEdit().setPlaceholderText(tr("your documents"))

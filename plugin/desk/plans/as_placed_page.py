@@ -8,7 +8,6 @@ from qgis.PyQt.QtCore import pyqtSignal
 from qgis.PyQt.QtWidgets import (
     QAbstractItemView,
     QComboBox,
-    QFileDialog,
     QHBoxLayout,
     QLabel,
     QPushButton,
@@ -19,6 +18,7 @@ from qgis.PyQt.QtWidgets import (
 )
 
 from ....robot_bridge.messages import PlacementReport
+from ...file_dialogs import file_to_write
 from ...language import tr
 from ...settings.preferences import export_path
 from ..column_heads import fit_heads
@@ -127,9 +127,7 @@ class AsPlacedPage(QWidget):
             self.collect_wanted.emit(what[1] if isinstance(what, tuple) else None)
 
     def _save_as(self) -> None:
-        path, _ = QFileDialog.getSaveFileName(
-            self, tr("As-placed report"), export_path("as-placed.csv"), tr("CSV (*.csv)")
-        )
+        path = file_to_write(self, tr("As-placed report"), export_path("as-placed.csv"), tr("CSV (*.csv)"))
         if not path:
             return
         try:
