@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from itertools import product
+from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
@@ -38,7 +38,12 @@ SMALLEST_CIRCLE = 12.0
 MOST_CIRCLES = 300
 _FRESH, _STALE, _LOST, _OFFLINE = range(len(STATES))
 _UPWARDS = (_FRESH, _OFFLINE, _STALE, _LOST)
-"""In which order robots are painted."""
+"""In which order robots are painted, the selected ones last: what needs to be noticed lies on top."""
+_LAYER = np.argsort(_UPWARDS)
+"""The place of each of STATES in that order."""
+STRIP = 16
+STRIPS = 4096
+"""Pixels of a strip of the screen, and more strips than any screen has."""
 _CIRCLE = np.column_stack([f(np.arange(CORNERS) * 2 * np.pi / CORNERS) for f in (np.cos, np.sin)])
 
 
@@ -86,8 +91,7 @@ class RobotsPainter:
         rings = np.full(len(chosen), OTHER_RING)
         rings[-1:] = RING
         marks.paint(painter, pixels[chosen], rings)
-        turn = np.arctan2(metre[:, 1], metre[:, 0]) * (HEADINGS / (2 * np.pi))
-        column = np.where(known, np.round(turn) % HEADINGS, HEADINGS).astype(np.intp)
+        column = np.where(known, _directions(metre), HEADINGS)
         is_chosen = np.zeros(len(pixels), dtype=bool)
         is_chosen[chosen] = True
         self._paint_drawings(painter, there, column, robots.state[seen], is_chosen[seen], size)
@@ -101,12 +105,15 @@ class RobotsPainter:
         chosen: npt.NDArray[np.bool_],
         size: float,
     ) -> None:
-        # Those that need to be noticed lie on top, and the selected ones on top of all.
-        for is_chosen, of_state in product((False, True), _UPWARDS):
-            those = np.flatnonzero((state == of_state) & (chosen == is_chosen))
-            if len(those):
-                worth = 1.0 if is_chosen else size if of_state == _FRESH else max(size, NOTICEABLE)
-                self._sprites(worth, of_state).paint(painter, at[those], column[those])
+        layer = _LAYER[state] + len(STATES) * chosen
+        order = _from_the_top(layer, at[:, 1])
+        at, column = at[order], column[order]
+        ends = np.bincount(layer, minlength=2 * len(STATES)).cumsum().tolist()
+        for k, (begin, end) in enumerate(pairwise([0, *ends])):
+            if begin < end:
+                is_chosen, of_state = divmod(k, len(STATES))
+                worth = 1.0 if is_chosen else _worth(_UPWARDS[of_state], size)
+                self._sprites(worth, _UPWARDS[of_state]).paint(painter, at[begin:end], column[begin:end])
 
     def _sprites(self, size: float, state: int) -> Sprites:
         """Return the drawings of robots in a state, made when the first such robot is seen."""
@@ -115,6 +122,30 @@ class RobotsPainter:
             atlas = robot_atlas(self._ratio, drawn, STATES[state])
             self._drawings[drawn, state] = Sprites(atlas, cell(self._ratio, drawn), self._ratio)
         return self._drawings[drawn, state]
+
+
+def _worth(state: int, size: float) -> float:
+    """Return the size of robots in a state where those that are as they should be are drawn in ``size``."""
+    return size if state == _FRESH else max(size, NOTICEABLE)
+
+
+def _directions(way: Points) -> Rows:
+    """Return which of the :data:`HEADINGS` (n, 2) ``way`` in pixels points in, clockwise from +x."""
+    # Floats of half the size are exact enough, and numpy is several times as fast with them.
+    x, y = way.astype(np.float32).T
+    direction = np.rint(np.arctan2(y, x) * np.float32(HEADINGS / (2 * np.pi))).astype(np.intp)
+    return np.where(direction < 0, direction + HEADINGS, direction)
+
+
+def _from_the_top(layer: Rows, y: npt.NDArray[np.float64]) -> Rows:
+    """Return in which order to paint: layer after layer, each from the top of the screen to its bottom.
+
+    Ten thousand robots painted here and there take half as long again: a screen's lines lie apart in memory.
+    Within a strip they keep their order, so that those that overlap do not change places all the time.
+    """
+    strip = np.clip(y * (1 / STRIP), 0, STRIPS - 1).astype(np.uint16)
+    # numpy sorts numbers of 16 bits in a fifth of the time.
+    return np.argsort(layer.astype(np.uint16) * np.uint16(STRIPS) + strip, kind="stable")
 
 
 def circles(placed: PlacedScene, seen: Rows, metre: Points) -> list[tuple[int, Points]]:

@@ -354,6 +354,31 @@ def test_many_robots_are_drawn_small_and_those_to_be_noticed_larger(canvas, site
     assert width(red, 10) > width(red, 1240) > 8
 
 
+def test_a_lost_robot_lies_over_a_fresh_one_and_a_selected_one_over_both(canvas, site):
+    def colours(*states, chosen=()):
+        overlay = show(canvas, site, scene_of(*[(60, 50, 0.0, state) for state in states], chosen=chosen))
+        counts = [len(spots(canvas, STATE_COLOURS[state])) for state in (RobotState.FRESH, RobotState.LOST)]
+        canvas.scene().removeItem(overlay)
+        return counts
+
+    lost, fresh = RobotState.LOST, RobotState.FRESH
+    (_, red), (blue, _) = colours(lost), colours(fresh)
+    assert colours(lost, fresh)[1] == colours(fresh, lost)[1] == red > 20
+    assert colours(lost, fresh, chosen=("r2",))[0] == blue > 20
+    assert colours(fresh, lost, chosen=("r1",))[0] == blue
+
+
+def test_robots_are_painted_layer_after_layer_from_the_top_and_those_side_by_side_in_their_order(qgis_app):
+    from fleet_supervisor.plugin.desk.live.robots_painting import STRIP, _from_the_top
+
+    y = np.array([790.0, 3.0, 2.0, -9.0, 5000.0, 790.0 - STRIP])
+    assert _from_the_top(np.array([0, 0, 0, 0, 0, 0]), y).tolist() == [1, 2, 3, 5, 0, 4]
+    assert _from_the_top(np.array([0, 7, 0, 7, 2, 0]), y).tolist() == [2, 5, 0, 4, 1, 3]
+    in_a_strip = np.random.default_rng(1).uniform(STRIP, 2 * STRIP, 300)
+    assert _from_the_top(np.ones(300, dtype=np.intp), in_a_strip).tolist() == list(range(300))
+    assert _from_the_top(np.array([], dtype=np.intp), y[:0]).tolist() == []
+
+
 def test_the_names_of_a_crowd_do_not_cover_each_other_and_the_lost_are_named_first(canvas, site):
     from fleet_supervisor.plugin.desk.live.labels import HEIGHT, Labels
     from fleet_supervisor.plugin.desk.live.names_painting import BESIDE, NamesPainter
