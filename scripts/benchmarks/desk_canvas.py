@@ -30,6 +30,7 @@ from qgis.core import (
 )
 from qgis.gui import QgsMapCanvas
 from qgis.PyQt.QtCore import QEventLoop, QTimer
+from stage.processes import dying_with_this
 
 from .clock import megabytes
 from .desk_fleet import DrivingFleet
@@ -174,7 +175,7 @@ def watch_live(stage: Stage, opened: tuple[Any, Any, Any], number: int, rate: fl
     told = json.dumps(dataclasses.asdict(site))
     given = [told, *map(str, (number, rate, *stage.area))]
     command = [sys.executable, "-m", "benchmarks.desk_feed", *given]
-    feed = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, cwd=ROOT / "scripts")
+    feed = subprocess.Popen(dying_with_this(command), stdout=subprocess.PIPE, text=True, cwd=ROOT / "scripts")
     try:
         desk.open_link(f"ws://127.0.0.1:{feed.stdout.readline().strip()}/desk", "bench")
         stage.wait(lambda: len(desk.picture) == number)

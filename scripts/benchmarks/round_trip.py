@@ -24,7 +24,7 @@ from sqlalchemy import Connection, make_url
 from stage.database_server import DatabaseServer
 from stage.mariadb import MariaDb
 from stage.postgresql import PostgreSql
-from stage.processes import Processes
+from stage.processes import Processes, dying_with_this
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection, connect
 
@@ -215,7 +215,7 @@ def _ask(plan: Plan, pid: int) -> tuple[Seen, float]:
     """Let the robots ask; return what they saw, and the cores that process ``pid`` took meanwhile."""
     began, used = time.perf_counter(), _cpu(pid)
     done = subprocess.run(
-        [sys.executable, "-m", "benchmarks.sql_robots"],
+        dying_with_this([sys.executable, "-m", "benchmarks.sql_robots"]),
         cwd=ROOT / "scripts",
         input=json.dumps(asdict(plan)),
         stdout=subprocess.PIPE,

@@ -18,6 +18,8 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
+from stage.processes import dying_with_this
+
 HERE = Path(__file__).parent
 COUNT = re.compile(r'^robot_bridge_requests_total\{link="websocket",op="SendPos"\} (\S+)', re.MULTILINE)
 SETTLE = 3.0
@@ -85,7 +87,9 @@ class Swarm:
         self._plan = plan
         self._robots, self._operators = (
             subprocess.Popen(
-                ["taskset", "-c", str(core), sys.executable, HERE / name, json.dumps(asdict(plan))],
+                dying_with_this(
+                    ["taskset", "-c", str(core), sys.executable, HERE / name, json.dumps(asdict(plan))]
+                ),
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 text=True,

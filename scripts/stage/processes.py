@@ -18,6 +18,14 @@ PATIENCE_S = 5.0
 """How long a process may take to end after SIGTERM before it is killed."""
 
 
+def dying_with_this(command: Sequence[str | Path]) -> list[str]:
+    """Return a command that is killed when this program ends, even when that is killed itself.
+
+    The system goes by the thread that starts the command.
+    """
+    return ["setpriv", "--pdeathsig", "KILL", *map(str, command)]
+
+
 class Processes:
     """A context that starts processes, keeps their output in files, and ends each by its id at the end."""
 
@@ -39,7 +47,7 @@ class Processes:
         """Start ``command`` with ``env`` added to the environment; its output goes to ``NAME.log``."""
         with self.log(name).open("wb") as log:
             process = subprocess.Popen(
-                [str(word) for word in command],
+                dying_with_this(command),
                 stdin=subprocess.DEVNULL,
                 stdout=log,
                 stderr=subprocess.STDOUT,

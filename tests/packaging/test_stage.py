@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import copy
 import os
+import select
 import signal
 import subprocess
 import sys
@@ -67,6 +69,23 @@ def test_a_signal_ends_every_process(tmp_path, root, number):
         outer.send_signal(number)
         assert outer.wait(10) != 0
     assert not is_running(pid)
+
+
+def test_a_killed_program_leaves_no_process_behind(tmp_path, root):
+    env = {**os.environ, "PYTHONPATH": str(root / "scripts")}
+    command = [sys.executable, "-c", INTERRUPTED, tmp_path, *STUBBORN]
+    with subprocess.Popen(command, env=env, stdout=subprocess.PIPE, text=True) as outer:
+        ended = os.pidfd_open(int(outer.stdout.readline()))
+        while "ready" not in (tmp_path / "one.log").read_text():
+            assert outer.poll() is None
+            time.sleep(0.05)
+        outer.kill()
+    try:
+        assert select.select([ended], [], [], 30) == ([ended], [], [])
+    finally:
+        with contextlib.suppress(ProcessLookupError):
+            signal.pidfd_send_signal(ended, signal.SIGKILL)
+        os.close(ended)
 
 
 def test_a_process_that_ends_too_early_is_told_with_its_last_words(tmp_path):
