@@ -11,8 +11,9 @@ from enum import Enum
 from pathlib import Path
 
 from qgis.core import QgsApplication, QgsExpression, QgsLocatorFilter, QgsProject
+from qgis.gui import QgsMapCanvas
 from qgis.PyQt.QtCore import QObject, QTimer
-from qgis.PyQt.QtWidgets import QAction, QDockWidget, QMenu, QShortcut, QToolBar
+from qgis.PyQt.QtWidgets import QAction, QDockWidget, QMainWindow, QMenu, QShortcut, QToolBar
 
 PACKAGE = "fleet_supervisor"
 THREADS = "fleet"
@@ -22,7 +23,7 @@ Belongings = dict[str, Counter[str]]
 """By kind: names, and how many there are of each."""
 
 
-def belongings(window, canvas) -> Belongings:
+def belongings(window: QMainWindow, canvas: QgsMapCanvas) -> Belongings:
     """Return what there is now in the main ``window`` of QGIS, on its map ``canvas``, and around both."""
     gc.collect()
     return {
