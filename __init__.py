@@ -1,7 +1,7 @@
 """Fleet Supervisor, a QGIS plugin. QGIS loads this folder as the package ``fleet_supervisor``."""
 
 
-def classFactory(iface):  # noqa: N802 - the name that QGIS calls
+def classFactory(iface):  # noqa: ANN001, N802 - the name that QGIS calls; Language comes before all imports
     """Return the plugin; ``iface`` is QGIS's QgisInterface, or None under qgis_process."""
     from .plugin.language import Language
 

@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING, Any
+
 from qgis.core import QgsApplication, QgsProject
 
 from .expressions.functions import ExpressionFunctions
 from .expressions.robots_now import FleetNow
+from .language import Language
 from .processing.provider import FleetProvider
 from .sites.surface_store import SurfaceStore
+
+if TYPE_CHECKING:  # qgis_process has no window, and needs nothing of what one is made of
+    from qgis.gui import QgisInterface
 
 
 class FleetSupervisor:
@@ -16,7 +22,7 @@ class FleetSupervisor:
     ``initProcessing`` is all that ``qgis_process`` calls; ``initGui`` adds what needs a window.
     """
 
-    def __init__(self, iface, language=None):
+    def __init__(self, iface: QgisInterface | None, language: Language | None = None):
         self._iface = iface
         self._language = language
         self._provider = None
@@ -50,7 +56,7 @@ class FleetSupervisor:
             raise
 
     def _open_desk(self):
-        # Only here: qgis_process has no window, and needs nothing of what the window is made of.
+        # Only here, for qgis_process.
         from .desk.accounts.accounts_action import AccountsAction
         from .desk.layout_action import LayoutAction
         from .desk.live_layers import LiveLayers
@@ -99,7 +105,7 @@ class FleetSupervisor:
         # Letters may run out in a long menu: what has no key gets one first.
         add(MenuLetters(sorted(entries, key=lambda entry: not entry.shortcut().isEmpty())))
 
-    def _add(self, part):
+    def _add(self, part: Any):
         self._parts.append(part)
         return part
 

@@ -25,12 +25,20 @@ _MOVED = {"QtWidgets": "from PyQt6.QtGui import QAction, QActionGroup, QShortcut
 _LINE = re.compile(r"(?P<place>[^:]+:\d+): error: (?P<text>.*)  \[(?P<code>[a-z-]+)\]")
 _CLASS = r"(?:Qgis|Q[A-Z]\w+|Qgs\w+)"
 _OF_QT_OR_QGIS = re.compile(
-    rf'^"(?P<owner>{_CLASS}|type\[\w+\])" has no attribute "(?P<name>\w+)"'
+    rf'^(?:Item )?"(?P<owner>{_CLASS}|type\[\w+\])"(?: of "[^"]*")? has no attribute "(?P<name>\w+)"'
     r'|^Module "(?:qgis|PyQt6)[\w.]*" has no attribute'
     rf'| (?:to|for|of|variant of) "{_CLASS}"'
     r"|^Non-overlapping equality check"
 )
 """What mypy says of a name or an argument of QGIS or Qt."""
+_OPERATION = re.compile(
+    r'^Unsupported (?:left )?operand types? for |^No overload variant of "(?:int|float|bool|range)" matches'
+    r"|^Value of type |^Non-overlapping container check"
+)
+"""What mypy says of an operation; the classes in quotes tell whether QGIS or Qt has to do with it."""
+_QUOTED_CLASS = re.compile(r'"(\w+)"')
+_ENUM = re.compile(r"^ +class (\w+)\(enum\.(?:Enum|Flag)\)", re.MULTILINE)
+"""An enum whose values are no int."""
 _ADDED = re.compile(
     r"^(?:\w+\.)*(?P<owner>\w+)\.(?P<name>\w+) = (?:lambda|(?:\w+\.)*?(?P<enum>\w+)\.\w+$)", re.MULTILINE
 )
@@ -102,19 +110,30 @@ class _Known:
         for found in _ADDED.finditer(additions):
             self.added |= {(found["owner"], found["name"]), (found["enum"], found["name"])}
         stubs = [*_installed("qgis-stubs").glob("*.pyi"), *_installed("PyQt6").glob("*.pyi")]
-        self.anywhere = {name for stub in stubs for name in _METHOD.findall(stub.read_text(encoding="utf-8"))}
+        texts = [stub.read_text(encoding="utf-8") for stub in stubs]
+        self.anywhere = {name for text in texts for name in _METHOD.findall(text)}
+        self.enums = {name for text in texts for name in _ENUM.findall(text)}
+
+    def has_class(self, name: str) -> bool:
+        """Tell whether QGIS or Qt has a class, or an enum that is no int, of this name."""
+        return name in self.enums or re.fullmatch(_CLASS, name) is not None
 
 
 def _of_qgis(line: str, known: _Known) -> str:
     """Return what mypy's line says of QGIS or Qt, and nothing when it says nothing of them that is true."""
     found = _LINE.fullmatch(line)
-    asked = found and _OF_QT_OR_QGIS.search(found["text"])
-    if not asked or found["place"].startswith(_STUBS) or any(text in found["text"] for text in _WORKS):
+    if not found or found["place"].startswith(_STUBS) or any(text in found["text"] for text in _WORKS):
+        return ""
+    told = f"{found['place']}: {found['text']}"
+    if _OPERATION.search(found["text"]):
+        return told if any(map(known.has_class, _QUOTED_CLASS.findall(found["text"]))) else ""
+    asked = _OF_QT_OR_QGIS.search(found["text"])
+    if not asked:
         return ""
     owner, name = (asked["owner"] or "").removeprefix("type[").removesuffix("]"), asked["name"]
     if (owner, name) in known.added or (owner in _HANDED_OUT_AS_BASE and name in known.anywhere):
         return ""
-    return f"{found['place']}: {found['text']}"
+    return told
 
 
 def _lay_out_stubs(place: Path) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from qgis.gui import QgisInterface
+from qgis.gui import QgisInterface, QgsDockWidget
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtGui import QIcon
 from qgis.PyQt.QtWidgets import QAction
@@ -10,13 +10,28 @@ from qgis.PyQt.QtWidgets import QAction
 from .actions import ICONS
 
 
+class ActionDock(QgsDockWidget):
+    """A panel of the main window that a :class:`DockAction` shows."""
+
+    def remove(self) -> None:
+        """Take out what the panel put elsewhere, before it goes itself."""
+        raise NotImplementedError
+
+
 class DockAction:
-    """An entry of ``menu`` and the panel that it shows. :meth:`remove` undoes the constructor.
+    """An entry of ``menu`` and the panel that it shows. :meth:`remove` undoes the constructor."""
 
-    ``dock`` is a QgsDockWidget of the main window whose ``remove()`` takes out what it put elsewhere.
-    """
-
-    def __init__(self, iface: QgisInterface, menu: str, dock, *, icon: str, text: str, name: str, tip: str):
+    def __init__(
+        self,
+        iface: QgisInterface,
+        menu: str,
+        dock: ActionDock,
+        *,
+        icon: str,
+        text: str,
+        name: str,
+        tip: str,
+    ):
         self._iface, self._menu, self.dock = iface, menu, dock
         self.action = QAction(QIcon(str(ICONS / icon)), text, iface.mainWindow())
         self.action.setObjectName(name)

@@ -39,15 +39,12 @@ class DraftPanel(QWidget):
         rows.setSpacing(4)
         rows.addWidget(self._text)
         self._changes = QWidget()
-        changes = _row((actions.undo, actions.redo, actions.reverse, actions.override))
-        for known in (0, 1):
-            # Their arrows are known from every program; with words they made the panel too broad.
-            button = changes.itemAt(known).widget()
-            button.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonIconOnly)
-            button.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
-        self._changes.setLayout(changes)
+        # The arrows of the first two are known from every program; with words they made the panel too broad.
+        changes = [_button(actions.undo, words=False), _button(actions.redo, words=False)]
+        changes += [_button(actions.reverse), _button(actions.override)]
+        self._changes.setLayout(_row(changes))
         rows.addWidget(self._changes)
-        rows.addLayout(_row((actions.send, actions.enqueue, actions.cancel)))
+        rows.addLayout(_row([_button(one) for one in (actions.send, actions.enqueue, actions.cancel)]))
         self._actions = actions
         self._changes.hide()
         desk.drafts.changed.connect(self._show)
@@ -83,18 +80,23 @@ class DraftPanel(QWidget):
         )
 
 
-def _row(actions: Sequence[QAction]) -> QHBoxLayout:
-    buttons = QHBoxLayout()
-    buttons.setContentsMargins(0, 0, 0, 0)
-    buttons.setSpacing(4)
-    for action in actions:
-        button = QToolButton()
-        button.setObjectName(f"{action.objectName()}_button")
-        button.setDefaultAction(action)
-        button.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
-        button.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
-        buttons.addWidget(button)
-    return buttons
+def _button(action: QAction, *, words: bool = True) -> QToolButton:
+    button = QToolButton()
+    button.setObjectName(f"{action.objectName()}_button")
+    button.setDefaultAction(action)
+    style, policy = Qt.ToolButtonStyle, QSizePolicy.Policy
+    button.setToolButtonStyle(style.ToolButtonTextBesideIcon if words else style.ToolButtonIconOnly)
+    button.setSizePolicy(policy.Expanding if words else policy.Fixed, policy.Fixed)
+    return button
+
+
+def _row(buttons: Sequence[QToolButton]) -> QHBoxLayout:
+    row = QHBoxLayout()
+    row.setContentsMargins(0, 0, 0, 0)
+    row.setSpacing(4)
+    for button in buttons:
+        row.addWidget(button)
+    return row
 
 
 def _in_words(draft: Draft) -> str:

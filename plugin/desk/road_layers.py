@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -22,7 +22,7 @@ from qgis.core import (
 )
 from qgis.PyQt.QtCore import QObject
 
-from ...robot_bridge.messages import ClosureReport, ConflictReport
+from ...robot_bridge.messages import ClosureReport, ConflictReport, SiteReport
 from ...robot_bridge.sites.frame import SiteFrame
 from ..language import tr
 from .desk import Desk
@@ -75,7 +75,15 @@ class RoadLayers(QObject):
 class LiveLayer:
     """A memory layer of one kind in the site's CRS, written anew whenever its content changes."""
 
-    def __init__(self, project: QgsProject, mark: str, name: str, kind: str, fields: str, style):
+    def __init__(
+        self,
+        project: QgsProject,
+        mark: str,
+        name: str,
+        kind: str,
+        fields: str,
+        style: Callable[[QgsVectorLayer], None],
+    ):
         self._project, self._mark = project, mark
         self._name, self._kind, self._fields, self._style = name, kind, fields, style
         self._id: str | None = None
@@ -85,7 +93,9 @@ class LiveLayer:
         """The layer, None while there is none, or the user took it out."""
         return self._project.mapLayer(self._id) if self._id is not None else None
 
-    def show(self, rows: Sequence[tuple[Sequence[tuple[float, float]], list[Any]]], site) -> None:
+    def show(
+        self, rows: Sequence[tuple[Sequence[tuple[float, float]], list[Any]]], site: SiteReport | None
+    ) -> None:
         """Write ``rows`` of points in the site frame and values; nothing is made for none."""
         layer = self.layer
         if site is None or (not rows and layer is None):
@@ -187,7 +197,7 @@ def _style_conflicts(layer: QgsVectorLayer) -> None:
     _label(layer, words, QgsPalLayerSettings.Placement.OrderedPositionsAroundPoint)
 
 
-def _label(layer: QgsVectorLayer, expression: str, placement) -> None:
+def _label(layer: QgsVectorLayer, expression: str, placement: QgsPalLayerSettings.LabelPlacement) -> None:
     settings = QgsPalLayerSettings()
     settings.fieldName, settings.isExpression = expression, True
     settings.placement, settings.dist = placement, 1.5

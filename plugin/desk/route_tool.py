@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from qgis.gui import QgsMapMouseEvent
 from qgis.PyQt.QtCore import QEvent, QObject, Qt
 from qgis.PyQt.QtGui import QKeyEvent
@@ -190,7 +192,7 @@ class RouteTool(DraftTool):
         if self.draft is not None and vertex in route_editing.vertices(self.draft):
             self._hold(self.draft, vertex)
 
-    def _try(self, change) -> None:
+    def _try(self, change: Callable[[], object]) -> None:
         try:
             change()
         except FleetError as error:

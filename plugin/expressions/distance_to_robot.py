@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 from qgis.core import (
@@ -9,8 +10,10 @@ from qgis.core import (
     QgsCoordinateReferenceSystem,
     QgsCoordinateTransform,
     QgsCsException,
+    QgsExpression,
     QgsExpressionContext,
     QgsExpressionFunction,
+    QgsExpressionNodeFunction,
     QgsFeature,
     QgsGeometry,
     QgsProject,
@@ -57,16 +60,24 @@ class DistanceToRobot(QgsExpressionFunction):
         super().__init__(NAME, parameters, GROUP, _HELP, False, True, True)
         self._fleet = fleet
 
-    def isStatic(self, _node, _parent, _context):
+    def isStatic(
+        self, _node: QgsExpressionNodeFunction, _parent: QgsExpression, _context: QgsExpressionContext
+    ):
         return False
 
-    def usesGeometry(self, _node):
+    def usesGeometry(self, _node: QgsExpressionNodeFunction):
         return True
 
-    def referencedColumns(self, _node):
+    def referencedColumns(self, _node: QgsExpressionNodeFunction):
         return set()
 
-    def func(self, values, context, parent, _node):
+    def func(
+        self,
+        values: Sequence[Any],
+        context: QgsExpressionContext,
+        parent: QgsExpression,
+        _node: QgsExpressionNodeFunction,
+    ):
         robot, geometry, crs = (None if _is_null(value) else value for value in values)
         robots = self._fleet.robots
         place = None if robots is None or robot is None else robots.place(str(robot))

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 from qgis.core import (
     NULL,
+    QgsExpression,
     QgsExpressionContext,
     QgsExpressionFunction,
+    QgsExpressionNodeFunction,
     QgsProject,
     QgsVectorLayer,
 )
@@ -54,13 +57,19 @@ class RoadSurface(QgsExpressionFunction):
         super().__init__(NAME, parameters, GROUP, _HELP, False, True, True)
         self._store = store
 
-    def usesGeometry(self, _node):
+    def usesGeometry(self, _node: QgsExpressionNodeFunction):
         return False
 
-    def referencedColumns(self, _node):
+    def referencedColumns(self, _node: QgsExpressionNodeFunction):
         return set()
 
-    def func(self, values, context, parent, _node):
+    def func(
+        self,
+        values: Sequence[Any],
+        context: QgsExpressionContext,
+        parent: QgsExpression,
+        _node: QgsExpressionNodeFunction,
+    ):
         x, y, layer, crs = (None if value == NULL else value for value in values)
         if x is None or y is None:
             return None

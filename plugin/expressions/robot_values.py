@@ -2,9 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from typing import Any
 
-from qgis.core import NULL, QgsExpressionFunction
+from qgis.core import (
+    NULL,
+    QgsExpression,
+    QgsExpressionContext,
+    QgsExpressionFunction,
+    QgsExpressionNodeFunction,
+)
 
 from ..language import tr, tr_page
 from .robots_now import FleetNow, RobotsNow
@@ -64,17 +71,25 @@ class RobotValue(QgsExpressionFunction):
         super().__init__(name, [QgsExpressionFunction.Parameter("robot")], GROUP, help_text)
         self._fleet, self._value = fleet, value
 
-    def isStatic(self, _node, _parent, _context):
+    def isStatic(
+        self, _node: QgsExpressionNodeFunction, _parent: QgsExpression, _context: QgsExpressionContext
+    ):
         # QGIS works out once what cannot change; robots do.
         return False
 
-    def usesGeometry(self, _node):
+    def usesGeometry(self, _node: QgsExpressionNodeFunction):
         return False
 
-    def referencedColumns(self, _node):
+    def referencedColumns(self, _node: QgsExpressionNodeFunction):
         return set()
 
-    def func(self, values, _context, _parent, _node):
+    def func(
+        self,
+        values: Sequence[Any],
+        _context: QgsExpressionContext,
+        _parent: QgsExpression,
+        _node: QgsExpressionNodeFunction,
+    ):
         robots = self._fleet.robots
         if robots is None or values[0] is None or values[0] == NULL:
             return None

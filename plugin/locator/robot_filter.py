@@ -48,7 +48,7 @@ class RobotFilter(QgsLocatorFilter):
     def priority(self):
         return QgsLocatorFilter.Priority.High
 
-    def prepare(self, _string, _context):
+    def prepare(self, _string: str, _context: QgsLocatorContext):
         self._robots = self._fleet.robots
         return []
 

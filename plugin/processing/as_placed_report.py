@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 from qgis.core import (
     QgsProcessing,
     QgsProcessingAlgorithm,
+    QgsProcessingContext,
     QgsProcessingException,
+    QgsProcessingFeatureSource,
+    QgsProcessingFeedback,
     QgsProcessingOutputNumber,
     QgsProcessingParameterCrs,
     QgsProcessingParameterFeatureSource,
@@ -19,7 +23,7 @@ from qgis.core import (
 
 from ..language import tr, tr_page
 from .errors import ParameterError, shown_by_processing
-from .fleet_algorithm import FleetAlgorithm
+from .fleet_algorithm import FleetAlgorithm, Parameters
 from .placed_cones import deviations, read_cones
 from .report_layout import Report, write_pdf
 
@@ -66,7 +70,7 @@ class AsPlacedReport(FleetAlgorithm):
         # Print layouts belong to the main thread.
         return super().flags() | QgsProcessingAlgorithm.Flag.FlagNoThreading
 
-    def initAlgorithm(self, configuration=None):
+    def initAlgorithm(self, configuration: dict[str, Any] | None = None):
         kinds = QgsProcessing.SourceType
         self.addParameter(QgsProcessingParameterFeatureSource(INPUT, tr("Placed cones"), [kinds.TypeVector]))
         real = QgsProcessingParameterNumber.Type.Double
@@ -92,7 +96,9 @@ class AsPlacedReport(FleetAlgorithm):
         for name, title in NUMBERS.items():
             self.addOutput(QgsProcessingOutputNumber(name, title))
 
-    def processAlgorithm(self, parameters, context, feedback):
+    def processAlgorithm(
+        self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
+    ):
         source = self.parameterAsSource(parameters, INPUT, context)
         if source is None:
             raise QgsProcessingException(self.invalidSourceError(parameters, INPUT))
@@ -131,7 +137,7 @@ class AsPlacedReport(FleetAlgorithm):
         numbers = (*vars(figures).values(), pages, int(odd > 0))
         return {OUTPUT: str(file), **dict(zip(NUMBERS, numbers, strict=True))}
 
-    def _crs(self, parameters, context, source):
+    def _crs(self, parameters: Parameters, context: QgsProcessingContext, source: QgsProcessingFeatureSource):
         crs = self.parameterAsCrs(parameters, CRS, context)
         if not crs.isValid():
             crs = source.sourceCrs()

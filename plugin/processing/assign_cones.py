@@ -4,9 +4,13 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from qgis.core import (
+    QgsCoordinateReferenceSystem,
     QgsProcessing,
+    QgsProcessingContext,
+    QgsProcessingFeedback,
     QgsProcessingOutputNumber,
     QgsProcessingOutputString,
     QgsProcessingParameterEnum,
@@ -24,7 +28,7 @@ from ...robot_bridge.assignment.scheduling import BALANCED, OBJECTIVES
 from ...robot_bridge.assignment.solving import AUTOMATIC, METHODS, Wanted, assign
 from ..language import tr, tr_page
 from .errors import ParameterError, shown_by_processing
-from .fleet_algorithm import FleetAlgorithm, fields_of
+from .fleet_algorithm import FleetAlgorithm, Parameters, fields_of
 from .job_source import JobSource, job_parameters
 from .job_travel import TravelSource, travel_parameters
 from .plan_rows import FIGURES, PATH_FIELDS, TARGET_FIELDS, figures, path_rows, target_rows
@@ -67,7 +71,7 @@ class AssignCones(FleetAlgorithm):
     ROADS=roads.gpkg CAPACITY=8 TIME_LIMIT=10 TARGETS=targets.gpkg PATHS=paths.gpkg PLAN=plan.json</pre>
     """)
 
-    def initAlgorithm(self, configuration=None):
+    def initAlgorithm(self, configuration: dict[str, Any] | None = None):
         cones, robots, stores, *others = job_parameters()
         roads, *driving = travel_parameters()
         for parameter in (
@@ -95,20 +99,26 @@ class AssignCones(FleetAlgorithm):
         self.addOutput(QgsProcessingOutputString(METHOD_USED, tr("Method that was used")))
         self.addOutput(QgsProcessingOutputString(TRAVEL_USED, tr("What the ways follow")))
 
-    def prepareAlgorithm(self, parameters, context, feedback):
+    def prepareAlgorithm(
+        self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
+    ):
         self._fields = fields_of(TARGET_FIELDS), fields_of(PATH_FIELDS)
         with shown_by_processing():
             self._travel = TravelSource(self, parameters, context)
         return True
 
-    def processAlgorithm(self, parameters, context, feedback):
+    def processAlgorithm(
+        self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
+    ):
         with shown_by_processing():
             try:
                 return self._run(parameters, context, feedback)
             except CancelledError:
                 return {}
 
-    def _run(self, parameters, context, feedback) -> dict:
+    def _run(
+        self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
+    ) -> dict:
         jobs = JobSource(self, parameters, context)
         crs = self._travel.open(jobs, feedback)
         if crs is None:
@@ -133,14 +143,21 @@ class AssignCones(FleetAlgorithm):
         _report(plan, feedback)
         return {**made, **figures(plan), METHOD_USED: plan.method, TRAVEL_USED: plan.travel}
 
-    def _wanted(self, parameters, context) -> Wanted:
+    def _wanted(self, parameters: Parameters, context: QgsProcessingContext) -> Wanted:
         return Wanted(
             self.parameterAsEnumString(parameters, OBJECTIVE, context),
             self.parameterAsEnumString(parameters, METHOD, context),
             self.parameterAsDouble(parameters, TIME_LIMIT, context),
         )
 
-    def _written(self, plan: Plan, crs, parameters, context, feedback) -> dict[str, str]:
+    def _written(
+        self,
+        plan: Plan,
+        crs: QgsCoordinateReferenceSystem,
+        parameters: Parameters,
+        context: QgsProcessingContext,
+        feedback: QgsProcessingFeedback,
+    ) -> dict[str, str]:
         made = {}
         file = self.parameterAsFileOutput(parameters, PLAN, context)
         if file:
@@ -160,7 +177,7 @@ class AssignCones(FleetAlgorithm):
 class _Told:
     """Passes progress on to Processing, and its cancel back."""
 
-    def __init__(self, feedback) -> None:
+    def __init__(self, feedback: QgsProcessingFeedback) -> None:
         self._feedback = feedback
 
     def measuring(self, share: float) -> None:
@@ -181,7 +198,7 @@ def _choice(name: str, title: str, options: tuple[str, ...], default: str) -> Qg
     )
 
 
-def _report(plan: Plan, feedback) -> None:
+def _report(plan: Plan, feedback: QgsProcessingFeedback) -> None:
     for one in plan.robots:
         cones = sum(len(trip.targets) for trip in one.trips)
         feedback.pushInfo(

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from qgis.core import (
     QgsGeometry,
     QgsPointXY,
     QgsProcessing,
+    QgsProcessingContext,
+    QgsProcessingFeedback,
     QgsProcessingOutputNumber,
     QgsProcessingParameterFeatureSink,
     QgsWkbTypes,
@@ -14,7 +18,7 @@ from qgis.core import (
 from ...robot_bridge.roads.network import Network
 from ..language import tr, tr_page
 from .errors import shown_by_processing
-from .fleet_algorithm import FleetAlgorithm, fields_of
+from .fleet_algorithm import FleetAlgorithm, Parameters, fields_of
 from .road_source import (
     WARNING_COUNT,
     RoadReading,
@@ -73,7 +77,7 @@ class BuildRoadNetwork(FleetAlgorithm):
     docs/roads.md says more.</p>
     """)
 
-    def initAlgorithm(self, configuration=None):
+    def initAlgorithm(self, configuration: dict[str, Any] | None = None):
         roads, tolerance, *others = road_parameters()
         for parameter in (roads, repair_parameter(), tolerance, *others):
             self.addParameter(parameter)
@@ -85,13 +89,17 @@ class BuildRoadNetwork(FleetAlgorithm):
         for name, title in NUMBERS.items():
             self.addOutput(QgsProcessingOutputNumber(name, title))
 
-    def prepareAlgorithm(self, parameters, context, feedback):
+    def prepareAlgorithm(
+        self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
+    ):
         self._fields = fields_of(_EDGE), fields_of(_NODE)
         with shown_by_processing():
             self._source = RoadSource(self, parameters, context)
         return True
 
-    def processAlgorithm(self, parameters, context, feedback):
+    def processAlgorithm(
+        self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
+    ):
         with shown_by_processing():
             reading = self._source.read(feedback)
             if reading is None:

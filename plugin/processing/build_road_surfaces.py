@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import Any
+
 from qgis.core import (
     QgsFeedback,
     QgsProcessing,
+    QgsProcessingContext,
+    QgsProcessingFeedback,
     QgsProcessingOutputNumber,
     QgsProcessingParameterFeatureSink,
     QgsProcessingParameterMultipleLayers,
@@ -24,7 +29,7 @@ from ..sites.obstacle_source import obstacle_sources
 from ..sites.placing import SitePlacing
 from ..sites.roles import LayerExpressions
 from .errors import shown_by_processing
-from .fleet_algorithm import FleetAlgorithm, fields_of
+from .fleet_algorithm import FleetAlgorithm, Parameters, fields_of
 from .road_source import DEFAULT_WIDTH, WARNING_COUNT, RoadReading, RoadSource, road_parameters
 from .sinks import fill, line, polygon
 
@@ -67,7 +72,7 @@ class BuildRoadSurfaces(FleetAlgorithm):
     <p>Give the result the role road surface to publish it. docs/roads.md says more.</p>
     """)
 
-    def initAlgorithm(self, configuration=None):
+    def initAlgorithm(self, configuration: dict[str, Any] | None = None):
         area, lines = QgsProcessing.SourceType.TypeVectorPolygon, QgsProcessing.SourceType.TypeVectorLine
         roads, *others = [one for one in road_parameters() if one.name() in _OF_ROADS]
         self.addParameter(roads)
@@ -95,7 +100,9 @@ class BuildRoadSurfaces(FleetAlgorithm):
         for name, title in NUMBERS.items():
             self.addOutput(QgsProcessingOutputNumber(name, title))
 
-    def prepareAlgorithm(self, parameters, context, feedback):
+    def prepareAlgorithm(
+        self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
+    ):
         self._fields = fields_of(_FIELDS), fields_of(_FINDING)
         with shown_by_processing():
             self._source = RoadSource(self, parameters, context)
@@ -104,7 +111,9 @@ class BuildRoadSurfaces(FleetAlgorithm):
             self._drawn = obstacle_sources(layers, LayerExpressions(), scope)
         return True
 
-    def processAlgorithm(self, parameters, context, feedback):
+    def processAlgorithm(
+        self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
+    ):
         with shown_by_processing():
             reading = self._source.read(feedback)
             drawn = None if reading is None else self._read_drawn(reading, context, feedback)
@@ -133,7 +142,9 @@ class BuildRoadSurfaces(FleetAlgorithm):
         )
         return {**results, **dict(zip(NUMBERS, figures, strict=True))}
 
-    def _read_drawn(self, reading: RoadReading, context, feedback) -> GroundReading[Surface] | None:
+    def _read_drawn(
+        self, reading: RoadReading, context: QgsProcessingContext, feedback: QgsProcessingFeedback
+    ) -> GroundReading[Surface] | None:
         frame = SiteFrame(reading.crs.authid(), (0.0, 0.0))
         drawn = read_surfaces(
             self._drawn, SitePlacing(reading.crs, frame, context.transformContext()), _Quiet(feedback)
@@ -151,7 +162,14 @@ class BuildRoadSurfaces(FleetAlgorithm):
             )
         return drawn if drawn.complete else None
 
-    def _generated(self, parameters, context, reading: RoadReading, drawn, feedback) -> list[Surface]:
+    def _generated(
+        self,
+        parameters: Parameters,
+        context: QgsProcessingContext,
+        reading: RoadReading,
+        drawn: GroundReading[Surface],
+        feedback: QgsProcessingFeedback,
+    ) -> list[Surface]:
         def progress(share: float) -> bool:
             feedback.setProgress(50.0 + 45.0 * share)
             return not feedback.isCanceled()
@@ -159,7 +177,14 @@ class BuildRoadSurfaces(FleetAlgorithm):
         order = [word.strip() for word in self.parameterAsString(parameters, PRECEDENCE, context).split(",")]
         return generate(reading.roads, drawn.items, [word for word in order if word], progress)
 
-    def _written(self, parameters, context, reading, surfaces, feedback) -> dict | None:
+    def _written(
+        self,
+        parameters: Parameters,
+        context: QgsProcessingContext,
+        reading: RoadReading,
+        surfaces: Sequence[Surface],
+        feedback: QgsProcessingFeedback,
+    ) -> dict | None:
         """Return the outputs; None after a cancel."""
         areas = areas_of(edges_of(surfaces), len(surfaces))
         pieces = [

@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from qgis.core import (
     QgsGeometry,
     QgsPointXY,
     QgsProcessing,
+    QgsProcessingContext,
+    QgsProcessingFeedback,
     QgsProcessingOutputNumber,
     QgsProcessingParameterFeatureSink,
     QgsWkbTypes,
 )
 
-from ...robot_bridge.roads.findings import REPAIRED, Kind, count_by_kind, find
+from ...robot_bridge.roads.findings import REPAIRED, Finding, Kind, count_by_kind, find
 from ..language import tr, tr_page
 from .errors import shown_by_processing
-from .fleet_algorithm import FleetAlgorithm, fields_of
+from .fleet_algorithm import FleetAlgorithm, Parameters, fields_of
 from .road_source import TOLERANCE, WARNING_COUNT, RoadSource, network_as_drawn, road_parameters
 from .sinks import fill
 
@@ -53,7 +57,7 @@ class CheckRoadNetwork(FleetAlgorithm):
     the directions.</p>
     """)
 
-    def initAlgorithm(self, configuration=None):
+    def initAlgorithm(self, configuration: dict[str, Any] | None = None):
         for parameter in road_parameters():
             self.addParameter(parameter)
         points = QgsProcessing.SourceType.TypeVectorPoint
@@ -63,13 +67,17 @@ class CheckRoadNetwork(FleetAlgorithm):
             self.addOutput(QgsProcessingOutputNumber(name, _TITLES[kind]))
         self.addOutput(QgsProcessingOutputNumber(WARNING_COUNT, tr("Warnings")))
 
-    def prepareAlgorithm(self, parameters, context, feedback):
+    def prepareAlgorithm(
+        self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
+    ):
         self._fields = fields_of(_FIELDS)
         with shown_by_processing():
             self._source = RoadSource(self, parameters, context)
         return True
 
-    def processAlgorithm(self, parameters, context, feedback):
+    def processAlgorithm(
+        self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
+    ):
         with shown_by_processing():
             reading = self._source.read(feedback)
             if reading is None:
@@ -104,7 +112,7 @@ class CheckRoadNetwork(FleetAlgorithm):
         }
 
 
-def _row(finding, features: list[int]):
+def _row(finding: Finding, features: list[int]):
     values = [
         finding.kind.value,
         int(finding.kind in REPAIRED),

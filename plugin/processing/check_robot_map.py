@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from collections import Counter
 from pathlib import Path
+from typing import Any
 
 from qgis.core import (
     QgsProcessing,
+    QgsProcessingContext,
+    QgsProcessingFeedback,
     QgsProcessingOutputNumber,
     QgsProcessingParameterDefinition,
     QgsProcessingParameterFeatureSink,
@@ -17,7 +20,7 @@ from qgis.core import (
 from ...robot_bridge.robotmap.checks import CHECKS, Finding, Limits, SegmentTable, Severity
 from ..language import tr, tr_page
 from .errors import shown_by_processing
-from .fleet_algorithm import FleetAlgorithm, fields_of
+from .fleet_algorithm import FleetAlgorithm, Parameters, fields_of
 from .map_file import MAP, MapPlace, file_problem, map_parameters, map_place, read_map_file
 from .sinks import fill, lines
 
@@ -62,7 +65,7 @@ class CheckRobotMap(FleetAlgorithm):
     knowing. The map itself is not changed.</p>
     """)
 
-    def initAlgorithm(self, configuration=None):
+    def initAlgorithm(self, configuration: dict[str, Any] | None = None):
         defaults = Limits()
         for parameter in map_parameters():
             self.addParameter(parameter)
@@ -79,15 +82,19 @@ class CheckRobotMap(FleetAlgorithm):
         for name, title in NUMBERS.items():
             self.addOutput(QgsProcessingOutputNumber(name, title))
 
-    def checkParameterValues(self, parameters, context):
+    def checkParameterValues(self, parameters: Parameters, context: QgsProcessingContext):
         problem = file_problem(parameters)
         return (False, problem) if problem else super().checkParameterValues(parameters, context)
 
-    def prepareAlgorithm(self, parameters, context, feedback):
+    def prepareAlgorithm(
+        self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
+    ):
         self._fields = fields_of(_FIELDS)
         return True
 
-    def processAlgorithm(self, parameters, context, feedback):
+    def processAlgorithm(
+        self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
+    ):
         with shown_by_processing():
             robot_map = read_map_file(Path(self.parameterAsFile(parameters, MAP, context)))
             place = map_place(self, parameters, context, robot_map.meta, feedback)
@@ -107,7 +114,7 @@ class CheckRobotMap(FleetAlgorithm):
         return {FINDINGS: source, **_reported(findings, feedback)}
 
 
-def _findings(table: SegmentTable, limits: Limits, feedback) -> list[Finding]:
+def _findings(table: SegmentTable, limits: Limits, feedback: QgsProcessingFeedback) -> list[Finding]:
     """Run the checks one after another until the user cancels."""
     findings: list[Finding] = []
     for number, check in enumerate(CHECKS, 1):
@@ -123,7 +130,7 @@ def _row(finding: Finding, place: MapPlace):
     return lines(place.points(finding.segments)), values
 
 
-def _reported(findings: list[Finding], feedback) -> dict[str, int]:
+def _reported(findings: list[Finding], feedback: QgsProcessingFeedback) -> dict[str, int]:
     """Say how many findings of each kind there are, and return the figures of the outputs."""
     counts = Counter((finding.severity.value, finding.kind.value) for finding in findings)
     for (severity, kind), count in sorted(counts.items()):

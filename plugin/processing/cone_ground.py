@@ -10,6 +10,8 @@ from qgis.core import (
     QgsCoordinateReferenceSystem,
     QgsGeometry,
     QgsProcessing,
+    QgsProcessingAlgorithm,
+    QgsProcessingContext,
     QgsProcessingFeedback,
     QgsProcessingParameterDefinition,
     QgsProcessingParameterMultipleLayers,
@@ -28,6 +30,7 @@ from ..sites.obstacle_source import ObstacleSource, obstacle_sources
 from ..sites.placing import PlacingError, SitePlacing
 from ..sites.roles import FURNITURE, ROAD_SURFACE, LayerExpressions, LayerSetup, setup_of
 from ..sites.shapes import polygons_of, shapes_of
+from .fleet_algorithm import Parameters
 
 SURFACES, ALLOWED, OBSTACLES = "SURFACES", "ALLOWED", "OBSTACLES"
 OBSTACLE_DISTANCE, CONE_DISTANCE = "OBSTACLE_DISTANCE", "CONE_DISTANCE"
@@ -62,7 +65,9 @@ def ground_parameters() -> list[QgsProcessingParameterDefinition]:
 class Ground:
     """The layers of the checks and what the parameters say; to be made in the thread of the layers."""
 
-    def __init__(self, algorithm, parameters, context):
+    def __init__(
+        self, algorithm: QgsProcessingAlgorithm, parameters: Parameters, context: QgsProcessingContext
+    ):
         expressions = algorithm.createExpressionContext(parameters, context)
         surfaces = algorithm.parameterAsLayerList(parameters, SURFACES, context)
         obstacles = algorithm.parameterAsLayerList(parameters, OBSTACLES, context)
@@ -83,7 +88,7 @@ class Ground:
         ]
 
     def check(
-        self, cones: Sequence[Cone], crs: QgsCoordinateReferenceSystem, feedback
+        self, cones: Sequence[Cone], crs: QgsCoordinateReferenceSystem, feedback: QgsProcessingFeedback
     ) -> list[Finding] | None:
         """Return what is wrong with ``cones``, which are in ``crs``; None after a cancel.
 
@@ -98,7 +103,7 @@ class Ground:
         _say(findings, surfaces is None, feedback)
         return findings
 
-    def _read_surfaces(self, site: SitePlacing, feedback) -> list[Shape] | None:
+    def _read_surfaces(self, site: SitePlacing, feedback: QgsProcessingFeedback) -> list[Shape] | None:
         if self._surfaces is None:
             return None
         reading = read_areas(self._surfaces, site, ROAD_SURFACE, feedback)
@@ -121,7 +126,9 @@ class Ground:
         ]
 
 
-def read_obstacles(sources: Sequence[ObstacleSource], site: SitePlacing, feedback) -> list[Shape]:
+def read_obstacles(
+    sources: Sequence[ObstacleSource], site: SitePlacing, feedback: QgsProcessingFeedback
+) -> list[Shape]:
     """Return every part of every feature that counts, named by layer and feature."""
     shapes: list[Shape] = []
     for source in sources:

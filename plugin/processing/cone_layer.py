@@ -10,7 +10,10 @@ from qgis.core import (
     QgsGeometry,
     QgsPointXY,
     QgsProcessing,
+    QgsProcessingAlgorithm,
+    QgsProcessingContext,
     QgsProcessingFeatureSource,
+    QgsProcessingFeedback,
     QgsProcessingOutputNumber,
     QgsProcessingParameterCrs,
     QgsProcessingParameterDefinition,
@@ -24,7 +27,7 @@ from ..language import tr
 from ..sites.site_crs import site_crs_for
 from .cone_ground import Ground
 from .errors import ParameterError
-from .fleet_algorithm import fields_of
+from .fleet_algorithm import FleetAlgorithm, Parameters, fields_of
 from .map_window import SITE_CRS
 from .sinks import fill
 
@@ -48,7 +51,7 @@ def site_crs_parameter() -> QgsProcessingParameterDefinition:
     return QgsProcessingParameterCrs(SITE_CRS, title, optional=True)
 
 
-def add_layers(algorithm) -> None:
+def add_layers(algorithm: QgsProcessingAlgorithm) -> None:
     """Add the outputs to ``algorithm``."""
     points = QgsProcessing.SourceType.TypeVectorPoint
     algorithm.addParameter(QgsProcessingParameterFeatureSink(CONES, tr("Cones"), points))
@@ -64,7 +67,13 @@ def add_layers(algorithm) -> None:
 class ConeSetup:
     """What is taken from the parameters in the main thread: fields, checks, and the CRS."""
 
-    def __init__(self, algorithm, parameters, context, source: QgsProcessingFeatureSource | None):
+    def __init__(
+        self,
+        algorithm: QgsProcessingAlgorithm,
+        parameters: Parameters,
+        context: QgsProcessingContext,
+        source: QgsProcessingFeatureSource | None,
+    ):
         """:raises SiteCrsError: when the CRS cannot carry a site."""
         self._fields = {CONES: fields_of(CONE_FIELDS), FINDINGS: fields_of(_FINDINGS)}
         self._ground = Ground(algorithm, parameters, context)
@@ -77,7 +86,15 @@ class ConeSetup:
         if not self.crs.isValid():
             raise ParameterError(tr("The CRS of the site is not known: give SITE_CRS, such as EPSG:32633."))
 
-    def write(self, algorithm, parameters, context, cones: Sequence[Cone], layout: str, feedback) -> dict:
+    def write(
+        self,
+        algorithm: FleetAlgorithm,
+        parameters: Parameters,
+        context: QgsProcessingContext,
+        cones: Sequence[Cone],
+        layout: str,
+        feedback: QgsProcessingFeedback,
+    ) -> dict:
         """Check and write ``cones``; return the outputs, none after a cancel."""
         findings = self._ground.check(cones, self.crs, feedback)
         if findings is None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 from qgis.core import (
@@ -11,6 +12,8 @@ from qgis.core import (
     QgsFeatureRequest,
     QgsGeometry,
     QgsProcessing,
+    QgsProcessingContext,
+    QgsProcessingFeedback,
     QgsProcessingParameterBoolean,
     QgsProcessingParameterEnum,
     QgsProcessingParameterFeatureSource,
@@ -28,7 +31,7 @@ from ..sites.parts import parts_of
 from .cone_ground import ground_parameters
 from .cone_layer import STYLES, ConeSetup, add_layers, site_crs_parameter, theta_of
 from .errors import ParameterError, shown_by_processing
-from .fleet_algorithm import FleetAlgorithm
+from .fleet_algorithm import FleetAlgorithm, Parameters
 
 LAYOUT, DIMENSIONS, PREFIX = "LAYOUT", "DIMENSIONS", "PREFIX"
 POINT, HEADING, LINE, LINE_ID, START, REVERSE = "POINT", "HEADING", "LINE", "LINE_ID", "START", "REVERSE"
@@ -62,7 +65,7 @@ class ConeLayout(FleetAlgorithm):
     HEADING=90 DIMENSIONS="vehicle_width=1.7; exit_length=15" SITE_CRS=EPSG:32633 CONES=cones.gpkg</pre>
     """)
 
-    def initAlgorithm(self, configuration=None):
+    def initAlgorithm(self, configuration: dict[str, Any] | None = None):
         for parameter in (
             QgsProcessingParameterEnum(
                 LAYOUT, tr("Layout"), list(LAYOUTS), defaultValue=next(iter(LAYOUTS)), usesStaticStrings=True
@@ -92,7 +95,7 @@ class ConeLayout(FleetAlgorithm):
             self.addParameter(parameter)
         add_layers(self)
 
-    def checkParameterValues(self, parameters, context):
+    def checkParameterValues(self, parameters: Parameters, context: QgsProcessingContext):
         given = [name for name in (POINT, LINE) if parameters.get(name) not in (None, "")]
         if len(given) != 1:
             how = tr("Both POINT and LINE are") if given else tr("Neither POINT nor LINE is")
@@ -102,13 +105,17 @@ class ConeLayout(FleetAlgorithm):
             )
         return super().checkParameterValues(parameters, context)
 
-    def prepareAlgorithm(self, parameters, context, feedback):
+    def prepareAlgorithm(
+        self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
+    ):
         with shown_by_processing():
             self._line = self.parameterAsSource(parameters, LINE, context)
             self._setup = ConeSetup(self, parameters, context, self._line)
         return True
 
-    def processAlgorithm(self, parameters, context, feedback):
+    def processAlgorithm(
+        self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
+    ):
         with shown_by_processing():
             kind = LAYOUTS[self.parameterAsEnumString(parameters, LAYOUT, context)]
             layout = kind.of(dimensions_in(self.parameterAsString(parameters, DIMENSIONS, context)))
@@ -120,7 +127,7 @@ class ConeLayout(FleetAlgorithm):
             placed_cones = self._placed(cones, parameters, context)
             return self._setup.write(self, parameters, context, placed_cones, kind.NAME, feedback)
 
-    def _placed(self, cones: list[Cone], parameters, context) -> list[Cone]:
+    def _placed(self, cones: list[Cone], parameters: Parameters, context: QgsProcessingContext) -> list[Cone]:
         if self._line is None:
             point = self.parameterAsPoint(parameters, POINT, context, self._setup.crs)
             theta = theta_of(self.parameterAsDouble(parameters, HEADING, context))
@@ -132,7 +139,7 @@ class ConeLayout(FleetAlgorithm):
             points = points[::-1]
         return along(cones, points, self.parameterAsDouble(parameters, START, context))
 
-    def _points(self, parameters, context) -> np.ndarray:
+    def _points(self, parameters: Parameters, context: QgsProcessingContext) -> np.ndarray:
         """Return the points of the one line, in the site CRS."""
         request = QgsFeatureRequest()
         wanted = parameters.get(LINE_ID)

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from qgis.core import (
     QgsProcessing,
+    QgsProcessingContext,
     QgsProcessingFeatureSource,
     QgsProcessingFeedback,
     QgsProcessingOutputFile,
@@ -25,7 +26,7 @@ from qgis.core import (
 from ..language import tr
 from ..sites.feature_filter import FeatureFilter
 from .errors import ParameterError, shown_by_processing
-from .fleet_algorithm import FleetAlgorithm
+from .fleet_algorithm import FleetAlgorithm, Parameters
 from .map_file import MAP, file_problem, map_parameters, map_place, read_map_file
 from .map_place import PlacedMap
 from .map_profile import filter_in
@@ -55,7 +56,7 @@ class _Collector(QgsProcessingFeedback):
         super().__init__(False)
         self._warnings = warnings
 
-    def pushWarning(self, warning):
+    def pushWarning(self, warning: str | None):
         self._warnings.append(warning)
 
 
@@ -82,7 +83,7 @@ class ExportNavigationMap(FleetAlgorithm):
         "png",
     )
 
-    def initAlgorithm(self, configuration=None):
+    def initAlgorithm(self, configuration: dict[str, Any] | None = None):
         for parameter in _parameters():
             self.addParameter(parameter)
         for name in MADE:
@@ -90,7 +91,7 @@ class ExportNavigationMap(FleetAlgorithm):
         self.addOutput(QgsProcessingOutputNumber("FILE_COUNT", tr("Files")))
         self.addOutput(QgsProcessingOutputNumber("WARNING_COUNT", tr("Warnings")))
 
-    def checkParameterValues(self, parameters, context):
+    def checkParameterValues(self, parameters: Parameters, context: QgsProcessingContext):
         # Before QGIS's own checks, which say that a value is wrong and not why.
         problem = (
             file_problem(parameters)
@@ -100,7 +101,9 @@ class ExportNavigationMap(FleetAlgorithm):
         )
         return (False, problem) if problem else super().checkParameterValues(parameters, context)
 
-    def processAlgorithm(self, parameters, context, feedback):
+    def processAlgorithm(
+        self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
+    ):
         formats = self.parameterAsEnumStrings(parameters, FORMATS, context)
         source = Path(self.parameterAsFile(parameters, MAP, context))
         folder = Path(self.parameterAsString(parameters, OUTPUT, context))
@@ -122,7 +125,9 @@ class ExportNavigationMap(FleetAlgorithm):
         feedback.setProgress(100)
         return _results(made, folder, len(export.warnings))
 
-    def _plan(self, source: Path, formats, parameters, context) -> NavigationExport:
+    def _plan(
+        self, source: Path, formats: Sequence[str], parameters: Parameters, context: QgsProcessingContext
+    ) -> NavigationExport:
         robot_map = read_map_file(source)
         warnings = list(robot_map.warnings)
         # Grids and pictures stay in the site's metres, wherever those are.
@@ -138,7 +143,14 @@ class ExportNavigationMap(FleetAlgorithm):
             warnings=warnings,
         )
 
-    def _read_areas(self, export: NavigationExport, formats, parameters, context, feedback) -> None:
+    def _read_areas(
+        self,
+        export: NavigationExport,
+        formats: Sequence[str],
+        parameters: Parameters,
+        context: QgsProcessingContext,
+        feedback: QgsProcessingFeedback,
+    ) -> None:
         """Read the layers of the masks that are wanted."""
         site = export.place.layers
         wanted = [name for name in ("keepout", "speed") if name in formats]
@@ -158,7 +170,7 @@ class ExportNavigationMap(FleetAlgorithm):
             export.warnings += warnings
 
     def _layer(
-        self, parameters, name: str, context
+        self, parameters: Parameters, name: str, context: QgsProcessingContext
     ) -> tuple[QgsProcessingFeatureSource, FeatureFilter | None]:
         source = self.parameterAsSource(parameters, name, context)
         if source is None:
@@ -171,7 +183,7 @@ class ExportNavigationMap(FleetAlgorithm):
             )
         return source, filter_in(self, parameters, name, context)
 
-    def _choice_problem(self, parameters, context) -> str:
+    def _choice_problem(self, parameters: Parameters, context: QgsProcessingContext) -> str:
         """Return what the formats need and do not have, or nothing."""
         formats = self.parameterAsEnumStrings(parameters, FORMATS, context)
         needed = {"keepout": (KEEPOUTS,), "speed": (SPEED_AREAS, SPEED)}
@@ -220,7 +232,7 @@ def _parameters() -> list[QgsProcessingParameterDefinition]:
     ]
 
 
-def _format_problem(parameters: Mapping[str, Any]) -> str:
+def _format_problem(parameters: Parameters) -> str:
     """Return which format is none, or nothing."""
     value = parameters.get(FORMATS)
     given = value.split(",") if isinstance(value, str) else value
@@ -236,7 +248,7 @@ def _format_problem(parameters: Mapping[str, Any]) -> str:
     return ""
 
 
-def _number_problem(parameters: Mapping[str, Any]) -> str:
+def _number_problem(parameters: Parameters) -> str:
     """Return which number cannot be used and why, or nothing."""
     for name, positive in ((RESOLUTION, True), (DRIVES_OVER, False)):
         value = parameters.get(name)
@@ -271,7 +283,7 @@ def _name(given: str, source: Path) -> str:
     return name
 
 
-def _write(made: Mapping[str, Files], folder: Path, source: Path, feedback) -> None:
+def _write(made: Mapping[str, Files], folder: Path, source: Path, feedback: QgsProcessingFeedback) -> None:
     """Write every file into the folder, none over the robot map."""
     try:
         folder.mkdir(parents=True, exist_ok=True)

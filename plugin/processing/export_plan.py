@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from qgis.core import (
     QgsCoordinateReferenceSystem,
@@ -27,6 +26,7 @@ from ..sites.reading import check_sources
 from ..sites.roles import LayerExpressions
 from ..sites.site_crs import site_crs_for
 from .errors import ParameterError
+from .fleet_algorithm import Parameters
 from .map_format import MapFormat, format_of
 from .map_profile import setups_of
 from .map_shaping import shaping_of
@@ -44,8 +44,6 @@ GENERAL = {
     "outdoor": OUTDOOR_EXPRESSION,
 }
 """The parameters whose expressions count for layers that have none of their own."""
-
-Parameters = Mapping[str, Any]
 
 
 @dataclass(frozen=True)
@@ -205,7 +203,7 @@ def default_height(
     return height
 
 
-def _target(algorithm, parameters: Parameters, context) -> Path:
+def _target(algorithm: QgsProcessingAlgorithm, parameters: Parameters, context: QgsProcessingContext) -> Path:
     target = Path(algorithm.parameterAsFileOutput(parameters, OUTPUT, context))
     for layer in obstacle_layers(algorithm, parameters, context):
         path = QgsProviderRegistry.instance().decodeUri(layer.providerType(), layer.source()).get("path")

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from qgis.core import (
     QgsProcessing,
+    QgsProcessingContext,
+    QgsProcessingFeedback,
     QgsProcessingOutputNumber,
     QgsProcessingParameterDefinition,
     QgsProcessingParameterExpression,
@@ -31,7 +35,7 @@ from .export_plan import (
     plan_of,
     unopened_layer,
 )
-from .fleet_algorithm import FleetAlgorithm
+from .fleet_algorithm import FleetAlgorithm, Parameters
 from .map_format import format_parameters
 from .map_profile import profile_parameter
 from .map_shaping import shaping_parameters
@@ -58,7 +62,7 @@ class ExportRobotMap(FleetAlgorithm):
     ICON = "export_robot_map.svg"
     TAGS = ("obstacle", "navigation", "segments", "partial map", "qgis_process")
 
-    def initAlgorithm(self, configuration=None):
+    def initAlgorithm(self, configuration: dict[str, Any] | None = None):
         for parameter in (
             QgsProcessingParameterMultipleLayers(
                 OBSTACLES, tr("Obstacle layers"), QgsProcessing.SourceType.TypeVectorAnyGeometry
@@ -76,7 +80,7 @@ class ExportRobotMap(FleetAlgorithm):
         for name, description in NUMBERS.items():
             self.addOutput(QgsProcessingOutputNumber(name, description))
 
-    def checkParameterValues(self, parameters, context):
+    def checkParameterValues(self, parameters: Parameters, context: QgsProcessingContext):
         # Before QGIS's own checks, which say that a value is wrong and not why.
         problem = window_problem(parameters) or unopened_layer(parameters, context)
         if problem:
@@ -84,12 +88,16 @@ class ExportRobotMap(FleetAlgorithm):
         fine, message = super().checkParameterValues(parameters, context)
         return (False, message) if not fine else self._check_plan(parameters, context)
 
-    def prepareAlgorithm(self, parameters, context, feedback):
+    def prepareAlgorithm(
+        self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
+    ):
         with shown_by_processing():
             self._plan = plan_of(self, parameters, context)
         return True
 
-    def processAlgorithm(self, parameters, context, feedback):
+    def processAlgorithm(
+        self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
+    ):
         with shown_by_processing():
             plan = self._plan
             border = plan.window.border
@@ -109,7 +117,7 @@ class ExportRobotMap(FleetAlgorithm):
         figures = (*counts, len(content) / border.area, warnings)
         return {OUTPUT: str(plan.target), **dict(zip(NUMBERS, figures, strict=True))}
 
-    def _check_plan(self, parameters, context) -> tuple[bool, str]:
+    def _check_plan(self, parameters: Parameters, context: QgsProcessingContext) -> tuple[bool, str]:
         """Make the plan once before the run: the dialog and scripts are told what is wrong with it."""
         try:
             plan_of(self, parameters, context)
@@ -149,7 +157,7 @@ def value_parameters() -> list[QgsProcessingParameterDefinition]:
     ]
 
 
-def _reported(reading: Reading, robot_map: RobotMap, feedback) -> int:
+def _reported(reading: Reading, robot_map: RobotMap, feedback: QgsProcessingFeedback) -> int:
     """Push every warning and return how many there are."""
     warnings = [*reading.warnings, *robot_map.warnings]
     for warning in warnings:
@@ -160,7 +168,9 @@ def _reported(reading: Reading, robot_map: RobotMap, feedback) -> int:
     return len(warnings)
 
 
-def _report_size(window: Window, robot_map: RobotMap, text: str, content: bytes, feedback) -> None:
+def _report_size(
+    window: Window, robot_map: RobotMap, text: str, content: bytes, feedback: QgsProcessingFeedback
+) -> None:
     border, area = robot_map.border, robot_map.border.area
     size = len(text.encode())
     feedback.pushInfo(

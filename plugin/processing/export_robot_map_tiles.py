@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from qgis.core import (
     QgsProcessing,
+    QgsProcessingContext,
     QgsProcessingFeedback,
     QgsProcessingMultiStepFeedback,
     QgsProcessingOutputNumber,
@@ -27,7 +29,7 @@ from ..language import tr, tr_page
 from .errors import shown_by_processing
 from .export_plan import OBSTACLES, unopened_layer
 from .export_robot_map import value_parameters
-from .fleet_algorithm import FleetAlgorithm, fields_of
+from .fleet_algorithm import FleetAlgorithm, Parameters, fields_of
 from .map_file import layer_crs
 from .map_format import format_parameters
 from .map_profile import profile_parameter
@@ -97,7 +99,7 @@ class ExportRobotMapTiles(FleetAlgorithm):
     there at the end, or, after a cancel or an error, none of them.</p>
     """)
 
-    def initAlgorithm(self, configuration=None):
+    def initAlgorithm(self, configuration: dict[str, Any] | None = None):
         kinds = QgsProcessing.SourceType
         for parameter in (
             QgsProcessingParameterMultipleLayers(
@@ -127,7 +129,7 @@ class ExportRobotMapTiles(FleetAlgorithm):
         for name, title in NUMBERS.items():
             self.addOutput(QgsProcessingOutputNumber(name, title))
 
-    def checkParameterValues(self, parameters, context):
+    def checkParameterValues(self, parameters: Parameters, context: QgsProcessingContext):
         problem = tiles_problem(parameters) or unopened_layer(parameters, context)
         if problem:
             return False, problem
@@ -140,13 +142,17 @@ class ExportRobotMapTiles(FleetAlgorithm):
             return False, str(error)
         return True, ""
 
-    def prepareAlgorithm(self, parameters, context, feedback):
+    def prepareAlgorithm(
+        self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
+    ):
         with shown_by_processing():
             self._plan = tile_plan_of(self, parameters, context)
         self._fields = fields_of(_FIELDS)
         return True
 
-    def processAlgorithm(self, parameters, context, feedback):
+    def processAlgorithm(
+        self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
+    ):
         plan = self._plan
         steps = QgsProcessingMultiStepFeedback(2, feedback)
         with shown_by_processing(), TileFolder(plan.folder) as folder:
@@ -182,7 +188,7 @@ class _TileMaker:
         self._notes: dict[str, None] = dict.fromkeys(warnings)
         self.rows: list = []
 
-    def make_all(self, index: OutlineIndex, folder: TileFolder, feedback) -> bool:
+    def make_all(self, index: OutlineIndex, folder: TileFolder, feedback: QgsProcessingFeedback) -> bool:
         """Add every tile to ``folder``; return False when cancelled on the way."""
         for number, tile in enumerate(self._plan.tiles, 1):
             if feedback.isCanceled():
@@ -191,7 +197,7 @@ class _TileMaker:
             feedback.setProgress(100 * number / len(self._plan.tiles))
         return not feedback.isCanceled()
 
-    def reported(self, feedback) -> dict[str, int]:
+    def reported(self, feedback: QgsProcessingFeedback) -> dict[str, int]:
         """Push the warnings and the sums, and return the figures of the outputs."""
         for note in self._notes:
             feedback.pushWarning(note)

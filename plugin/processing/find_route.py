@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import importlib.util
+from typing import Any
 
 import numpy as np
 from qgis.core import (
     QgsProcessing,
+    QgsProcessingContext,
+    QgsProcessingFeedback,
     QgsProcessingOutputNumber,
     QgsProcessingOutputString,
     QgsProcessingParameterDefinition,
@@ -26,7 +29,7 @@ from ...robot_bridge.roads.route import Route
 from ...robot_bridge.roads.routes import REACH, Restrictions, Router
 from ..language import tr, tr_page
 from .errors import shown_by_processing
-from .fleet_algorithm import FleetAlgorithm, fields_of
+from .fleet_algorithm import FleetAlgorithm, Parameters, fields_of
 from .graph_engine import GraphEngine
 from .keepout_areas import KeepoutAreas, keepout_parameter
 from .road_source import (
@@ -97,7 +100,7 @@ class FindRoute(FleetAlgorithm):
     GOAL="640600,5193570 [EPSG:32633]" SURFACES=asphalt ROUTE=route.gpkg PATH=path.gpkg</pre>
     """)
 
-    def initAlgorithm(self, configuration=None):
+    def initAlgorithm(self, configuration: dict[str, Any] | None = None):
         roads, tolerance, *others = road_parameters()
         names = [*ENGINES[:-1], QGIS, ENGINES[-1]]
         ways = QgsProcessingParameterEnum(
@@ -133,14 +136,18 @@ class FindRoute(FleetAlgorithm):
             self.addOutput(QgsProcessingOutputNumber(name, title))
         self.addOutput(QgsProcessingOutputString(ENGINE_USED, tr("Engine that was used")))
 
-    def prepareAlgorithm(self, parameters, context, feedback):
+    def prepareAlgorithm(
+        self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
+    ):
         self._fields = fields_of(_ROUTE), fields_of(_PATH)
         with shown_by_processing():
             self._source = RoadSource(self, parameters, context)
             self._keepouts = KeepoutAreas(self, parameters, context)
         return True
 
-    def processAlgorithm(self, parameters, context, feedback):
+    def processAlgorithm(
+        self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
+    ):
         lengths = {name: self.parameterAsDouble(parameters, name, context) for name in _LENGTHS}
         with shown_by_processing():
             driving = Driving(lengths["SPACING"], lengths["TURNING_RADIUS"], lengths["ROBOT_WIDTH"])
@@ -177,18 +184,30 @@ class FindRoute(FleetAlgorithm):
         figures = (route.metres, route.seconds, len(path.points), len(path.tight), len(reading.warnings))
         return {**made, **dict(zip(NUMBERS, figures, strict=True)), ENGINE_USED: route.engine}
 
-    def _restrictions(self, parameters, context, least_width: float) -> Restrictions:
+    def _restrictions(
+        self, parameters: Parameters, context: QgsProcessingContext, least_width: float
+    ) -> Restrictions:
         names = self.parameterAsString(parameters, SURFACES, context).split(",")
         surfaces = frozenset(name.strip() for name in names if name.strip())
         fastest = self.parameterAsEnumString(parameters, BY, context) == FASTEST
         return Restrictions(fastest, surfaces or None, least_width)
 
-    def _place(self, parameters, name: str, context, reading: RoadReading) -> tuple[float, float]:
+    def _place(
+        self, parameters: Parameters, name: str, context: QgsProcessingContext, reading: RoadReading
+    ) -> tuple[float, float]:
         # A point without a CRS of its own is taken to be in that of the roads.
         point = self.parameterAsPoint(parameters, name, context, reading.crs)
         return point.x(), point.y()
 
-    def _written(self, route: Route, path: DensePath, reading: RoadReading, parameters, context, feedback):
+    def _written(
+        self,
+        route: Route,
+        path: DensePath,
+        reading: RoadReading,
+        parameters: Parameters,
+        context: QgsProcessingContext,
+        feedback: QgsProcessingFeedback,
+    ):
         one = [round(route.metres, 3), round(route.seconds, 3), len(path.points), len(path.tight)]
         tables = (
             (ROUTE, _stretches(route, reading)),
@@ -231,7 +250,7 @@ def _stretches(route: Route, reading: RoadReading):
     ]
 
 
-def _report(route: Route, path: DensePath, feedback) -> None:
+def _report(route: Route, path: DensePath, feedback: QgsProcessingFeedback) -> None:
     feedback.pushInfo(
         tr(
             "{metres:.1f} m, {seconds:.1f} s, {points} points, found by {engine}; start {off_start:.2f} m "

@@ -2,14 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
-from qgis.core import QgsFields, QgsProcessingAlgorithm, QgsProcessingUtils, QgsVectorLayer
+from qgis.core import (
+    QgsFields,
+    QgsProcessingAlgorithm,
+    QgsProcessingContext,
+    QgsProcessingFeedback,
+    QgsProcessingUtils,
+    QgsVectorLayer,
+)
 from qgis.PyQt.QtGui import QIcon
 
 from ..language import tr
 
 RESOURCES = Path(__file__).parents[2] / "resources"
+
+Parameters = Mapping[str, Any]
+"""What an algorithm is given: by the names of its parameters what the user chose."""
 
 
 class FleetAlgorithm(QgsProcessingAlgorithm):
@@ -60,7 +72,7 @@ class FleetAlgorithm(QgsProcessingAlgorithm):
         """Keep which layers were made, by the names of their outputs, to be styled when they are loaded."""
         self._made = layers
 
-    def postProcessAlgorithm(self, context, feedback):
+    def postProcessAlgorithm(self, context: QgsProcessingContext, feedback: QgsProcessingFeedback):
         for name, style in self.STYLES.items():
             source = getattr(self, "_made", {}).get(name)
             if source and context.willLoadLayerOnCompletion(source):

@@ -13,6 +13,8 @@ from qgis.core import (
     QgsCsException,
     QgsFeature,
     QgsProcessing,
+    QgsProcessingContext,
+    QgsProcessingFeedback,
     QgsProcessingParameterFeatureSource,
     QgsProcessingParameterFile,
     QgsProcessingParameterNumber,
@@ -28,7 +30,7 @@ from ..language import tr, tr_page
 from .cone_ground import ground_parameters
 from .cone_layer import STYLES, ConeSetup, add_layers, site_crs_parameter
 from .errors import ParameterError, shown_by_processing
-from .fleet_algorithm import FleetAlgorithm
+from .fleet_algorithm import FleetAlgorithm, Parameters
 
 FILE, INPUT, ORIGIN, ROTATION, NAME = "FILE", "INPUT", "ORIGIN", "ROTATION", "LAYOUT_NAME"
 X, Y = "X_FIELD", "Y_FIELD"
@@ -70,7 +72,7 @@ class ImportConeLayout(FleetAlgorithm):
     SITE_CRS=EPSG:32633 CONES=cones.gpkg</pre>
     """)
 
-    def initAlgorithm(self, configuration=None):
+    def initAlgorithm(self, configuration: dict[str, Any] | None = None):
         real = QgsProcessingParameterNumber.Type.Double
         for parameter in (
             QgsProcessingParameterFile(FILE, tr("CSV file"), extension="csv", optional=True),
@@ -92,20 +94,24 @@ class ImportConeLayout(FleetAlgorithm):
             self.addParameter(parameter)
         add_layers(self)
 
-    def checkParameterValues(self, parameters, context):
+    def checkParameterValues(self, parameters: Parameters, context: QgsProcessingContext):
         given = [name for name in (FILE, INPUT) if parameters.get(name) not in (None, "")]
         if len(given) != 1:
             how = tr("Both FILE and INPUT are") if given else tr("Neither FILE nor INPUT is")
             return False, tr("{how} given: give a CSV file, or a layer.", how=how)
         return super().checkParameterValues(parameters, context)
 
-    def prepareAlgorithm(self, parameters, context, feedback):
+    def prepareAlgorithm(
+        self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
+    ):
         with shown_by_processing():
             self._source = self.parameterAsSource(parameters, INPUT, context)
             self._setup = ConeSetup(self, parameters, context, self._source)
         return True
 
-    def processAlgorithm(self, parameters, context, feedback):
+    def processAlgorithm(
+        self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
+    ):
         columns = Columns(
             **{
                 field: self.parameterAsString(parameters, name, context).strip()
@@ -127,21 +133,23 @@ class ImportConeLayout(FleetAlgorithm):
             return False
         return QgsWkbTypes.geometryType(source.wkbType()) == QgsWkbTypes.GeometryType.PointGeometry
 
-    def _name(self, parameters, context, columns: Columns) -> str:
+    def _name(self, parameters: Parameters, context: QgsProcessingContext, columns: Columns) -> str:
         given = self.parameterAsString(parameters, NAME, context).strip() or columns.only
         if given:
             return given
         file = self.parameterAsFile(parameters, FILE, context)
         return self._source.sourceName() if self._source is not None else Path(file).stem
 
-    def _table(self, columns: Columns, name: str, parameters, context) -> list[Cone]:
+    def _table(
+        self, columns: Columns, name: str, parameters: Parameters, context: QgsProcessingContext
+    ) -> list[Cone]:
         if self._source is None:
             head, rows = read_csv(Path(self.parameterAsFile(parameters, FILE, context)))
             return cones_of(rows, head, columns, name)
         rows = [_attributes(feature) for feature in self._source.getFeatures()]
         return cones_of(rows, self._source.fields().names(), columns, name, first=1)
 
-    def _as_it_lies(self, columns: Columns, name: str, context) -> list[Cone]:
+    def _as_it_lies(self, columns: Columns, name: str, context: QgsProcessingContext) -> list[Cone]:
         """Return the cones of the layer's points, in the site CRS."""
         transform = QgsCoordinateTransform(
             self._source.sourceCrs(), self._setup.crs, context.transformContext()
@@ -167,7 +175,7 @@ class ImportConeLayout(FleetAlgorithm):
         head = [*self._source.fields().names(), "$x", "$y"]
         return cones_of(rows, head, replace(columns, x="$x", y="$y"), name, first=1)
 
-    def _moved(self, cones: list[Cone], parameters, context) -> list[Cone]:
+    def _moved(self, cones: list[Cone], parameters: Parameters, context: QgsProcessingContext) -> list[Cone]:
         if parameters.get(ORIGIN) in (None, ""):
             raise ParameterError(tr("ORIGIN is not given: say where the table's 0,0 goes."))
         origin = self.parameterAsPoint(parameters, ORIGIN, context, self._setup.crs)

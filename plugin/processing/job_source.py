@@ -13,6 +13,8 @@ from qgis.core import (
     QgsCoordinateTransform,
     QgsCsException,
     QgsProcessing,
+    QgsProcessingAlgorithm,
+    QgsProcessingContext,
     QgsProcessingFeatureSource,
     QgsProcessingParameterDefinition,
     QgsProcessingParameterEnum,
@@ -25,6 +27,7 @@ from ...robot_bridge.assignment.job import COLLECT, FINISHES, PLACE, TO_STORE, J
 from ..language import tr
 from .cone_layer import theta_of
 from .errors import ParameterError
+from .fleet_algorithm import Parameters
 
 CONES, ROBOTS, STORES = "CONES", "ROBOTS", "STORES"
 TASK, FINISH, STAGE_FIELD = "TASK", "FINISH", "STAGE_FIELD"
@@ -80,7 +83,9 @@ def job_parameters() -> list[QgsProcessingParameterDefinition]:
 class JobSource:
     """The layers of one run."""
 
-    def __init__(self, algorithm, parameters, context) -> None:
+    def __init__(
+        self, algorithm: QgsProcessingAlgorithm, parameters: Parameters, context: QgsProcessingContext
+    ) -> None:
         self._algorithm, self._parameters, self._context = algorithm, parameters, context
 
     def source(self, name: str) -> QgsProcessingFeatureSource | None:

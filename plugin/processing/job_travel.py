@@ -7,6 +7,9 @@ from collections.abc import Callable
 from qgis.core import (
     QgsCoordinateReferenceSystem,
     QgsProcessing,
+    QgsProcessingAlgorithm,
+    QgsProcessingContext,
+    QgsProcessingFeedback,
     QgsProcessingParameterDefinition,
     QgsProcessingParameterMultipleLayers,
     QgsProcessingParameterNumber,
@@ -28,6 +31,7 @@ from ..sites.placing import SitePlacing
 from ..sites.roles import KEEPOUT, LayerExpressions
 from ..sites.site_crs import site_crs_for
 from .errors import ParameterError
+from .fleet_algorithm import Parameters
 from .job_source import CONES, ROBOTS, JobSource, layers_crs
 from .map_window import SITE_CRS
 from .road_source import ROADS, RoadSource, network_of_roads, repair_parameter, road_parameters
@@ -72,7 +76,9 @@ def travel_parameters() -> list[QgsProcessingParameterDefinition]:
 class TravelSource:
     """The roads of one run; made in the main thread, read in any."""
 
-    def __init__(self, algorithm, parameters, context) -> None:
+    def __init__(
+        self, algorithm: QgsProcessingAlgorithm, parameters: Parameters, context: QgsProcessingContext
+    ) -> None:
         self._algorithm, self._parameters, self._context = algorithm, parameters, context
         given = parameters.get(ROADS) not in (None, "")
         self._roads = RoadSource(algorithm, parameters, context) if given else None
@@ -81,7 +87,7 @@ class TravelSource:
         self._keepouts = obstacle_sources(layers, LayerExpressions(), expressions) if layers else []
         self._network: Network | None = None
 
-    def open(self, jobs: JobSource, feedback) -> QgsCoordinateReferenceSystem | None:
+    def open(self, jobs: JobSource, feedback: QgsProcessingFeedback) -> QgsCoordinateReferenceSystem | None:
         """Read the roads, where there are any, and return the CRS of everything; None after a cancel.
 
         :raises FleetError: when the roads or the CRS cannot be used.
@@ -121,7 +127,11 @@ class TravelSource:
         return crs
 
     def travel(
-        self, job: Job, crs: QgsCoordinateReferenceSystem, feedback, progress: Callable[[float], None]
+        self,
+        job: Job,
+        crs: QgsCoordinateReferenceSystem,
+        feedback: QgsProcessingFeedback,
+        progress: Callable[[float], None],
     ) -> Travel:
         """Return the ways between the places of ``job``; ``progress`` may raise to end the work.
 
@@ -142,7 +152,9 @@ class TravelSource:
         self._close(router, crs, feedback)
         return RoadTravel(job, router, driving, wanted, value["DISTANCE"], progress)
 
-    def _close(self, router: Router, crs: QgsCoordinateReferenceSystem, feedback) -> None:
+    def _close(
+        self, router: Router, crs: QgsCoordinateReferenceSystem, feedback: QgsProcessingFeedback
+    ) -> None:
         if not self._keepouts:
             return
         site = SitePlacing(crs, SiteFrame(crs.authid(), (0.0, 0.0)), self._context.transformContext())

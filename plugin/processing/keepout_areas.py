@@ -9,6 +9,7 @@ from qgis.core import (
     QgsPointXY,
     QgsProcessing,
     QgsProcessingAlgorithm,
+    QgsProcessingContext,
     QgsProcessingParameterDefinition,
     QgsProcessingParameterMultipleLayers,
     QgsRectangle,
@@ -22,6 +23,7 @@ from ..sites.ground_reading import read_areas
 from ..sites.obstacle_source import obstacle_sources
 from ..sites.placing import SitePlacing
 from ..sites.roles import KEEPOUT, LayerExpressions
+from .fleet_algorithm import Parameters
 
 KEEPOUTS = "KEEPOUTS"
 
@@ -39,7 +41,9 @@ def keepout_parameter() -> QgsProcessingParameterDefinition:
 class KeepoutAreas:
     """The layers of one run; to be made in the thread of the layers."""
 
-    def __init__(self, algorithm: QgsProcessingAlgorithm, parameters, context) -> None:
+    def __init__(
+        self, algorithm: QgsProcessingAlgorithm, parameters: Parameters, context: QgsProcessingContext
+    ) -> None:
         layers = algorithm.parameterAsLayerList(parameters, KEEPOUTS, context)
         expressions = algorithm.createExpressionContext(parameters, context)
         self._transforms = context.transformContext()

@@ -11,6 +11,8 @@ import numpy as np
 from qgis.core import (
     QgsGeometry,
     QgsProcessing,
+    QgsProcessingContext,
+    QgsProcessingFeedback,
     QgsProcessingOutputNumber,
     QgsProcessingParameterFeatureSink,
     QgsWkbTypes,
@@ -20,7 +22,7 @@ from ...robot_bridge.robotmap.exporters.shapes import Shape, obstacle_shapes, se
 from ...robot_bridge.robotmap.model import Border, RobotMap
 from ..language import tr, tr_page
 from .errors import shown_by_processing
-from .fleet_algorithm import FleetAlgorithm, fields_of
+from .fleet_algorithm import FleetAlgorithm, Parameters, fields_of
 from .map_file import MAP, MapPlace, file_problem, map_parameters, map_place, read_map_file
 from .sinks import fill, line, lines, polygon
 
@@ -96,7 +98,7 @@ class LoadRobotMap(FleetAlgorithm):
     them. Where neither does, the layers are in local metres, said in a warning.</p>
     """)
 
-    def initAlgorithm(self, configuration=None):
+    def initAlgorithm(self, configuration: dict[str, Any] | None = None):
         for parameter in map_parameters():
             self.addParameter(parameter)
         for name, (title, kind, _) in _LAYERS.items():
@@ -108,15 +110,19 @@ class LoadRobotMap(FleetAlgorithm):
         for name, title in NUMBERS.items():
             self.addOutput(QgsProcessingOutputNumber(name, title))
 
-    def checkParameterValues(self, parameters, context):
+    def checkParameterValues(self, parameters: Parameters, context: QgsProcessingContext):
         problem = file_problem(parameters)
         return (False, problem) if problem else super().checkParameterValues(parameters, context)
 
-    def prepareAlgorithm(self, parameters, context, feedback):
+    def prepareAlgorithm(
+        self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
+    ):
         self._fields = {name: fields_of(columns) for name, (_, _, columns) in _LAYERS.items()}
         return True
 
-    def processAlgorithm(self, parameters, context, feedback):
+    def processAlgorithm(
+        self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
+    ):
         with shown_by_processing():
             robot_map = read_map_file(Path(self.parameterAsFile(parameters, MAP, context)))
             feedback.setProgress(30)
@@ -137,7 +143,14 @@ class LoadRobotMap(FleetAlgorithm):
         figures = (len(robot_map.obstacles), robot_map.segment_count, len(robot_map.warnings))
         return {**made, **dict(zip(NUMBERS, figures, strict=True))}
 
-    def _write(self, parameters, context, rows: dict[str, list[Row]], place, feedback) -> dict[str, str]:
+    def _write(
+        self,
+        parameters: Parameters,
+        context: QgsProcessingContext,
+        rows: dict[str, list[Row]],
+        place: MapPlace,
+        feedback: QgsProcessingFeedback,
+    ) -> dict[str, str]:
         made = {}
         for number, (name, (_, kind, _)) in enumerate(_LAYERS.items(), 1):
             fields = self._fields[name]

@@ -30,6 +30,7 @@ from ..errors import FleetError
 from ..language import tr
 from ..sites.site_crs import check_site_crs
 from .errors import ParameterError
+from .fleet_algorithm import Parameters
 from .map_window import ORIGIN, ROTATION, SITE_CRS
 
 MAP = "MAP"
@@ -82,7 +83,7 @@ def map_parameters() -> list[QgsProcessingParameterDefinition]:
     return [QgsProcessingParameterFile(MAP, tr("Robot map, text or binary"), fileFilter=filters), *place]
 
 
-def file_problem(parameters: Mapping[str, Any]) -> str:
+def file_problem(parameters: Parameters) -> str:
     """Return what is wrong with the file before it is opened, or nothing."""
     value = parameters.get(MAP)
     if isinstance(value, (str, Path)) and str(value) and not Path(value).is_file():
@@ -138,7 +139,7 @@ def read_map_file(path: Path) -> RobotMap:
 
 def map_place(
     algorithm: QgsProcessingAlgorithm,
-    parameters: Mapping[str, Any],
+    parameters: Parameters,
     context: QgsProcessingContext,
     meta: Mapping[str, str],
     feedback: QgsProcessingFeedback,
@@ -169,7 +170,13 @@ def map_place(
     return MapPlace(crs, SiteFrame(crs.authid(), (origin[0], origin[1]), rotation))
 
 
-def _crs(algorithm, parameters, context, meta, feedback) -> QgsCoordinateReferenceSystem:
+def _crs(
+    algorithm: QgsProcessingAlgorithm,
+    parameters: Parameters,
+    context: QgsProcessingContext,
+    meta: Mapping[str, str],
+    feedback: QgsProcessingFeedback,
+) -> QgsCoordinateReferenceSystem:
     chosen = algorithm.parameterAsCrs(parameters, SITE_CRS, context)
     if parameters.get(SITE_CRS):
         if not chosen.isValid():

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 from qgis.core import (
     QgsProcessingAlgorithm,
@@ -18,6 +16,7 @@ from ...robot_bridge.robotmap.binary import CODEC_COLUMNS, CODEC_TEXT, encode
 from ...robot_bridge.robotmap.model import Border, RobotMap
 from ...robot_bridge.robotmap.text import write_text
 from ..language import tr
+from .fleet_algorithm import Parameters
 
 FORMAT, STRICT = "FORMAT", "STRICT"
 # No comma in a choice: QGIS would take it for two.
@@ -72,7 +71,7 @@ def format_parameters() -> list[QgsProcessingParameterDefinition]:
 
 
 def format_of(
-    algorithm: QgsProcessingAlgorithm, parameters: Mapping[str, Any], context: QgsProcessingContext
+    algorithm: QgsProcessingAlgorithm, parameters: Parameters, context: QgsProcessingContext
 ) -> MapFormat:
     """Return the chosen format.
 

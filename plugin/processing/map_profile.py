@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
-
 from qgis.core import (
     QgsProcessingAlgorithm,
     QgsProcessingContext,
@@ -18,6 +15,7 @@ from ..sites.feature_filter import FeatureFilter
 from ..sites.obstacle_source import Setups
 from ..sites.profile_file import SUFFIXES, find_profile, read_profile
 from ..sites.roles import setup_of
+from .fleet_algorithm import Parameters
 
 PROFILE = "PROFILE"
 
@@ -35,7 +33,7 @@ def profile_parameter() -> QgsProcessingParameterDefinition:
 
 
 def setups_of(
-    algorithm: QgsProcessingAlgorithm, parameters: Mapping[str, Any], context: QgsProcessingContext
+    algorithm: QgsProcessingAlgorithm, parameters: Parameters, context: QgsProcessingContext
 ) -> Setups:
     """Return what tells the role and the expressions of a layer.
 
@@ -46,7 +44,7 @@ def setups_of(
 
 
 def filter_in(
-    algorithm: QgsProcessingAlgorithm, parameters: Mapping[str, Any], name: str, context: QgsProcessingContext
+    algorithm: QgsProcessingAlgorithm, parameters: Parameters, name: str, context: QgsProcessingContext
 ) -> FeatureFilter | None:
     """Return which features count of the layer that the parameter ``name`` takes its features from.
 

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from typing import Any
 
 from qgis.core import (
     QgsProcessingAlgorithm,
@@ -18,6 +16,7 @@ from ...robot_bridge.robotmap.dissolving import shapely_module
 from ...robot_bridge.robotmap.shaping import Shaping
 from ..language import tr
 from .errors import ParameterError
+from .fleet_algorithm import Parameters
 
 PLANE_LOW, PLANE_HIGH, HEIGHT_STEP = "PLANE_LOW", "PLANE_HIGH", "HEIGHT_STEP"
 DISSOLVE, CHAIN, TOLERANCE, SHORTEST = "DISSOLVE", "CHAIN", "TOLERANCE", "SHORTEST"
@@ -89,7 +88,7 @@ def shaping_parameters() -> list[QgsProcessingParameterDefinition]:
 
 
 def shaping_of(
-    algorithm: QgsProcessingAlgorithm, parameters: Mapping[str, Any], context: QgsProcessingContext
+    algorithm: QgsProcessingAlgorithm, parameters: Parameters, context: QgsProcessingContext
 ) -> Shaping:
     """Return what is asked for.
 
@@ -119,7 +118,9 @@ def shaping_of(
     )
 
 
-def _plane(algorithm, parameters, context) -> tuple[float, float] | None:
+def _plane(
+    algorithm: QgsProcessingAlgorithm, parameters: Parameters, context: QgsProcessingContext
+) -> tuple[float, float] | None:
     given = [parameters.get(name) not in (None, "") for name in _HEIGHTS]
     if not any(given):
         return None

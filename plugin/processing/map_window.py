@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -25,6 +24,7 @@ from ..language import tr
 from ..sites.project_site import frame_in_project
 from ..sites.site_crs import crs_name
 from .errors import ParameterError
+from .fleet_algorithm import Parameters
 
 CENTER, WIDTH, HEIGHT, EXTENT = "CENTER", "WIDTH", "HEIGHT", "EXTENT"
 SITE_CRS, ORIGIN, ROTATION, LOCAL = "SITE_CRS", "ORIGIN", "ROTATION", "LOCAL"
@@ -51,7 +51,7 @@ def frame_parameters() -> list[QgsProcessingParameterDefinition]:
     return [_advanced(parameter) for parameter in _frame_parameters()]
 
 
-def window_problem(parameters: Mapping[str, Any]) -> str:
+def window_problem(parameters: Parameters) -> str:
     """Return what is wrong with the choice of window, or nothing."""
     has_center, has_extent = _given(parameters, CENTER), _given(parameters, EXTENT)
     if has_center and has_extent:
@@ -73,7 +73,7 @@ def window_problem(parameters: Mapping[str, Any]) -> str:
 
 def site_frame(
     algorithm: QgsProcessingAlgorithm,
-    parameters: Mapping[str, Any],
+    parameters: Parameters,
     context: QgsProcessingContext,
     crs: QgsCoordinateReferenceSystem,
 ) -> SiteFrame:
@@ -100,7 +100,7 @@ def site_frame(
 
 def map_window(
     algorithm: QgsProcessingAlgorithm,
-    parameters: Mapping[str, Any],
+    parameters: Parameters,
     context: QgsProcessingContext,
     crs: QgsCoordinateReferenceSystem,
     frame: SiteFrame,
@@ -158,7 +158,7 @@ def _advanced(parameter: QgsProcessingParameterDefinition) -> QgsProcessingParam
     return parameter
 
 
-def _given(parameters: Mapping[str, Any], name: str) -> bool:
+def _given(parameters: Parameters, name: str) -> bool:
     value = parameters.get(name)
     return value is not None and value != ""
 

@@ -16,7 +16,7 @@ from qgis.core import (
 from ...robot_bridge.robotmap.exporters.masks import MaskArea
 from ..language import tr
 from ..sites.feature_filter import FeatureFilter
-from ..sites.placing import PlacingError, SitePlacing
+from ..sites.placing import LayerPlacing, PlacingError, SitePlacing
 from ..sites.shapes import Shape, polygons_of, shapes_of
 from .errors import ParameterError
 
@@ -104,7 +104,7 @@ def speed_by(text: str, source: QgsProcessingFeatureSource, context: QgsExpressi
     return speed
 
 
-def _shapes(feature: QgsFeature, placing) -> tuple[Sequence[Shape], list[str]]:
+def _shapes(feature: QgsFeature, placing: LayerPlacing) -> tuple[Sequence[Shape], list[str]]:
     geometry = feature.geometry()
     if geometry.isNull() or geometry.isEmpty():
         return [], [tr("has no geometry; it is left out")]

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from qgis.core import (
     QgsCoordinateReferenceSystem,
@@ -14,6 +13,7 @@ from qgis.core import (
     QgsProcessingAlgorithm,
     QgsProcessingContext,
     QgsProcessingUtils,
+    QgsProject,
     QgsVectorLayer,
 )
 
@@ -41,6 +41,7 @@ from ..sites.roles import (
 from ..sites.site_crs import crs_name, is_engineering
 from .errors import ParameterError
 from .export_plan import default_height, site_crs
+from .fleet_algorithm import Parameters
 from .map_profile import setups_of
 from .map_window import LOCAL, site_frame
 
@@ -69,8 +70,6 @@ SITE_VARIABLE = "fleet_site"
 """The project variable that holds the id of its site."""
 
 WHERE_NOT_KNOWN = Bounds(0.0, 0.0, 1.0, 1.0)
-
-Parameters = Mapping[str, Any]
 
 
 @dataclass(frozen=True)
@@ -128,14 +127,22 @@ def publish_plan(
     )
 
 
-def _sources(algorithm, parameters: Parameters, context) -> SiteSources:
+def _sources(
+    algorithm: QgsProcessingAlgorithm, parameters: Parameters, context: QgsProcessingContext
+) -> SiteSources:
     setups = setups_of(algorithm, parameters, context)
     scopes = algorithm.createExpressionContext(parameters, context)
     found = [_layers(algorithm, parameters, context, name, setups) for name in LAYERS]
     return SiteSources(*(obstacle_sources(layers, LayerExpressions(), scopes, setups) for layers in found))
 
 
-def _layers(algorithm, parameters: Parameters, context, name: str, setups: Setups) -> list[QgsVectorLayer]:
+def _layers(
+    algorithm: QgsProcessingAlgorithm,
+    parameters: Parameters,
+    context: QgsProcessingContext,
+    name: str,
+    setups: Setups,
+) -> list[QgsVectorLayer]:
     values = parameters.get(name)
     if not values:
         return _project_layers(context.project(), LAYERS[name], setups)
@@ -154,7 +161,7 @@ def _layers(algorithm, parameters: Parameters, context, name: str, setups: Setup
     return layers
 
 
-def _project_layers(project, roles: Sequence[str], setups: Setups) -> list[QgsVectorLayer]:
+def _project_layers(project: QgsProject, roles: Sequence[str], setups: Setups) -> list[QgsVectorLayer]:
     layers = project.mapLayers().values() if project is not None else ()
     found = [layer for layer in layers if setups(layer).role in roles]
     _check_vectors(found)
@@ -192,7 +199,12 @@ def _check_published_crs(crs: QgsCoordinateReferenceSystem) -> None:
     )
 
 
-def _settings(algorithm, parameters: Parameters, context, site: SitePlacing) -> tuple[SiteSettings, bool]:
+def _settings(
+    algorithm: QgsProcessingAlgorithm,
+    parameters: Parameters,
+    context: QgsProcessingContext,
+    site: SitePlacing,
+) -> tuple[SiteSettings, bool]:
     name, title = _names(algorithm, parameters, context)
     bounds = _bounds(algorithm, parameters, context, site)
     limits = _limits(algorithm, parameters, context, name)
@@ -210,7 +222,9 @@ def _settings(algorithm, parameters: Parameters, context, site: SitePlacing) -> 
     return settings, bounds is not None
 
 
-def _limits(algorithm, parameters: Parameters, context, site: str) -> dict[str, float]:
+def _limits(
+    algorithm: QgsProcessingAlgorithm, parameters: Parameters, context: QgsProcessingContext, site: str
+) -> dict[str, float]:
     """Return the limits that are given; of the others what the site is published with, else the default."""
     folder = Path(algorithm.parameterAsFileOutput(parameters, FOLDER, context))
     earlier = earlier_settings(folder, site)
@@ -237,7 +251,9 @@ def _number(text: str, place: str) -> float:
         ) from None
 
 
-def _names(algorithm, parameters: Parameters, context) -> tuple[str, str]:
+def _names(
+    algorithm: QgsProcessingAlgorithm, parameters: Parameters, context: QgsProcessingContext
+) -> tuple[str, str]:
     project = context.project()
     variables = project.customVariables() if project is not None else {}
     name = algorithm.parameterAsString(parameters, SITE_ID, context) or str(
@@ -255,7 +271,12 @@ def _names(algorithm, parameters: Parameters, context) -> tuple[str, str]:
     return name, algorithm.parameterAsString(parameters, SITE_NAME, context) or title or name
 
 
-def _bounds(algorithm, parameters: Parameters, context, site: SitePlacing) -> Bounds | None:
+def _bounds(
+    algorithm: QgsProcessingAlgorithm,
+    parameters: Parameters,
+    context: QgsProcessingContext,
+    site: SitePlacing,
+) -> Bounds | None:
     if not parameters.get(BOUNDS):
         return None
     outline = algorithm.parameterAsExtentGeometry(parameters, BOUNDS, context, site.crs)
@@ -271,7 +292,9 @@ def _bounds(algorithm, parameters: Parameters, context, site: SitePlacing) -> Bo
     return Bounds(float(low[0]), float(low[1]), float(high[0]), float(high[1]))
 
 
-def _above_zero(algorithm, parameters: Parameters, context, name: str) -> float:
+def _above_zero(
+    algorithm: QgsProcessingAlgorithm, parameters: Parameters, context: QgsProcessingContext, name: str
+) -> float:
     value = algorithm.parameterAsDouble(parameters, name, context)
     if not 0 < value < math.inf:
         raise ParameterError(

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import Any
 
 from qgis.core import (
     QgsProcessing,
+    QgsProcessingContext,
+    QgsProcessingFeedback,
     QgsProcessingOutputNumber,
     QgsProcessingOutputString,
     QgsProcessingParameterBoolean,
@@ -28,7 +31,7 @@ from ..sites.publication_lock import only_publication
 from ..sites.site_content import SiteContent
 from .errors import ParameterError, shown_by_processing
 from .export_plan import DEFAULT_HEIGHT
-from .fleet_algorithm import FleetAlgorithm
+from .fleet_algorithm import FleetAlgorithm, Parameters
 from .map_profile import profile_parameter
 from .map_window import frame_parameters
 from .publish_help import HELP
@@ -77,7 +80,7 @@ class PublishSite(FleetAlgorithm):
     ICON = "publish_site.svg"
     TAGS = ("gateway", "site", "publish", "obstacle", "road", "keepout", "qgis_process")
 
-    def initAlgorithm(self, configuration=None):
+    def initAlgorithm(self, configuration: dict[str, Any] | None = None):
         site = [
             QgsProcessingParameterString(SITE_ID, tr("Site id (default: the project's)"), optional=True),
             QgsProcessingParameterString(
@@ -100,7 +103,7 @@ class PublishSite(FleetAlgorithm):
         for name, description in NUMBERS.items():
             self.addOutput(QgsProcessingOutputNumber(name, description))
 
-    def checkParameterValues(self, parameters, context):
+    def checkParameterValues(self, parameters: Parameters, context: QgsProcessingContext):
         # Before QGIS's own checks, which say that a value is wrong and not why.
         try:
             publish_plan(self, parameters, context)
@@ -108,12 +111,16 @@ class PublishSite(FleetAlgorithm):
             return False, str(error)
         return super().checkParameterValues(parameters, context)
 
-    def prepareAlgorithm(self, parameters, context, feedback):
+    def prepareAlgorithm(
+        self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
+    ):
         with shown_by_processing():
             self._plan = publish_plan(self, parameters, context)
         return True
 
-    def processAlgorithm(self, parameters, context, feedback):
+    def processAlgorithm(
+        self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
+    ):
         plan = self._plan
         with shown_by_processing(), only_publication(plan.folder):
             # Anew: another publication may have ended since the plan was made.
@@ -147,7 +154,7 @@ class PublishSite(FleetAlgorithm):
         return {FOLDER: str(plan.folder), ID: settings.id, **dict(zip(NUMBERS, figures, strict=True))}
 
 
-def _content(plan: PublishPlan, feedback) -> SiteContent | None:
+def _content(plan: PublishPlan, feedback: QgsProcessingFeedback) -> SiteContent | None:
     bounds = plan.settings.bounds if plan.bounds_given else None
     return read_content(plan.sources, plan.site, bounds, plan.default_height, plan.default_width, feedback)
 

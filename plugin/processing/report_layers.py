@@ -77,7 +77,15 @@ def map_layers(
     return layers
 
 
-def _points(name, crs, cones, planned: bool, mark: dict, *, named: bool) -> QgsVectorLayer:
+def _points(
+    name: str,
+    crs: QgsCoordinateReferenceSystem,
+    cones: Sequence[PlacedCone],
+    planned: bool,
+    mark: dict,
+    *,
+    named: bool,
+) -> QgsVectorLayer:
     shapes = [QgsGeometry.fromPointXY(QgsPointXY(*(c.planned if planned else c.placed))) for c in cones]
     layer = _layer(name, "Point", crs, cones, shapes, QgsMarkerSymbol.createSimple(mark))
     if named:
@@ -96,7 +104,9 @@ def _points(name, crs, cones, planned: bool, mark: dict, *, named: bool) -> QgsV
     return layer
 
 
-def _lines(name, crs, cones, factor: int) -> QgsVectorLayer:
+def _lines(
+    name: str, crs: QgsCoordinateReferenceSystem, cones: Sequence[PlacedCone], factor: int
+) -> QgsVectorLayer:
     shapes = []
     for cone in cones:
         (x, y), (east, north) = cone.planned, cone.off
@@ -106,7 +116,14 @@ def _lines(name, crs, cones, factor: int) -> QgsVectorLayer:
     return _layer(name, "LineString", crs, cones, shapes, QgsLineSymbol.createSimple(line))
 
 
-def _layer(name, kind: str, crs, cones, shapes: list[QgsGeometry], symbol: QgsSymbol) -> QgsVectorLayer:
+def _layer(
+    name: str,
+    kind: str,
+    crs: QgsCoordinateReferenceSystem,
+    cones: Sequence[PlacedCone],
+    shapes: list[QgsGeometry],
+    symbol: QgsSymbol,
+) -> QgsVectorLayer:
     layer = QgsVectorLayer(f"{kind}?field=cone:string", name, "memory")
     layer.setCrs(crs)
     features = []

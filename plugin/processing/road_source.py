@@ -7,9 +7,12 @@ from dataclasses import dataclass, field
 import numpy as np
 from qgis.core import (
     QgsCoordinateReferenceSystem,
+    QgsFeature,
     QgsProcessing,
     QgsProcessingAlgorithm,
+    QgsProcessingContext,
     QgsProcessingFeatureSource,
+    QgsProcessingFeedback,
     QgsProcessingParameterBoolean,
     QgsProcessingParameterCrs,
     QgsProcessingParameterDefinition,
@@ -33,6 +36,7 @@ from ..sites.road_attributes import RoadAttributes, RoadExpressions, RoadRules
 from ..sites.roles import LayerExpressions, expressions_of
 from ..sites.site_crs import site_crs_for
 from .errors import ParameterError
+from .fleet_algorithm import Parameters
 from .map_window import SITE_CRS
 
 ROADS, DEFAULT_WIDTH, SPEED_DEFAULT = "ROADS", "DEFAULT_WIDTH", "DEFAULT_SPEED"
@@ -114,7 +118,9 @@ def repair_parameter() -> QgsProcessingParameterDefinition:
 class RoadSource:
     """The layer of roads of one run; made in the main thread, read in any."""
 
-    def __init__(self, algorithm: QgsProcessingAlgorithm, parameters, context) -> None:
+    def __init__(
+        self, algorithm: QgsProcessingAlgorithm, parameters: Parameters, context: QgsProcessingContext
+    ) -> None:
         layer = algorithm.parameterAsVectorLayer(parameters, ROADS, context)
         role = expressions_of(layer) if layer is not None else LayerExpressions()
         self._algorithm, self._parameters, self._context = algorithm, parameters, context
@@ -125,7 +131,7 @@ class RoadSource:
             given[name] = given[name] or getattr(role, of_role)
         self._expressions = RoadExpressions(**given)
 
-    def read(self, feedback) -> RoadReading | None:
+    def read(self, feedback: QgsProcessingFeedback) -> RoadReading | None:
         """Return the roads; None after a cancel.
 
         :raises FleetError: when the layer, its CRS or an expression cannot be used.
@@ -160,7 +166,13 @@ class RoadSource:
         other = project.crs() if project is not None else QgsCoordinateReferenceSystem()
         return site_crs_for(chosen, other, [own])
 
-    def _read(self, source, crs, placing: LayerPlacing, feedback) -> RoadReading | None:
+    def _read(
+        self,
+        source: QgsProcessingFeatureSource,
+        crs: QgsCoordinateReferenceSystem,
+        placing: LayerPlacing,
+        feedback: QgsProcessingFeedback,
+    ) -> RoadReading | None:
         name = source.sourceName()
         scope = self._algorithm.createExpressionContext(self._parameters, self._context, source)
         rules = LayerRules(name, source.fields(), scope)
@@ -195,7 +207,9 @@ class RoadSource:
         reading.without_width += [k for k, one in enumerate(known) if one.width is None]
         return reading
 
-    def _columns(self, lines, known: list[RoadAttributes], name: str, warnings: list[str]) -> Centrelines:
+    def _columns(
+        self, lines: list[np.ndarray], known: list[RoadAttributes], name: str, warnings: list[str]
+    ) -> Centrelines:
         width, speed = (
             self._algorithm.parameterAsDouble(self._parameters, key, self._context)
             for key in (DEFAULT_WIDTH, SPEED_DEFAULT)
@@ -223,7 +237,7 @@ class RoadSource:
         )
 
 
-def _lines_in_metres(feature, placing: LayerPlacing, notes: list[str]) -> list[np.ndarray]:
+def _lines_in_metres(feature: QgsFeature, placing: LayerPlacing, notes: list[str]) -> list[np.ndarray]:
     geometry = feature.geometry()
     if geometry.isNull() or geometry.isEmpty():
         notes.append(tr("has no geometry; it is left out"))
@@ -241,7 +255,11 @@ def _lines_in_metres(feature, placing: LayerPlacing, notes: list[str]) -> list[n
 
 
 def network_of_roads(
-    algorithm: QgsProcessingAlgorithm, parameters, context, reading: RoadReading, feedback
+    algorithm: QgsProcessingAlgorithm,
+    parameters: Parameters,
+    context: QgsProcessingContext,
+    reading: RoadReading,
+    feedback: QgsProcessingFeedback,
 ) -> tuple[Network, list[Finding]] | None:
     """Return the network and what was repaired in it, nothing where REPAIR is not asked for.
 
@@ -272,7 +290,7 @@ def network_of_roads(
     return network, repairs
 
 
-def network_as_drawn(reading: RoadReading, feedback) -> Network | None:
+def network_as_drawn(reading: RoadReading, feedback: QgsProcessingFeedback) -> Network | None:
     """Return the network with nothing repaired; None after a cancel."""
     try:
         return build_network(reading.roads, _asking(feedback))
@@ -280,7 +298,7 @@ def network_as_drawn(reading: RoadReading, feedback) -> Network | None:
         return None
 
 
-def _asking(feedback) -> Ask:
+def _asking(feedback: QgsProcessingFeedback) -> Ask:
     def ask() -> None:
         if feedback.isCanceled():
             raise CancelledError

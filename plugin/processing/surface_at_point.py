@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 from qgis.core import (
+    QgsCoordinateReferenceSystem,
     QgsFeature,
     QgsGeometry,
     QgsProcessing,
+    QgsProcessingContext,
     QgsProcessingException,
     QgsProcessingFeatureSource,
+    QgsProcessingFeedback,
     QgsProcessingOutputNumber,
     QgsProcessingParameterFeatureSink,
     QgsProcessingParameterFeatureSource,
@@ -25,7 +29,7 @@ from ..language import tr, tr_page
 from ..sites.roles import ROAD_SURFACE, layers_with_role
 from ..sites.surface_map import SurfaceMap, read_surface_map, surface_sources
 from .errors import ParameterError, shown_by_processing
-from .fleet_algorithm import FleetAlgorithm, fields_of
+from .fleet_algorithm import FleetAlgorithm, Parameters, fields_of
 from .sinks import fill
 
 POINTS, SURFACES, OUTPUT = "POINTS", "SURFACES", "OUTPUT"
@@ -58,7 +62,7 @@ class SurfaceAtPoint(FleetAlgorithm):
     same. docs/roads.md says more.</p>
     """)
 
-    def initAlgorithm(self, configuration=None):
+    def initAlgorithm(self, configuration: dict[str, Any] | None = None):
         kinds = QgsProcessing.SourceType
         self.addParameter(QgsProcessingParameterFeatureSource(POINTS, tr("Points"), [kinds.TypeVectorPoint]))
         self.addParameter(
@@ -75,7 +79,9 @@ class SurfaceAtPoint(FleetAlgorithm):
         for name, title in NUMBERS.items():
             self.addOutput(QgsProcessingOutputNumber(name, title))
 
-    def prepareAlgorithm(self, parameters, context, feedback):
+    def prepareAlgorithm(
+        self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
+    ):
         self._fields = fields_of(_FIELDS)
         with shown_by_processing():
             layers = self.parameterAsLayerList(parameters, SURFACES, context)
@@ -87,7 +93,9 @@ class SurfaceAtPoint(FleetAlgorithm):
             self._sources = surface_sources(layers, project.crs(), transforms, scope) if layers else None
         return True
 
-    def processAlgorithm(self, parameters, context, feedback):
+    def processAlgorithm(
+        self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
+    ):
         with shown_by_processing():
             points = self._points(parameters, context)
             if self._sources is None:
@@ -129,7 +137,7 @@ class SurfaceAtPoint(FleetAlgorithm):
         )
         return {OUTPUT: made, **dict(zip(NUMBERS, (counts[True], counts[False], warnings), strict=True))}
 
-    def _points(self, parameters, context) -> QgsProcessingFeatureSource:
+    def _points(self, parameters: Parameters, context: QgsProcessingContext) -> QgsProcessingFeatureSource:
         points = self.parameterAsSource(parameters, POINTS, context)
         if points is None:
             raise QgsProcessingException(self.invalidSourceError(parameters, POINTS))
@@ -144,7 +152,9 @@ class SurfaceAtPoint(FleetAlgorithm):
         return points
 
 
-def _batches(points, feedback) -> Iterator[list[QgsFeature]]:
+def _batches(
+    points: QgsProcessingFeatureSource, feedback: QgsProcessingFeedback
+) -> Iterator[list[QgsFeature]]:
     total, done, batch = max(points.featureCount(), 1), 0, []
     for feature in points.getFeatures():
         if feedback.isCanceled():
@@ -159,7 +169,9 @@ def _batches(points, feedback) -> Iterator[list[QgsFeature]]:
         yield batch
 
 
-def _told(features: list[QgsFeature], surfaces: SurfaceMap, crs) -> tuple[list[Surface | None], list[str]]:
+def _told(
+    features: list[QgsFeature], surfaces: SurfaceMap, crs: QgsCoordinateReferenceSystem
+) -> tuple[list[Surface | None], list[str]]:
     """Return the surface of each feature, and what is odd about some."""
     notes: list[str] = []
     places, counts = [], []

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from qgis.core import QgsFeature, QgsProcessingAlgorithm, QgsProcessingContext
@@ -17,6 +15,7 @@ from ..sites.shapes import shapes_of
 from ..sites.site_crs import stated_crs
 from .errors import ParameterError
 from .export_plan import ObstaclePlan, obstacle_plan_of
+from .fleet_algorithm import Parameters
 from .map_profile import filter_in
 from .map_window import EXTENT, map_window
 from .tile_windows import Tile, TileSize, grid_tiles, route_tiles
@@ -33,7 +32,7 @@ class TilePlan(ObstaclePlan):
     folder: Path
 
 
-def tiles_problem(parameters: Mapping[str, Any]) -> str:
+def tiles_problem(parameters: Parameters) -> str:
     """Return what is wrong with the choice of area, or nothing."""
     has_extent, has_route = (parameters.get(name) not in (None, "") for name in (EXTENT, ROUTE))
     if has_extent and has_route:
@@ -46,7 +45,7 @@ def tiles_problem(parameters: Mapping[str, Any]) -> str:
 
 
 def tile_plan_of(
-    algorithm: QgsProcessingAlgorithm, parameters: Mapping[str, Any], context: QgsProcessingContext
+    algorithm: QgsProcessingAlgorithm, parameters: Parameters, context: QgsProcessingContext
 ) -> TilePlan:
     """Return the plan for ``parameters``; to be called in the main thread.
 
@@ -69,7 +68,12 @@ def tile_plan_of(
     return TilePlan(**vars(plan), tiles=tiles, folder=folder)
 
 
-def _routes(algorithm, parameters, context, site: SitePlacing) -> list[np.ndarray]:
+def _routes(
+    algorithm: QgsProcessingAlgorithm,
+    parameters: Parameters,
+    context: QgsProcessingContext,
+    site: SitePlacing,
+) -> list[np.ndarray]:
     """Return each line of ROUTE as (n, 2) metres in the site frame."""
     source = algorithm.parameterAsSource(parameters, ROUTE, context)
     if source is None:

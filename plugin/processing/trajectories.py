@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from qgis.core import (
+    QgsCoordinateReferenceSystem,
+    QgsCoordinateTransformContext,
     QgsDistanceArea,
     QgsGeometry,
     QgsLineString,
     QgsPoint,
     QgsPointXY,
     QgsProcessing,
+    QgsProcessingContext,
     QgsProcessingException,
+    QgsProcessingFeatureSource,
+    QgsProcessingFeedback,
     QgsProcessingOutputNumber,
     QgsProcessingParameterBoolean,
     QgsProcessingParameterFeatureSink,
@@ -22,9 +29,9 @@ from qgis.core import (
 )
 
 from ..language import tr, tr_page
-from .drives import Drive, drives
+from .drives import Drive, Positions, drives
 from .errors import shown_by_processing
-from .fleet_algorithm import FleetAlgorithm, fields_of
+from .fleet_algorithm import FleetAlgorithm, Parameters, fields_of
 from .position_source import PositionSource, utc
 from .sinks import AT_ONCE, fill
 
@@ -75,7 +82,7 @@ class Trajectories(FleetAlgorithm):
     OUTPUT=lines.gpkg</pre>
     """)
 
-    def initAlgorithm(self, configuration=None):
+    def initAlgorithm(self, configuration: dict[str, Any] | None = None):
         points = QgsProcessing.SourceType.TypeVectorPoint
         self.addParameter(QgsProcessingParameterFeatureSource(INPUT, tr("Positions"), [points]))
         fields = (
@@ -98,11 +105,15 @@ class Trajectories(FleetAlgorithm):
         for name, title in {**NUMBERS, "WARNING_COUNT": tr("Warnings")}.items():
             self.addOutput(QgsProcessingOutputNumber(name, title))
 
-    def prepareAlgorithm(self, parameters, context, feedback):
+    def prepareAlgorithm(
+        self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
+    ):
         self._fields = fields_of(_FIELDS)
         return True
 
-    def processAlgorithm(self, parameters, context, feedback):
+    def processAlgorithm(
+        self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
+    ):
         source = self.parameterAsSource(parameters, INPUT, context)
         if source is None:
             raise QgsProcessingException(self.invalidSourceError(parameters, INPUT))
@@ -135,7 +146,15 @@ class Trajectories(FleetAlgorithm):
         told = dict(zip(NUMBERS, (lines, len(positions), length), strict=True))
         return {OUTPUT: layer, **told, "WARNING_COUNT": int(odd > 0)}
 
-    def _write(self, parameters, context, feedback, source, positions, metres):
+    def _write(
+        self,
+        parameters: Parameters,
+        context: QgsProcessingContext,
+        feedback: QgsProcessingFeedback,
+        source: QgsProcessingFeatureSource,
+        positions: Positions,
+        metres: Metres,
+    ):
         """Return the layer, how many lines were written and their length; None when cancelled."""
         kind = QgsWkbTypes.Type.LineStringM
         sink, layer = self.parameterAsSink(
@@ -161,7 +180,7 @@ class Trajectories(FleetAlgorithm):
 class Metres:
     """Measures steps: in the CRS where its units are metres on the ground, else on its ellipsoid."""
 
-    def __init__(self, crs, transforms) -> None:
+    def __init__(self, crs: QgsCoordinateReferenceSystem, transforms: QgsCoordinateTransformContext) -> None:
         true = crs.mapUnits() == QgsUnitTypes.DistanceUnit.DistanceMeters and not crs.isGeographic()
         self._measure = None
         if crs.isValid() and (not true or crs.authid() in _STRETCHED):

@@ -14,7 +14,7 @@ class PreviewView(QWidget):
 
     resized = pyqtSignal()
 
-    def __init__(self, parent=None):
+    def __init__(self, parent: QWidget | None = None):
         super().__init__(parent)
         self.setObjectName("fleet_roles_preview")
         self.setMinimumHeight(160)

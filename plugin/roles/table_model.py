@@ -8,6 +8,7 @@ from typing import Any
 from qgis.core import QgsMapLayer
 from qgis.PyQt.QtCore import QAbstractTableModel, QModelIndex, Qt, pyqtSignal
 from qgis.PyQt.QtGui import QColor
+from qgis.PyQt.QtWidgets import QWidget
 
 from ...robot_bridge.robotmap.templates import NAMED
 from ..desk.colours import DOUBTFUL, WRONG, for_letters
@@ -112,7 +113,7 @@ class RoleTableModel(QAbstractTableModel):
 
     edited = pyqtSignal()
 
-    def __init__(self, rows: Sequence[RoleRow], parent=None):
+    def __init__(self, rows: Sequence[RoleRow], parent: QWidget | None = None):
         super().__init__(parent)
         self.rows = list(rows)
         self._results: dict[str, Measure | None] = {}
@@ -138,26 +139,26 @@ class RoleTableModel(QAbstractTableModel):
 
     # --- Qt ---
 
-    def rowCount(self, parent=QModelIndex()):  # noqa: B008
+    def rowCount(self, parent: QModelIndex = QModelIndex()):  # noqa: B008
         return 0 if parent.isValid() else len(self.rows)
 
-    def columnCount(self, parent=QModelIndex()):  # noqa: B008
+    def columnCount(self, parent: QModelIndex = QModelIndex()):  # noqa: B008
         return 0 if parent.isValid() else len(TITLES)
 
-    def headerData(self, section, orientation, role=Qt.ItemDataRole.DisplayRole):
+    def headerData(self, section: int, orientation: Qt.Orientation, role: int = Qt.ItemDataRole.DisplayRole):
         if orientation != Qt.Orientation.Horizontal:
             return None
         if role == Qt.ItemDataRole.DisplayRole:
             return TITLES[section]
         return EXPLANATIONS[section] if role == Qt.ItemDataRole.ToolTipRole else None
 
-    def flags(self, index):
+    def flags(self, index: QModelIndex):
         plain = Qt.ItemFlag.ItemIsEnabled | Qt.ItemFlag.ItemIsSelectable
         column = index.column()
         editable = column == ROLE or column in used_columns(self.rows[index.row()].setup.role)
         return plain | Qt.ItemFlag.ItemIsEditable if editable else plain
 
-    def data(self, index, role=Qt.ItemDataRole.DisplayRole):
+    def data(self, index: QModelIndex, role: int = Qt.ItemDataRole.DisplayRole):
         row, column = self.rows[index.row()], index.column()
         if role == Qt.ItemDataRole.EditRole:
             return self._text(row, column)
@@ -171,7 +172,7 @@ class RoleTableModel(QAbstractTableModel):
             return COLOURS.get(row.setup.role)
         return None
 
-    def setData(self, index, value, role=Qt.ItemDataRole.EditRole):
+    def setData(self, index: QModelIndex, value: object, role: int = Qt.ItemDataRole.EditRole):
         row, column = self.rows[index.row()], index.column()
         if role != Qt.ItemDataRole.EditRole or column not in WHAT:
             return False

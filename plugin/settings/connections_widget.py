@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 from qgis.core import QgsFileUtils
@@ -196,7 +197,7 @@ class ConnectionsWidget(QWidget):
             self._buttons[name].setEnabled(count == 1)
         self._buttons["remove"].setEnabled(count > 0)
 
-    def _button(self, name: str, text: str, action) -> QPushButton:
+    def _button(self, name: str, text: str, action: Callable[[], object]) -> QPushButton:
         button = QPushButton(text)
         button.setObjectName(f"fleet_connections_{name}")
         button.setAutoDefault(False)

@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, fields
 
+from qgis.core import QgsMapLayer, QgsProject
+
 OBSTACLE = "obstacle"
 STAIRS = "stairs"
 RAMP = "ramp"
@@ -60,50 +62,50 @@ class LayerSetup:
     expressions: LayerExpressions = LayerExpressions()
 
 
-def role_of(layer) -> str:
+def role_of(layer: QgsMapLayer) -> str:
     """Return the role of ``layer``, or ``""`` when it has none or one that is not known."""
     role = str(layer.customProperty(ROLE_PROPERTY, "") or "")
     return role if role in ROLES else ""
 
 
-def set_role(layer, role: str) -> None:
+def set_role(layer: QgsMapLayer, role: str) -> None:
     """Give ``layer`` the role ``role``; ``""`` takes it away. Raises ValueError for an unknown one."""
     if role and role not in ROLES:
         raise ValueError(f"{role!r} is not a layer role; choose one of {', '.join(ROLES)}")
     _write(layer, ROLE_PROPERTY, role)
 
 
-def expressions_of(layer) -> LayerExpressions:
+def expressions_of(layer: QgsMapLayer) -> LayerExpressions:
     """Return the expressions kept in ``layer``."""
     return LayerExpressions(
         **{name: str(layer.customProperty(f"fleet/{name}", "") or "") for name in EXPRESSIONS}
     )
 
 
-def set_expressions(layer, expressions: LayerExpressions) -> None:
+def set_expressions(layer: QgsMapLayer, expressions: LayerExpressions) -> None:
     """Keep ``expressions`` in ``layer``; an empty one is taken away."""
     for name in EXPRESSIONS:
         _write(layer, f"fleet/{name}", getattr(expressions, name))
 
 
-def setup_of(layer) -> LayerSetup:
+def setup_of(layer: QgsMapLayer) -> LayerSetup:
     """Return the role and the expressions kept in ``layer``."""
     return LayerSetup(role_of(layer), expressions_of(layer))
 
 
-def keep_setup(layer, setup: LayerSetup) -> None:
+def keep_setup(layer: QgsMapLayer, setup: LayerSetup) -> None:
     """Keep the role and the expressions of ``setup`` in ``layer``."""
     set_role(layer, setup.role)
     set_expressions(layer, setup.expressions)
 
 
-def layers_with_role(project, *roles: str) -> list:
+def layers_with_role(project: QgsProject, *roles: str) -> list:
     """Return the layers of ``project`` that carry one of ``roles``, sorted by name and id."""
     found = [layer for layer in project.mapLayers().values() if role_of(layer) in roles]
     return sorted(found, key=lambda layer: (layer.name(), layer.id()))
 
 
-def _write(layer, key: str, value: str) -> None:
+def _write(layer: QgsMapLayer, key: str, value: str) -> None:
     if value:
         layer.setCustomProperty(key, value)
     else:

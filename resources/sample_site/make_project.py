@@ -27,6 +27,8 @@ from qgis.core import (  # noqa: E402
 from qgis.PyQt.QtGui import QColor  # noqa: E402
 from symbols import LOOKS, style  # noqa: E402
 
+from robot_bridge.sites.settings import SiteSettings  # noqa: E402
+
 GROUPS = {
     "Rules": ["keepouts"],
     "Obstacles": ["litter_bins", "benches", "columns", "walls", "stairs", "ramp", "buildings"],
@@ -89,7 +91,7 @@ def _write_project(project: QgsProject) -> None:
     project.clear()
 
 
-def _set_frame(project: QgsProject, settings) -> None:
+def _set_frame(project: QgsProject, settings: SiteSettings) -> None:
     """Let expressions and layouts of the project use the site frame."""
     project.setCustomVariables(
         {

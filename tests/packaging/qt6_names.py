@@ -31,18 +31,7 @@ def missing(tree: ast.Module) -> list[tuple[int, str]]:
     for node in ast.walk(tree):
         if isinstance(node, ast.Attribute) and node.attr in _GONE:
             found.append((node.lineno, f".{node.attr} is gone"))
-        if isinstance(node, ast.FunctionDef) and node.name.endswith("Event"):
-            found += _without_class(node)
     return found
-
-
-def _without_class(handler: ast.FunctionDef) -> list[tuple[int, str]]:
-    """An event whose class is not said cannot be held against Qt 6, which took most from events."""
-    return [
-        (handler.lineno, f"{handler.name} does not say of what class {one.arg} is")
-        for one in handler.args.args
-        if one.arg == "event" and one.annotation is None
-    ]
 
 
 def _take_in(node: ast.ImportFrom, names: dict[str, object]) -> list[tuple[int, str]]:

@@ -17,6 +17,11 @@ WRONG = {
         "QFontMetrics(QFont()).width('a')",
         '"QFontMetrics" has no attribute "width"',
     ),
+    "a_method_of_what_may_be_none": (
+        "QtGui import QPainter",
+        "def paint(painter: QPainter | None):\n    painter.matrix()",
+        '"QPainter" of "QPainter | None" has no attribute "matrix"',
+    ),
     "a_drop": (
         "QtGui import QDropEvent",
         "def dropEvent(self, event: QDropEvent):\n    event.pos()",
@@ -27,6 +32,23 @@ WRONG = {
         "def ticked(state: int) -> bool:\n    return state == Qt.CheckState.Checked",
         "Non-overlapping equality check",
     ),
+    "an_enum_as_a_number": (
+        "QtCore import Qt",
+        "int(Qt.Orientation.Vertical)",
+        'argument type "Orientation"',
+    ),
+    "an_enum_and_a_number": (
+        "QtCore import Qt",
+        "Qt.WindowState.WindowActive | 4",
+        '("WindowState" and "int")',
+    ),
+    "an_enum_among_numbers": (
+        "QtCore import Qt",
+        "def pressed(button: Qt.MouseButton) -> bool:\n    return button in (1, 2)",
+        'element type: "MouseButton"',
+    ),
+    "an_operand": ("QtCore import QPoint", "QPoint(1, 2) + 3", '("QPoint" and "int")'),
+    "an_index": ("QtCore import QPoint", "QPoint(1, 2)[0]", '"QPoint" is not indexable'),
     "an_enum": ("core import Qgis", "Qgis.GeometryType.Dot", '"type[GeometryType]" has no attribute "Dot"'),
     "a_class": ("core import QgsMapLayerRegistry", "", 'has no attribute "QgsMapLayerRegistry"'),
     "gone_from_qgis": ("core import QgsProject", "QgsProject.instance().visibilityPresets()", '"QgsProject"'),

@@ -21,6 +21,16 @@ def test_ruff_finds_nothing(root):
     assert done.returncode == 0, done.stdout + done.stderr
 
 
+@pytest.mark.parametrize("module", ["plugin/roles/delegates.py", "resources/sample_site/make_project.py"])
+def test_an_argument_without_a_class_is_named(root, tmp_path, module):
+    """What has no class cannot be held against QGIS 4 and Qt 6: see test_qgis4.py."""
+    shutil.copy(root / "pyproject.toml", tmp_path)
+    (tmp_path / module).parent.mkdir(parents=True)
+    (tmp_path / module).write_text("def dropEvent(self, event):\n    event.pos()\n", encoding="utf-8")
+    done = run(tmp_path, "ruff", "check", "--output-format=concise", ".")
+    assert f"{module}:1:21: ANN001" in done.stdout, done.stdout + done.stderr
+
+
 def test_mypy_finds_nothing_in_the_bridge(root):
     done = run(root, "mypy")
     assert done.returncode == 0, done.stdout + done.stderr

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -180,7 +181,7 @@ class DraftCommands(QObject):
             canvas.setCenter(QgsPointXY(*places[0]))
             canvas.refresh()
 
-    def _try(self, action) -> None:
+    def _try(self, action: Callable[[], object]) -> None:
         try:
             action()
         except FleetError as error:

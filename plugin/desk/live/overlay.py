@@ -8,6 +8,7 @@ import numpy as np
 from qgis.gui import QgsMapCanvas, QgsMapCanvasItem
 from qgis.PyQt.QtCore import QRect, QRectF
 from qgis.PyQt.QtGui import QPainter
+from qgis.PyQt.QtWidgets import QStyleOptionGraphicsItem, QWidget
 
 from .painting import ScenePainter
 from .scene import PlacedScene
@@ -45,7 +46,9 @@ class FleetOverlay(QgsMapCanvasItem):
         self.prepareGeometryChange()
         self.setPos(0, 0)
 
-    def paint(self, painter: QPainter, option=None, widget=None) -> None:
+    def paint(
+        self, painter: QPainter, option: QStyleOptionGraphicsItem | None = None, widget: QWidget | None = None
+    ) -> None:
         if self._placed is None:
             return
         began = time.perf_counter()

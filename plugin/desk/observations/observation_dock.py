@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import numpy as np
-from qgis.gui import QgsDockWidget
 from qgis.PyQt.QtCore import QModelIndex, Qt, QTimer
 from qgis.PyQt.QtGui import QPixmap
 from qgis.PyQt.QtWidgets import QCheckBox, QLabel, QListView, QVBoxLayout, QWidget
 
+from ....robot_bridge.messages import ObservationReport, ReviewObservation
 from ...errors import FleetError
 from ...language import tr
 from ..desk import Desk
+from ..dock_action import ActionDock
 from ..live.following import show_places
 from ..observation_book import is_pending
 from .observation_feed import ObservationFeed
@@ -27,7 +28,7 @@ PICTURE = 120
 """Pixels."""
 
 
-class ObservationDock(QgsDockWidget):
+class ObservationDock(ActionDock):
     """Keeps list, form and layer true to what is known; :meth:`remove` undoes what it did elsewhere."""
 
     def __init__(self, desk: Desk, parent: QWidget | None = None):
@@ -122,7 +123,7 @@ class ObservationDock(QgsDockWidget):
         self.feed.reviewed.connect(self._reviewed)
         self.feed.refused.connect(self._refused)
 
-    def _review(self, request) -> None:
+    def _review(self, request: ReviewObservation) -> None:
         try:
             self.feed.review(request)
         except FleetError as error:
@@ -160,7 +161,7 @@ class ObservationDock(QgsDockWidget):
         self.form.picture.setPixmap(picture)
         self.form.picture.setVisible(not picture.isNull())
 
-    def _picture_of(self, report) -> str:
+    def _picture_of(self, report: ObservationReport) -> str:
         """Return the picture of an observation, or of the newest image of the same object."""
         same = [
             one for one in self._desk.observations if (one.robot, one.object) == (report.robot, report.object)

@@ -20,6 +20,7 @@ from ....robot_bridge.sites.frame import SiteFrame
 from ...errors import FleetError, PlacementError
 from ...language import tr
 from ..desk import Desk
+from ..picture import RobotView
 from .closed_ways import ClosedWay, closed_ways
 from .cone_source import ConeFacts, read_cones, read_stores
 from .near_meetings import Meeting, meetings
@@ -138,7 +139,9 @@ class DraftPlan(QObject):
                 self.draft = replace(self.draft, closed=closed)
                 self.changed.emit()
 
-    def _make(self, targets, facts: dict[str, ConeFacts], frame: SiteFrame, preview: bool) -> None:
+    def _make(
+        self, targets: tuple[Target, ...], facts: dict[str, ConeFacts], frame: SiteFrame, preview: bool
+    ) -> None:
         stores = read_stores(self._desk.project, self.settings, frame)
         try:
             job = Job(targets, self._robots(), stores, self.settings.finish)
@@ -224,6 +227,6 @@ class DraftPlan(QObject):
         return np.array(others, dtype=float).reshape(-1, 2)
 
 
-def is_there(view) -> bool:
+def is_there(view: RobotView) -> bool:
     """Tell whether a robot can be planned with: it has said where it is, and is not away."""
     return view.has_pose and view.state.value in ("fresh", "stale")

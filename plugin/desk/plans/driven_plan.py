@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -283,7 +283,7 @@ class DrivenPlan(QObject):
             if one.robot.id in tasks:
                 self.progress.sent(sent_stops(one, tasks[one.robot.id]))
 
-    def _start(self, steps: list[Step], then) -> None:
+    def _start(self, steps: list[Step], then: Callable[[bool], None]) -> None:
         self.sending = sending = Sending(self._desk, steps, self)
 
         def ended(done: bool, why: str) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from qgis.PyQt.QtCore import pyqtSignal
+from qgis.PyQt.QtCore import pyqtBoundSignal, pyqtSignal
 from qgis.PyQt.QtWidgets import QCheckBox, QGridLayout, QLabel, QPushButton, QWidget
 
 from ...language import tr
@@ -116,7 +116,7 @@ def _label(name: str) -> QLabel:
     return label
 
 
-def _button(text: str, name: str, wanted) -> QPushButton:
+def _button(text: str, name: str, wanted: pyqtBoundSignal) -> QPushButton:
     button = QPushButton(text)
     button.setObjectName(name)
     button.clicked.connect(lambda _=False: wanted.emit())

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 from qgis.core import QgsPointXY
-from qgis.gui import QgsDockWidget
 from qgis.PyQt.QtWidgets import (
     QHBoxLayout,
     QMessageBox,
@@ -21,6 +21,7 @@ from ....robot_bridge.messages import CollectLayout, GetPlacements
 from ...errors import FleetError
 from ...language import tr
 from ..desk import Desk
+from ..dock_action import ActionDock
 from ..placement_book import MOST_ASKED
 from ..safe_question import safe_question
 from ..tall_content import TallContent
@@ -37,7 +38,7 @@ from .settings_form import SettingsForm
 from .wanted_job import keep_settings, settings_in
 
 
-class PlanDock(QgsDockWidget):
+class PlanDock(ActionDock):
     """Puts the parts together. :meth:`remove` undoes what they did outside of it."""
 
     def __init__(self, desk: Desk, parent: QWidget | None = None):
@@ -169,7 +170,7 @@ class PlanDock(QgsDockWidget):
         self._desk.canvas.setCenter(QgsPointXY(east, north))
         self._desk.canvas.refresh()
 
-    def _try(self, action) -> bool:
+    def _try(self, action: Callable[[], object]) -> bool:
         try:
             action()
         except FleetError as error:

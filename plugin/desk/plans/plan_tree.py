@@ -117,7 +117,7 @@ class PlanTree(QTreeWidget):
             return ""
         return item.data(0, _NAME) or ""
 
-    def _offer(self, at) -> None:
+    def _offer(self, at: QPoint) -> None:
         target = self._target()
         if not target or self._plan is None:
             return

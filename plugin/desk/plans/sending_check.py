@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from ....robot_bridge.assignment.job import Robot
 from ....robot_bridge.assignment.plan import Plan
 from ....robot_bridge.messages import QueueState, TaskState
 from ...language import tr
@@ -52,7 +53,7 @@ def after_sending(desk: Desk, plan: Plan) -> list[str]:
     return texts
 
 
-def _doubts(desk: Desk, robot) -> list[str]:
+def _doubts(desk: Desk, robot: Robot) -> list[str]:
     doubts = []
     view = desk.picture.view(robot.id, desk.clock())
     if view is None or not view.has_pose:

@@ -8,6 +8,7 @@ from qgis.gui import QgsMapCanvasItem
 from qgis.PyQt import sip
 from qgis.PyQt.QtCore import QPointF, QRectF, Qt
 from qgis.PyQt.QtGui import QBrush, QColor, QFont, QPainter, QPen, QPolygonF
+from qgis.PyQt.QtWidgets import QStyleOptionGraphicsItem, QWidget
 
 from ...errors import FleetError
 from ..colours import CASING, CONE, PAPER
@@ -48,7 +49,9 @@ class QueueMarks(QgsMapCanvasItem):
         self.prepareGeometryChange()
         self.setPos(0, 0)
 
-    def paint(self, painter: QPainter, option=None, widget=None) -> None:
+    def paint(
+        self, painter: QPainter, option: QStyleOptionGraphicsItem | None = None, widget: QWidget | None = None
+    ) -> None:
         if not self.places:
             return
         pixels = [self.toCanvasCoordinates(place) for place in self.places]

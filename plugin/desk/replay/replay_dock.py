@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from qgis.core import QgsApplication
-from qgis.gui import QgsDockWidget
 from qgis.PyQt.QtWidgets import QComboBox, QHBoxLayout, QLabel, QToolButton, QVBoxLayout, QWidget
 
 from ...errors import FleetError
 from ...language import tr
 from ..desk import Desk
+from ..dock_action import ActionDock
 from .clockwork import SPEEDS, Clockwork, in_words
 from .fetching import Fetching
 from .past_commands import marks
@@ -22,7 +22,7 @@ BANNER = "background: #7B1FA2; color: white; font-weight: bold; padding: 3px 8px
 PLAY, PAUSE = "/temporal_navigation/forward.svg", "/temporal_navigation/pause.svg"
 
 
-class ReplayDock(QgsDockWidget):
+class ReplayDock(ActionDock):
     """Puts the parts together. :meth:`remove` undoes what they did outside of it."""
 
     def __init__(self, desk: Desk, parent: QWidget | None = None):

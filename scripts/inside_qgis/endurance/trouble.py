@@ -6,6 +6,7 @@ import sys
 import threading
 import traceback
 from collections import Counter
+from types import TracebackType
 
 from qgis.core import Qgis, QgsApplication
 
@@ -35,16 +36,16 @@ class Trouble:
         sys.excepthook, threading.excepthook, sys.unraisablehook = self._hooks
         self._log.messageReceived.disconnect(self._logged)
 
-    def _raised(self, kind, error, trace) -> None:
+    def _raised(self, kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
         self.exceptions["".join(traceback.format_exception(kind, error, trace))] += 1
         self._hooks[0](kind, error, trace)
 
-    def _raised_in_thread(self, what) -> None:
+    def _raised_in_thread(self, what: threading.ExceptHookArgs) -> None:
         text = "".join(traceback.format_exception(what.exc_type, what.exc_value, what.exc_traceback))
         self.exceptions[f"in thread {what.thread.name if what.thread else '?'}: {text}"] += 1
         self._hooks[1](what)
 
-    def _raised_for_nobody(self, what) -> None:
+    def _raised_for_nobody(self, what: sys.UnraisableHookArgs) -> None:
         text = "".join(traceback.format_exception(what.exc_type, what.exc_value, what.exc_traceback))
         self.exceptions[f"{what.err_msg or 'ignored'} {what.object!r}: {text}"] += 1
         self._hooks[2](what)
