@@ -29,17 +29,18 @@ def start_qgis(
     display: str | None,
     *,
     path: str | None = None,
+    settings: Mapping[str, str] | None = None,
 ) -> subprocess.Popen[bytes]:
     """Open QGIS Desktop and let ``session`` (a file of scripts/inside_qgis) work by ``plan`` in it.
 
     ``plan["journal"]`` names the file that the session writes down in what happened. ``path`` is where QGIS
-    finds other programs, in place of this program's PATH.
+    finds other programs, in place of this program's PATH; ``settings`` is what else its environment holds.
     """
     journal = Path(str(plan["journal"]))
     journal.unlink(missing_ok=True)
     plan_file = journal.with_name("plan.json")
     plan_file.write_text(json.dumps(plan, indent=2), encoding="utf-8")
-    env = profile.environment(packages=False) | {"FLEET_DEMO_PLAN": str(plan_file)}
+    env = profile.environment(packages=False) | {"FLEET_DEMO_PLAN": str(plan_file)} | dict(settings or {})
     if display is not None:
         env |= {"DISPLAY": display, "QT_QPA_PLATFORM": "xcb"}
     if path is not None:

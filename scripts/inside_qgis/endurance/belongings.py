@@ -48,11 +48,6 @@ def belongings(window: QMainWindow, canvas: QgsMapCanvas) -> Belongings:
     }
 
 
-def count(there: Belongings) -> int:
-    """Return how many things there are, but for the plugin's objects and modules in Python."""
-    return sum(there[kind].total() for kind in there if not kind.endswith("of the plugin"))
-
-
 def left_over(before: Belongings, after: Belongings) -> list[str]:
     """Return what there is more of in ``after``: ``2 × docks: fleet_dock``."""
     more = {kind: after[kind] - before[kind] for kind in after}

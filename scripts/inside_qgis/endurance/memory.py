@@ -6,6 +6,8 @@ import ctypes
 import resource
 from pathlib import Path
 
+from osgeo import gdal
+
 
 class _Mallinfo(ctypes.Structure):
     """glibc's ``struct mallinfo2``."""
@@ -30,3 +32,8 @@ def megabytes_in_use() -> float:
     libc.mallinfo2.restype = _Mallinfo
     info = libc.mallinfo2()
     return (info.uordblks + info.hblkhd) / 1e6
+
+
+def megabytes_of_rasters() -> float:
+    """Return what GDAL keeps of rasters that were read, of whatever layer."""
+    return gdal.GetCacheUsed() / 1e6

@@ -17,11 +17,10 @@ from inside_qgis.endurance.belongings import (
     PACKAGE,
     Belongings,
     belongings,
-    count,
     left_over,
     running_threads,
 )
-from inside_qgis.endurance.memory import megabytes, megabytes_in_use
+from inside_qgis.endurance.memory import megabytes, megabytes_in_use, megabytes_of_rasters
 from inside_qgis.endurance.play import Player, Script, Until
 from inside_qgis.endurance.pulse import Pulse
 from inside_qgis.endurance.shift import Shift
@@ -136,6 +135,7 @@ class Endurance:
             at=time.monotonic() - self._began,
             megabytes=megabytes(),
             in_use=megabytes_in_use(),
+            rasters=megabytes_of_rasters(),
             blocks=sys.getallocatedblocks(),
             reloads=self._reloads - 1,
             threads=running_threads(),
@@ -159,7 +159,14 @@ class Endurance:
         self._canvas.clearCache()
         QPixmapCache.clear()
         text = f"unloaded for the {self._reloads - 1}th time; left: {'; '.join(more) or 'nothing'}"
-        self._session.happened("unloaded", text, left=more, things=count(left), megabytes=megabytes_in_use())
+        self._session.happened(
+            "unloaded",
+            text,
+            left=more,
+            megabytes=megabytes_in_use(),
+            rasters=megabytes_of_rasters(),
+            blocks=sys.getallocatedblocks(),
+        )
 
     def _tell(self) -> None:
         pulse, trouble = self._pulse, self._trouble

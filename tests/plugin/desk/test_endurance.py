@@ -7,7 +7,7 @@ import shutil
 import time
 
 import pytest
-from benchmarks.endurance import Run, Sample, endure, faults, growth
+from benchmarks.endurance import Run, Sample, Unloaded, endure, faults, growth, kept_of_a_version
 from inside_qgis.endurance.play import Player
 from inside_qgis.endurance.pulse import LATE, Pulse
 
@@ -25,7 +25,7 @@ def run(tmp_path_factory) -> Run:
 def test_nothing_goes_wrong_and_nothing_is_left(run):
     """No exception, no warning of QGIS, and no thread, item, action, class or object after each unloading."""
     assert faults(run) == []
-    assert len(run.left) == 2
+    assert len(run.unloaded) == 2
 
 
 def test_what_is_to_be_endured_really_happened(run):
@@ -35,22 +35,39 @@ def test_what_is_to_be_endured_really_happened(run):
 
 
 def test_memory_that_grows_is_seen():
-    samples = [Sample(10.0 * k, 500.0 + k, 100.0, 1000 * k, 0, 10, 2, 24, 0) for k in range(60)]
+    samples = [Sample(10.0 * k, 500.0 + k, 100.0, 16.0, 1000 * k, 0, 10, 2, 24, 0) for k in range(60)]
     assert growth(samples, 600.0, "megabytes") == pytest.approx(360.0)
     assert growth(samples, 600.0, "in_use") == pytest.approx(0.0, abs=1e-6)
     assert growth(samples, 600.0, "blocks") == pytest.approx(360_000.0)
 
 
 def test_a_warm_up_does_not_count_as_growth():
-    samples = [Sample(10.0 * k, min(500.0 + 50 * k, 700.0), 100.0, 0, 0, 10, 2, 24, 0) for k in range(60)]
+    samples = [
+        Sample(10.0 * k, min(500.0 + 50 * k, 700.0), 100.0, 16.0, 0, 0, 10, 2, 24, 0) for k in range(60)
+    ]
     assert growth(samples, 600.0, "megabytes") == pytest.approx(0.0, abs=1e-6)
 
 
 def test_whatever_is_left_is_a_fault():
-    run = Run(
-        [], [[], ["1 × docks: QgsDockWidget fleet_dock"]], [], {"exceptions": {}, "warnings": {}}, {}, []
-    )
+    left = [[], ["1 × docks: QgsDockWidget fleet_dock"]]
+    run = _ended([Unloaded(more, 100.0, 16.0, 600_000) for more in left])
     assert faults(run) == ["left after unloading: 1 × docks: QgsDockWidget fleet_dock"]
+
+
+def test_pieces_that_each_reload_leaves_are_a_fault():
+    run = _ended([Unloaded([], 100.0, 16.0, 600_000 + 4000 * k) for k in range(5)])
+    assert faults(run) == ["each reload leaves 4,000 pieces of Python's memory, 3,000 at most"]
+
+
+def test_pieces_that_stay_once_are_none():
+    """As of a panel of QGIS's that is opened for the first time."""
+    run = _ended([Unloaded([], 100.0, 16.0, 600_000 + 1500 * k + 50_000 * (k > 2)) for k in range(5)])
+    assert kept_of_a_version(run.unloaded) == 1500
+    assert faults(run) == []
+
+
+def _ended(unloaded: list[Unloaded]) -> Run:
+    return Run([], unloaded, {"exceptions": {}, "warnings": {}}, {}, [])
 
 
 def test_a_script_that_nobody_holds_is_played_to_its_end(qgis_app, wait):
