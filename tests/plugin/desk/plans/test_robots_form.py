@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import pytest
-
 from fleet_supervisor.plugin.desk.picture import RobotView
 from fleet_supervisor.plugin.desk.plans.robots_form import RobotsForm
 from fleet_supervisor.plugin.desk.plans.wanted_job import PlanSettings
