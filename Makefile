@@ -57,7 +57,7 @@ screenshots: $(READY) build/run ## make the pictures in docs/images, in real win
 	@$(DRAW).robot_maps
 	@$(DRAW).cones
 	@$(DRAW).assignment
-	@$(DRAW).accounts
+	@$(DRAW).supervisors
 	@$(RUN) scripts/cone_plan_pictures.py
 	@$(DRAW).roads
 	@$(DRAW).road_surfaces

@@ -32,12 +32,12 @@ STARTS = (
 """On the straight, on the campus road, and on the handling loop."""
 
 
-def start_gateway(processes: Processes, database: Path) -> str:
-    """Start a gateway on any free port and return its address, ``ws://127.0.0.1:PORT``.
+def start_gateway(processes: Processes, database: Path, site: Path = SITE) -> str:
+    """Start a gateway of ``site`` on any free port and return its address, ``ws://127.0.0.1:PORT``.
 
     :raises StageError: when it does not come up.
     """
-    serve = ["serve", "--site", SITE, "--port", "0", "--database", f"sqlite:///{database}"]
+    serve = ["serve", "--site", site, "--port", "0", "--database", f"sqlite:///{database}"]
     processes.start("gateway", [sys.executable, "-m", "robot_bridge", *serve])
     return processes.wait_for_line("gateway", r"listening on (ws://[\w.]+:\d+)", 30).group(1)
 
