@@ -2,51 +2,15 @@
 
 from __future__ import annotations
 
-import time
-from typing import Annotated
-
 import typer
 
 from ..access import accounts
 from .database_option import DEFAULT, DatabaseOption, PasswordFileOption, database_address
-from .noted import act, after_days, read
-from .operators import Expires, show_token, state_of
+from .noted import read
+from .token_commands import issuing, revoking, state_of
 
-Name = Annotated[str, typer.Argument(help="The robot's name.")]
-
-
-def token(
-    name: Name,
-    expires_days: Expires = None,
-    database: DatabaseOption = DEFAULT,
-    database_password_file: PasswordFileOption = None,
-) -> None:
-    """Print a new token for the robot's WebSocket, in place of its old one; it is shown this once."""
-    until = after_days(expires_days)
-    address = database_address(database, database_password_file)
-    made = act(
-        address,
-        "robots token",
-        name,
-        None,
-        lambda connection: accounts.issue_robot_token(connection, name, time.time(), until),
-    )
-    show_token(made, f"robot {name}")
-
-
-def revoke(
-    name: Name, database: DatabaseOption = DEFAULT, database_password_file: PasswordFileOption = None
-) -> None:
-    """Revoke the robot's token; its connection ends within a second."""
-    address = database_address(database, database_password_file)
-    act(
-        address,
-        "robots revoke",
-        name,
-        None,
-        lambda connection: accounts.revoke_robot_token(connection, name, time.time()),
-    )
-    typer.echo(f"robot {name} is revoked; 'robot-bridge robots token' gives a new token")
+ISSUE_HELP = "Print a new token for the robot's WebSocket, in place of its old one; it is shown this once."
+REVOKE_HELP = "Revoke the robot's token; its connection ends within a second."
 
 
 def tokens(database: DatabaseOption = DEFAULT, database_password_file: PasswordFileOption = None) -> None:
@@ -58,6 +22,8 @@ def tokens(database: DatabaseOption = DEFAULT, database_password_file: PasswordF
 
 def add_to(app: typer.Typer) -> None:
     """Put the three commands into the group ``robots``."""
-    app.command()(token)
-    app.command()(revoke)
+    issue = issuing("robot", "robots token", accounts.issue_robot_token)
+    revoke = revoking("robot", "robots revoke", accounts.revoke_robot_token, "robots token")
+    app.command("token", help=ISSUE_HELP)(issue)
+    app.command("revoke", help=REVOKE_HELP)(revoke)
     app.command()(tokens)
