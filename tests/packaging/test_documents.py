@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 from stage.desk_wire import ask
+from stage.patience import START
 from stage.processes import Processes
 from stage.qgis import program
 
@@ -81,7 +82,7 @@ def test_gateway_and_robot_run_as_the_readme_says(tmp_path):
     with Processes(tmp_path) as processes:
         database = f"sqlite:///{tmp_path / 'fleet.db'}"
         processes.start("gateway", [*words(serve), "--port", "0", "--database", database])
-        address = processes.wait_for_line("gateway", r"listening on (ws://\S+)", 30).group(1)
+        address = processes.wait_for_line("gateway", r"listening on (ws://\S+)", START).group(1)
         processes.start("robot", words(robot.replace("ws://127.0.0.1:8765", address)))
         until = time.monotonic() + 15
         while not (robots := ask(address, ("get_positions", {}))[0]["robots"]) or robots[0].get("x") is None:

@@ -17,6 +17,7 @@ from fleet_supervisor.robot_bridge.robotmap.text import read_text, write_text
 from fleet_supervisor.robot_bridge.sites.errors import LayerError
 from fleet_supervisor.robot_bridge.sites.publication import read_site
 from qgis.core import QgsProcessingContext, QgsProcessingException, QgsProject
+from stage.patience import START
 from stage.processes import Processes
 from websockets.sync.client import connect
 
@@ -321,7 +322,7 @@ def test_a_stock_qgis_publishes_what_a_gateway_serves(by_process, tmp_path):
     command += ["--database", f"sqlite:///{tmp_path / 'fleet.db'}"]
     with Processes(tmp_path / "logs") as processes:
         processes.start("gateway", command)
-        address = processes.wait_for_line("gateway", r"listening on (ws://\S+:\d+)", 20).group(1)
+        address = processes.wait_for_line("gateway", r"listening on (ws://\S+:\d+)", START).group(1)
         with connect(f"{address}/robot", max_size=None) as robot:
             robot.send(json.dumps({"jsonrpc": "2.0", "id": 1, "method": "Ready", "params": {"magic": 7}}))
             calls = (json.loads(robot.recv(10)) for _ in range(5))

@@ -15,6 +15,7 @@ from pathlib import Path
 import pytest
 from bridge_accounts import bearing
 from bridge_wires import Desk
+from stage.patience import START
 from stage.processes import Processes
 
 from robot_bridge.messages import Role
@@ -59,7 +60,7 @@ def test_the_page_is_run_from_top_to_bottom_and_does_what_it_says(shell, tmp_pat
             words = shlex.split(text.replace("/srv/fleet", str(folder)))[1:]
             database = ["--database", f"sqlite:///{folder}/fleet.db", "--port", "0"]
             processes.start("gateway", [sys.executable, "-m", "robot_bridge", *words, *database])
-            found = processes.wait_for_line("gateway", r"listening on wss://0\.0\.0\.0:(\d+)", 20)
+            found = processes.wait_for_line("gateway", r"listening on wss://0\.0\.0\.0:(\d+)", START)
             renewed = (folder / "tls" / "server.pem").read_bytes()
             context = ssl.create_default_context(cafile=folder / "tls" / "ca.pem")
             context.check_hostname = False

@@ -15,6 +15,7 @@ import pytest
 from bridge_programs import wait_until
 from bridge_wires import Desk
 from stage.database_server import DatabaseServer
+from stage.patience import START
 from stage.processes import Processes
 
 from robot_bridge.robotmap.binary import decode
@@ -130,7 +131,7 @@ def gateway(place, sample_site, tmp_path):
     words[words.index("gateway.password")] = str(place.shell.folder / "gateway.password")
     with Processes(tmp_path / "logs") as processes:
         processes.start("gateway", [sys.executable, "-m", "robot_bridge", *words, "--port", "0"])
-        address = processes.wait_for_line("gateway", r"listening on (ws://\S+)", 30).group(1)
+        address = processes.wait_for_line("gateway", r"listening on (ws://\S+)", START).group(1)
         yield Desk(f"{address}/desk", "Ada")
         assert "Traceback" not in processes.log("gateway").read_text(encoding="utf-8")
 

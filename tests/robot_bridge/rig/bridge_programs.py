@@ -14,7 +14,7 @@ from typing import Any
 
 from bridge_wires import Desk, RobotWire
 from database_client import DatabaseClient
-from stage.patience import BUSY
+from stage.patience import BUSY, START
 from stage.processes import Processes
 
 RUNS = itertools.count(1)
@@ -50,7 +50,7 @@ class Bridge:
         """Start the gateway, on the port it had if it ran before; return once it listens."""
         options = ["--site", self.site, "--port", str(self.port), "--database", self.database]
         name = self._run("gateway", ["serve", *options, *self.options])
-        found = self._processes.wait_for_line(name, r"listening on (wss?://\S+:(\d+))", 20)
+        found = self._processes.wait_for_line(name, r"listening on (wss?://\S+:(\d+))", START)
         self.address, self.port = found.group(1), int(found.group(2))
 
     def start_robot(

@@ -225,13 +225,14 @@ def test_site_toml_says_where_to_listen_and_what_to_use(site, tmp_path, start_pr
 @pytest.fixture
 def start_program(tmp_path):
     """Start the program and return what it says first."""
+    from stage.patience import START
     from stage.processes import Processes
 
     with Processes(tmp_path / "logs") as processes:
 
         def start(options, pattern, env=None):
             processes.start("program", [sys.executable, "-m", "robot_bridge", *map(str, options)], env=env)
-            return processes.wait_for_line("program", pattern, 30).group(1)
+            return processes.wait_for_line("program", pattern, START).group(1)
 
         start.processes = processes
         yield start
