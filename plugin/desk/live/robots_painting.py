@@ -129,6 +129,12 @@ def _worth(state: int, size: float) -> float:
     return size if state == _FRESH else max(size, NOTICEABLE)
 
 
+def _lengths(ways: Points) -> npt.NDArray[np.float64]:
+    """Return how long each of (n, 2) ``ways`` is; np.hypot, safe from overflow, takes five times as long."""
+    x, y = ways[:, 0], ways[:, 1]
+    return np.sqrt(x * x + y * y)
+
+
 def _directions(way: Points) -> Rows:
     """Return which of the :data:`HEADINGS` (n, 2) ``way`` in pixels points in, clockwise from +x."""
     # Floats of half the size are exact enough, and numpy is several times as fast with them.
@@ -154,7 +160,7 @@ def circles(placed: PlacedScene, seen: Rows, metre: Points) -> list[tuple[int, P
     ``metre`` is the way of each in rows ``seen`` to 1 m before it, in pixels.
     """
     robots = placed.scene.robots
-    length = np.hypot(metre[:, 0], metre[:, 1])
+    length = _lengths(metre)
     radius = robots.accuracy[seen]
     wide = seen[(radius * np.where(length > 0, length, 1.0) > SMALLEST_CIRCLE)]
     if len(wide) > MOST_CIRCLES:
@@ -186,7 +192,7 @@ def paint_circles(
 def _velocities(painter: QPainter, at: Points, way: Points, shortest: float) -> None:
     """Draw a line from each robot to where it will be soon, unless that is less than ``shortest`` pixels."""
     # What is NaN compares false.
-    long = np.flatnonzero(np.hypot(way[:, 0], way[:, 1]) > shortest)
+    long = np.flatnonzero(_lengths(way) > shortest)
     if len(long) == 0 or len(long) > MOST_VELOCITIES:
         return
     start, end = at[long], at[long] + way[long]
