@@ -119,14 +119,32 @@ def overlay(data: str, number: int) -> None:
         times.append(np.diff(marks) * 1e3)
     parts = np.array(times)[WARM_UP:]
     total = parts.sum(axis=1)
-    names = ("taken in", "prepared", "painted", "layer")
+    taken_in, prepared, painted, written = np.median(parts, axis=0).tolist()
+    view.overlay.hide()
     stage.end(
         {
             "ms": float(np.median(total)),
             "p99": float(np.percentile(total, 99)),
-            "parts": dict(zip(names, np.median(parts, axis=0).tolist(), strict=True)),
+            "parts": {
+                "taken in": taken_in,
+                "prepared": prepared,
+                "painted": painted,
+                "of it the map": _repainting(stage),
+                "layer": written,
+            },
         }
     )
+
+
+def _repainting(stage: Stage) -> float:
+    """Return the median of the milliseconds that painting the canvas takes after other work."""
+    times = []
+    for _ in range(UPDATES):
+        stage.fleet.told()
+        began = time.thread_time()
+        stage.canvas.viewport().repaint()
+        times.append((time.thread_time() - began) * 1e3)
+    return float(np.median(times))
 
 
 def layer(data: str, number: int) -> None:
