@@ -23,10 +23,10 @@ drive with 1.5 m/s, and tell where they are ten times a second; 3 % have fallen 
 ### What an update costs the window
 
 Milliseconds of computing by the window's thread for each update, everything drawn: robots with heading, state
-and speed, trails, names, ages; medians. *Of it the map* is what QGIS takes to put its finished map there without
-any robot. *Frames* is how many such updates fit into a second. *Layer* is a hundred robots written to the vector
-layer; it is written once a second, so that of twenty updates one does it with 100 robots, ten with 1 000, and
-all with 10 000.
+and speed, trails, names, ages; medians. *Of it the map* is what QGIS takes to put its finished map there
+without any robot. *Frames* is how many such updates fit into a second. *Layer* is a hundred robots written to
+the vector layer; it is written once a second, so that of twenty updates one does it with 100 robots, ten with
+1 000, and all with 10 000.
 
 {overlay}
 
