@@ -1,4 +1,4 @@
-"""What Python looks at when it looks for garbage: what has lasted only now and then, and yet not never."""
+"""When Python looks for objects that hold each other: not while a fleet sends positions, and yet in time."""
 
 from __future__ import annotations
 
@@ -7,7 +7,9 @@ import weakref
 
 import pytest
 
-from robot_bridge.monitoring.garbage import LOOK_AT_ALL_AFTER_S, Sparing
+from robot_bridge.messages import SendPos
+from robot_bridge.monitoring.garbage import YOUNG, spare_what_lasts
+from robot_bridge.store.trajectories import Fix
 
 
 class Ring:
@@ -18,48 +20,36 @@ class Ring:
 
 
 @pytest.fixture
-def clock():
-    """A clock that stands; ``clock[0]`` is its time."""
-    return [1000.0]
+def looks():
+    """The looks that begin in a gateway that has started."""
+    begun, thresholds = [], gc.get_threshold()
+    spare_what_lasts()
 
+    def note(phase, info):
+        if phase == "start":
+            begun.append(info["generation"])
 
-@pytest.fixture
-def sparing(clock):
-    """Python's collector with what spares what lasts, and without after the test."""
-    spares = Sparing(lambda: clock[0])
-    gc.callbacks.append(spares)
-    yield spares
-    gc.callbacks.remove(spares)
+    gc.callbacks.append(note)
+    yield begun
+    gc.callbacks.remove(note)
+    gc.set_threshold(*thresholds)
     gc.unfreeze()
 
 
-def test_what_a_look_at_all_found_in_use_is_set_apart(sparing):
-    assert gc.get_freeze_count() == 0
-    gc.collect()
-    assert gc.get_freeze_count() > 1000
+def test_ten_thousand_positions_that_wait_to_be_stored_bring_no_look(looks):
+    for second in range(20):
+        waiting = [Fix("r1", float(second), SendPos(1.0, 2.0, 0.0, 1.0)) for _ in range(10_000)]
+        waiting.clear()
+    assert looks == []
 
 
-def test_a_look_at_young_objects_sets_nothing_apart(sparing):
-    gc.collect(1)
-    assert gc.get_freeze_count() == 0
+def test_what_holds_itself_is_found(looks):
+    first = weakref.ref(Ring())
+    for _ in range(YOUNG + 1000):
+        Ring()
+    assert looks == [0]
+    assert first() is None
 
 
-def test_what_was_in_use_and_is_garbage_now_is_found_after_a_time_and_not_before(sparing, clock):
-    ring = Ring()
-    seen = weakref.ref(ring)
-    gc.collect()
-    del ring
-    gc.collect()
-    clock[0] += LOOK_AT_ALL_AFTER_S - 1
-    gc.collect()
-    assert seen() is not None
-    clock[0] += 1
-    gc.collect()
-    assert seen() is None
-
-
-def test_what_came_since_is_found_at_once(sparing):
-    gc.collect()
-    seen = weakref.ref(Ring())
-    gc.collect()
-    assert seen() is None
+def test_what_was_loaded_is_not_looked_at(looks):
+    assert gc.get_freeze_count() > 10_000
