@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from qgis.core import QgsCoordinateReferenceSystem
 from qgis.gui import QgsFilterLineEdit, QgsProjectionSelectionDialog
+from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtWidgets import (
     QComboBox,
     QHBoxLayout,
@@ -49,6 +50,9 @@ class RobotPanel(QWidget):
         self._which.setMinimumContentsLength(11)
         self._count = QLabel()
         self._count.setObjectName("fleet_robot_count")
+        # A panel that grew with each digit would move the map.
+        self._count.setMinimumWidth(self._count.fontMetrics().horizontalAdvance("10000"))
+        self._count.setAlignment(Qt.AlignmentFlag.AlignCenter)
         self._columns = QToolButton()
         self._columns.setObjectName("fleet_robot_columns")
         self._columns.setText(tr("Columns"))
