@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from qgis.PyQt.QtCore import QPointF, QRectF, Qt
-from qgis.PyQt.QtGui import QBrush, QColor, QIcon, QPainter, QPainterPath, QPen, QPixmap, QPolygonF
+from qgis.PyQt.QtGui import QBrush, QColor, QIcon, QPainter, QPainterPath, QPixmap, QPolygonF
 
 from ...robot_bridge.messages import RobotState
 from .colours import CASING, CONE, PAPER, STATE_COLOURS
+from .pens import pen
 
 CELL = 32
 """Width and height of the square that a robot's drawing fits in at any heading."""
@@ -34,13 +35,13 @@ def draw_robot(painter: QPainter, state: RobotState, with_heading: bool) -> None
     colour = STATE_COLOURS[state]
     outline = _outline(state, with_heading)
     painter.setBrush(Qt.BrushStyle.NoBrush)
-    painter.setPen(_pen(CASING, 5.0))
+    painter.setPen(pen(CASING, 5.0))
     painter.drawPath(outline)
     hollow = state in (RobotState.STALE, RobotState.LOST)
-    painter.setPen(_pen(PAPER, 3.2))
+    painter.setPen(pen(PAPER, 3.2))
     painter.drawPath(outline)
     painter.setBrush(QBrush(PAPER if hollow else colour))
-    painter.setPen(_pen(colour, 2.6 if hollow else 0.6))
+    painter.setPen(pen(colour, 2.6 if hollow else 0.6))
     painter.drawPath(outline)
     if state is RobotState.LOST:
         _cross(painter, colour)
@@ -50,8 +51,8 @@ def draw_arrow(painter: QPainter, state: RobotState, rim: QColor) -> None:
     """Draw the arrow at the map's border to a robot in ``state``: it points along +x."""
     arrow = QPolygonF([QPointF(11, 0), QPointF(-6, 9), QPointF(-2, 0), QPointF(-6, -9)])
     painter.setBrush(QBrush(STATE_COLOURS[state]))
-    for pen in (_pen(CASING, 4.4), _pen(rim, 2.0)):
-        painter.setPen(pen)
+    for stroke in (pen(CASING, 4.4), pen(rim, 2.0)):
+        painter.setPen(stroke)
         painter.drawPolygon(arrow)
 
 
@@ -62,10 +63,10 @@ def draw_cone(painter: QPainter, foot: QPointF, size: float = 22.0) -> None:
     painter.scale(size / 22.0, size / 22.0)
     body = QPolygonF([QPointF(-6.5, -2.5), QPointF(-1.4, -21), QPointF(1.4, -21), QPointF(6.5, -2.5)])
     base = QRectF(-9.5, -3.2, 19, 4.4)
-    painter.setPen(_pen(CASING, 3.6))
+    painter.setPen(pen(CASING, 3.6))
     painter.drawPolygon(body)
     painter.drawRoundedRect(base, 1.6, 1.6)
-    painter.setPen(_pen(PAPER, 1.6))
+    painter.setPen(pen(PAPER, 1.6))
     painter.setBrush(QBrush(CONE))
     painter.drawPolygon(body)
     painter.drawRoundedRect(base, 1.6, 1.6)
@@ -102,13 +103,9 @@ def _outline(state: RobotState, with_heading: bool) -> QPainterPath:
 def _cross(painter: QPainter, colour: QColor) -> None:
     """Draw a cross on a disc, small enough to leave the heading to be seen."""
     centre, arm = QPointF(-7.0, 0.0), 3.1
-    painter.setPen(_pen(PAPER, 2.0))
+    painter.setPen(pen(PAPER, 2.0))
     painter.setBrush(QBrush(colour))
     painter.drawEllipse(centre, 7.0, 7.0)
-    painter.setPen(_pen(PAPER, 2.4))
+    painter.setPen(pen(PAPER, 2.4))
     painter.drawLine(centre + QPointF(-arm, -arm), centre + QPointF(arm, arm))
     painter.drawLine(centre + QPointF(-arm, arm), centre + QPointF(arm, -arm))
-
-
-def _pen(colour: QColor, width: float) -> QPen:
-    return QPen(colour, width, Qt.PenStyle.SolidLine, Qt.PenCapStyle.RoundCap, Qt.PenJoinStyle.RoundJoin)

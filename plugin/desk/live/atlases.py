@@ -9,7 +9,7 @@ from qgis.PyQt.QtGui import QPainter, QPixmap
 from ....robot_bridge.messages import RobotState
 from ..colours import CASING, PAPER, SELECTED
 from ..glyphs import CELL, draw_arrow, draw_cone, draw_robot
-from .strokes import pen
+from ..pens import pen
 from .turned import Draw, drawn, in_a_row, turned
 
 HEADINGS = 88

@@ -10,12 +10,13 @@ from qgis.PyQt.QtCore import QLineF, Qt
 from qgis.PyQt.QtGui import QColor, QPainter, QPen
 
 from ..colours import CASING, PAPER, STATE_COLOURS
+from ..pens import pen
 from ..picture import STATES
 from .atlases import HEADINGS, MARK_SIZE, OTHER_RING, RING, cell, mark_atlas, robot_atlas
 from .scene import PlacedScene
 from .screen import Screen
 from .sprites import Sprites
-from .strokes import pen, polygon, segments
+from .strokes import polygon, segments
 
 Points = npt.NDArray[np.float64]
 Rows = npt.NDArray[np.intp]

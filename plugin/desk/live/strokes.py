@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 from qgis.PyQt.QtCore import QByteArray, QDataStream, QPointF, Qt
-from qgis.PyQt.QtGui import QBrush, QColor, QPainter, QPainterPath, QPen, QPolygonF
+from qgis.PyQt.QtGui import QBrush, QColor, QPainter, QPainterPath, QPolygonF
 
 from ..colours import CASING
+from ..pens import pen
 
 Points = npt.NDArray[np.float64]
 
@@ -74,10 +75,3 @@ def ring(painter: QPainter, at: Points, radius: float, colour: QColor) -> None:
     for stroke in (pen(CASING, 4.6), pen(colour, 2.2)):
         painter.setPen(stroke)
         painter.drawEllipse(QPointF(*at), radius, radius)
-
-
-def pen(colour: QColor, width: float, strength: float = 1.0) -> QPen:
-    """Return a pen with round ends; ``strength`` 1 is the colour as it is, 0 nothing."""
-    shade = QColor(colour)
-    shade.setAlphaF(colour.alphaF() * strength)
-    return QPen(shade, width, Qt.PenStyle.SolidLine, Qt.PenCapStyle.RoundCap, Qt.PenJoinStyle.RoundJoin)
