@@ -5,23 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from qgis.PyQt.QtCore import Qt, pyqtSignal
-from qgis.PyQt.QtWidgets import (
-    QComboBox,
-    QDialog,
-    QDialogButtonBox,
-    QFormLayout,
-    QLabel,
-    QLineEdit,
-    QMessageBox,
-    QPushButton,
-    QWidget,
-)
+from qgis.PyQt.QtWidgets import QComboBox, QLineEdit, QMessageBox, QWidget
 
 from ....robot_bridge.messages import Role
 from ...language import tr
+from ..question_dialog import QuestionDialog
 from ..role_words import ROLES
 from ..safe_question import safe_question
-from ..whole_text import WholeText
 from .account_model import Account
 
 DAY = 86_400.0
@@ -36,59 +26,9 @@ VALIDITIES = (
 """How long a token may hold; seconds, None for no end."""
 LONGEST_NAME = 128
 """Characters of an operator's name that gateways take."""
-WIDTH = 460
 
 
-class AccountQuestion(QDialog):
-    """A text, a warning where there is one, fields, and two buttons.
-
-    With ``is_safe`` Enter leaves everything as it is.
-    """
-
-    def __init__(
-        self,
-        name: str,
-        title: str,
-        text: str,
-        confirm: str,
-        *,
-        warning: str = "",
-        is_safe: bool,
-        parent: QWidget,
-    ):
-        super().__init__(parent)
-        self.setObjectName(name)
-        self.setWindowTitle(title)
-        self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        self.setMinimumWidth(WIDTH)
-        self.confirm, cancel = QPushButton(confirm), QPushButton(tr("Cancel"))
-        self.confirm.setObjectName(f"{name}_confirm")
-        cancel.setObjectName(f"{name}_cancel")
-        self._foot = QDialogButtonBox()
-        self._foot.addButton(self.confirm, QDialogButtonBox.ButtonRole.AcceptRole)
-        self._foot.addButton(cancel, QDialogButtonBox.ButtonRole.RejectRole)
-        for button in (self.confirm, cancel):
-            button.setAutoDefault(False)
-        (cancel if is_safe else self.confirm).setDefault(True)
-        self._foot.accepted.connect(self.accept)
-        self._foot.rejected.connect(self.reject)
-        self._form = QFormLayout(self)
-        for told in filter(None, (text, warning)):
-            self._form.addRow(WholeText(told))
-
-    def add_field(self, text: str, field: QWidget, name: str) -> None:
-        """Put a field beneath those that are there; ``text`` has its letter."""
-        field.setObjectName(name)
-        label = QLabel(text)
-        label.setBuddy(field)
-        self._form.addRow(label, field)
-
-    def lay_out(self) -> None:
-        """Put the buttons beneath all fields."""
-        self._form.addRow(self._foot)
-
-
-class NewAccount(AccountQuestion):
+class NewAccount(QuestionDialog):
     """``confirmed`` has the name, the role and for how many seconds the token holds, None for no end."""
 
     confirmed = pyqtSignal(str, object, object)
@@ -102,15 +42,18 @@ class NewAccount(AccountQuestion):
                 "has to be a supervisor's."
             )
         super().__init__(
-            "fleet_new_account", tr("New account"), text, tr("Make account"), is_safe=False, parent=parent
+            "fleet_new_account",
+            tr("New account"),
+            ("fleet_new_account_confirm", tr("Make account")),
+            is_safe=False,
+            parent=parent,
         )
+        self.add_text(text)
         self._name = QLineEdit()
         self._name.setMaxLength(LONGEST_NAME)
-        self._role = _roles(Role.SUPERVISOR if is_first else Role.VIEWER)
-        self._validity = _validities()
         self.add_field(tr("&Name"), self._name, "fleet_account_name")
-        self.add_field(tr("&Role"), self._role, "fleet_account_role")
-        self.add_field(tr("&Token holds"), self._validity, "fleet_account_validity")
+        self._role = _add_role(self, Role.SUPERVISOR if is_first else Role.VIEWER)
+        self._validity = _add_validity(self)
         self.lay_out()
         self._name.textChanged.connect(self._named)
         self._named()
@@ -124,7 +67,7 @@ class NewAccount(AccountQuestion):
         self.confirm.setEnabled(bool(self._name.text().strip()))
 
 
-class AnotherRole(AccountQuestion):
+class AnotherRole(QuestionDialog):
     """``confirmed`` has the role that was chosen."""
 
     confirmed = pyqtSignal(object)
@@ -140,19 +83,18 @@ class AnotherRole(AccountQuestion):
         super().__init__(
             "fleet_another_role",
             tr("Role of {operator}", operator=account.name),
-            text,
-            tr("Change role"),
-            warning=warning if account.is_own else "",
+            ("fleet_another_role_confirm", tr("Change role")),
             is_safe=account.is_own,
             parent=parent,
         )
-        self._role = _roles(account.report.role)
-        self.add_field(tr("&Role"), self._role, "fleet_account_role")
+        self.add_text(text)
+        self.add_text(warning if account.is_own else "")
+        self._role = _add_role(self, account.report.role)
         self.lay_out()
         self.accepted.connect(lambda: self.confirmed.emit(_chosen(self._role)))
 
 
-class AnotherToken(AccountQuestion):
+class AnotherToken(QuestionDialog):
     """``confirmed`` has for how many seconds the new token holds, None for no end."""
 
     confirmed = pyqtSignal(object)
@@ -166,14 +108,13 @@ class AnotherToken(AccountQuestion):
         super().__init__(
             "fleet_another_token",
             tr("New token for {operator}", operator=account.name),
-            text,
-            tr("Make token"),
-            warning=warning if account.is_own else "",
+            ("fleet_another_token_confirm", tr("Make token")),
             is_safe=True,
             parent=parent,
         )
-        self._validity = _validities()
-        self.add_field(tr("&Token holds"), self._validity, "fleet_account_validity")
+        self.add_text(text)
+        self.add_text(warning if account.is_own else "")
+        self._validity = _add_validity(self)
         self.lay_out()
         self.accepted.connect(lambda: self.confirmed.emit(self._validity.currentData()))
 
@@ -196,10 +137,9 @@ def revocation(account: Account, parent: QWidget, then: Callable[[], object]) ->
     return box
 
 
-def _roles(chosen: Role) -> QComboBox:
-    box = QComboBox()
-    for role, words in ROLES.items():
-        box.addItem(words, role)
+def _add_role(question: QuestionDialog, chosen: Role) -> QComboBox:
+    choices = ((words, role) for role, words in ROLES.items())
+    box = question.add_choice(tr("&Role"), choices, "fleet_account_role")
     box.setCurrentText(ROLES[chosen])
     return box
 
@@ -209,8 +149,5 @@ def _chosen(roles: QComboBox) -> Role:
     return Role(roles.currentData())
 
 
-def _validities() -> QComboBox:
-    box = QComboBox()
-    for words, seconds in VALIDITIES:
-        box.addItem(words, seconds)
-    return box
+def _add_validity(question: QuestionDialog) -> QComboBox:
+    return question.add_choice(tr("&Token holds"), VALIDITIES, "fleet_account_validity")

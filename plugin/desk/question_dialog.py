@@ -1,0 +1,97 @@
+"""A dialog that asks before something is done; it does nothing by itself."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from qgis.PyQt.QtCore import Qt
+from qgis.PyQt.QtWidgets import (
+    QComboBox,
+    QDialog,
+    QDialogButtonBox,
+    QFormLayout,
+    QLabel,
+    QLineEdit,
+    QPushButton,
+    QWidget,
+)
+
+from ..language import tr
+from .whole_text import WholeText
+
+WIDTH = 460
+
+
+class QuestionDialog(QDialog):
+    """Texts, fields, and two buttons: ``yes`` accepts it, ``no`` leaves everything as it is.
+
+    ``yes`` and ``no`` are the name and the text of a button; without ``no`` that is *Cancel*. With
+    ``is_safe`` Enter presses ``no``, otherwise ``yes``. What was added comes in that order;
+    :meth:`lay_out` ends it.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        title: str,
+        yes: tuple[str, str],
+        no: tuple[str, str] | None = None,
+        *,
+        is_safe: bool,
+        parent: QWidget,
+    ):
+        super().__init__(parent)
+        self.setObjectName(name)
+        self.setWindowTitle(title)
+        self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        self.setMinimumWidth(WIDTH)
+        self.confirm, leave = _button(*yes), _button(*(no or (f"{name}_cancel", tr("Cancel"))))
+        self._foot = QDialogButtonBox()
+        self._foot.addButton(self.confirm, QDialogButtonBox.ButtonRole.AcceptRole)
+        self._foot.addButton(leave, QDialogButtonBox.ButtonRole.RejectRole)
+        (leave if is_safe else self.confirm).setDefault(True)
+        self._foot.accepted.connect(self.accept)
+        self._foot.rejected.connect(self.reject)
+        self._form = QFormLayout(self)
+
+    def add_text(self, text: str) -> None:
+        """Put a text across the dialog; an empty one is left out."""
+        if text:
+            self._form.addRow(WholeText(text))
+
+    def add_field(self, text: str, field: QWidget, name: str) -> None:
+        """Put a field after ``text``, which has its letter."""
+        field.setObjectName(name)
+        label = QLabel(text)
+        label.setBuddy(field)
+        self._form.addRow(label, field)
+
+    def add_choice(self, text: str, choices: Iterable[tuple[str, object]], name: str) -> QComboBox:
+        """Put a choice after ``text``; ``choices`` are words, and what ``currentData`` is for them."""
+        box = QComboBox()
+        for words, meaning in choices:
+            box.addItem(words, meaning)
+        self.add_field(text, box, name)
+        return box
+
+    def add_reason(self, hint: str, longest: int, name: str) -> QLineEdit:
+        """Put a line for at most ``longest`` letters across the dialog, with ``hint`` while it is empty."""
+        line = QLineEdit()
+        line.setObjectName(name)
+        line.setPlaceholderText(hint)
+        line.setToolTip(hint)
+        line.setMaxLength(longest)
+        self._form.addRow(line)
+        return line
+
+    def lay_out(self) -> None:
+        """Put the buttons beneath all that was added."""
+        self._form.addRow(self._foot)
+
+
+def _button(name: str, text: str) -> QPushButton:
+    button = QPushButton(text)
+    button.setObjectName(name)
+    # Otherwise Enter presses whichever was used last.
+    button.setAutoDefault(False)
+    return button
