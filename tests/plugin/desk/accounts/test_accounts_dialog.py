@@ -232,7 +232,7 @@ def test_an_account_is_made_by_keys_alone_and_its_token_shown(at_accounts, gatew
     question = at_accounts.question("fleet_new_account")
     assert not question.findChild(QPushButton, "fleet_new_account_confirm").isEnabled()
     name = question.findChild(QLineEdit, "fleet_account_name")
-    assert question.focusWidget() is name
+    wait(lambda: question.focusWidget() is name)
     QTest.keyClicks(name, " Cleo ")
     QTest.keyClick(name, Qt.Key.Key_Tab)
     role = question.focusWidget()
