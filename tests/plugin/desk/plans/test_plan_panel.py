@@ -24,7 +24,7 @@ from qgis.core import (
 from qgis.PyQt.QtCore import QEvent, QMimeData, QPointF, Qt
 from qgis.PyQt.QtGui import QDropEvent
 from qgis.PyQt.QtTest import QTest
-from qgis.PyQt.QtWidgets import QAction, QApplication, QDockWidget, QMessageBox, QPushButton
+from qgis.PyQt.QtWidgets import QAction, QApplication, QCheckBox, QDockWidget, QMessageBox, QPushButton
 
 E, N = 488000.0, 5190000.0
 
@@ -352,6 +352,33 @@ def test_a_lost_robot_is_told_and_nothing_is_sent_before_somebody_agrees(under_w
     # All that waits is in it: the two of r2, and the three of the lost robot with what it was doing.
     assert len(taken["shares"][0]["tasks"]) == 5
     assert [task["cone"] for task in gateway.asked("set_queue")[-1]["tasks"]] == cones["r2"]
+
+
+@pytest.mark.parametrize("again", [False, True])
+def test_a_cone_that_failed_is_told_and_given_up_or_tried_again(under_way, gateway, wait, iface, again):
+    first, *others = cones_of(under_way.driven.driven.plan)["r1"]
+    stopped = queue(under_way, "r1", ["failed", "waiting", "waiting"], state="paused")
+    stopped["tasks"][0]["reason"] = "a wall"
+    gateway.tell("queue", stopped)
+    wait(lambda: under_way.driven.trouble.failed == ((first, "a wall"),), 5)
+    assert any(first in text and "a wall" in text for text in iface.texts())
+    box = under_way.findChild(QCheckBox, "fleet_plan_again")
+    assert box.isVisible() and not box.isChecked()
+    box.setChecked(again)
+    offered(under_way, wait)
+    offer = under_way.driven.offer.plan
+    assert len(gateway.asked("set_queue")) == 2 and not gateway.asked("take_over"), "nobody has agreed yet"
+    planned_again = [cone for cones in cones_of(offer).values() for cone in cones]
+    assert planned_again.count(first) == (1 if again else 0)
+    assert set(others) <= set(planned_again)
+    left_out = [(one.target.id, "a wall" in one.reason) for one in offer.left_out]
+    assert left_out == ([] if again else [(first, True)])
+    sent = len(gateway.requests)
+    press(under_way, "fleet_plan_confirm")
+    wait(lambda: not under_way.driven.busy, 10)
+    queued = [params for method, params in gateway.requests[sent:] if method == "set_queue"]
+    cones = [task.get("cone") for params in queued for task in params["tasks"]]
+    assert cones.count(first) == (1 if again else 0) and set(others) <= set(cones)
 
 
 def test_a_queue_that_somebody_else_holds_is_not_set_going(under_way, gateway, wait, iface):
