@@ -371,9 +371,10 @@ What grows, as a heap profiler tells by comparing two moments some minutes apart
 - **Rasters that GDAL keeps.** QGIS reads the orthophoto through GDAL, which keeps each block that it read
   until they take 5 % of the machine's memory, and QGIS opens the file once more for each map that it draws
   beside another. QGIS alone, without this plugin, goes from 8 MB to 39 MB in half a minute of looking about;
-  in a run like this it takes half an hour and looks like a leak. So GDAL may keep {raster_cache} MB here
-  (`GDAL_CACHEMAX`), and whatever else grows shows.
-- **Pictures of maps.** QGIS draws the map and its neighbours ahead of time: some 20 MB come and go.
+  while an operator works that goes on for many minutes and looks like a leak. So GDAL may keep
+  {raster_cache} MB here (`GDAL_CACHEMAX`), and whatever else grows shows.
+- **Pictures of maps.** QGIS draws the map and its neighbours ahead of time: up to 50 MB come and go, and with
+  them the figures above go up and down from one moment to the next.
 - **Commands and alarms** as the shift goes on, at most some thousands of each; unloading frees them.
 - **Classes.** PyQt does not give back all of a class that is derived from Qt's: 0.1 MB and 1 450 pieces for
   each loading of the plugin, though no class, function or object of it stays

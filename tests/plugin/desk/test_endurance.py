@@ -7,11 +7,14 @@ import shutil
 import time
 
 import pytest
+from benchmarks import endurance
 from benchmarks.endurance import Run, Sample, Unloaded, endure, faults, growth, kept_of_a_version
 from inside_qgis.endurance.play import Player
 from inside_qgis.endurance.pulse import LATE, Pulse
 
 ROBOTS = 40
+RASTER_CACHE = 4
+"""MB: less than looking at the whole site alone would fill."""
 
 
 @pytest.fixture(scope="module")
@@ -19,7 +22,9 @@ def run(tmp_path_factory) -> Run:
     """Two shifts of some seconds, the plugin reloaded between them, on a network that drops every link."""
     if shutil.which("Xvfb") is None:
         pytest.skip("there is no Xvfb; run: make setup")
-    return endure(16.0, 1, ROBOTS, pauses=(1.0, 4.0), folder=tmp_path_factory.mktemp("endurance"))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(endurance, "RASTER_CACHE", RASTER_CACHE)
+        return endure(16.0, 1, ROBOTS, pauses=(1.0, 4.0), folder=tmp_path_factory.mktemp("endurance"))
 
 
 def test_nothing_goes_wrong_and_nothing_is_left(run):
@@ -32,6 +37,13 @@ def test_what_is_to_be_endured_really_happened(run):
     assert sum(run.drops.values()) >= 2
     assert run.samples[-1].reloads >= 1
     assert run.end["told"]["warning"] >= 1
+
+
+def test_rasters_that_gdal_keeps_are_bounded_and_known(run):
+    rasters = [one.rasters for one in (*run.samples, *run.unloaded)]
+    assert min(rasters) > 0.0
+    # GDAL counts in MiB, and a block that is being read may come on top.
+    assert max(rasters) <= 1.1 * RASTER_CACHE
 
 
 def test_memory_that_grows_is_seen():
