@@ -22,7 +22,7 @@ KEYS = {
     "fleet_enqueue": "Ctrl+Shift+F9",
     "fleet_abort": "Ctrl+F10",
     "fleet_abort_all": "Ctrl+Shift+F10",
-    "fleet_coordinates": "F12",
+    "fleet_coordinates": "Shift+F11",
     "fleet_from_layer": "Shift+F12",
     "fleet_override": "Ctrl+F12",
     "fleet_plan_panel": "Alt+F12",

@@ -19,6 +19,9 @@ LANGUAGE = Path(__file__).parents[1] / "language"
 ROW = 12
 """Pixels that parts of one row may be apart in height."""
 
+FUNCTION_KEYS_OF_QGIS = {"F1", "Shift+F1", "F5", "F6", "Shift+F6", "Ctrl+F6", "F7", "F11", "F12"}
+"""As its window comes: help, what is this, refresh, attribute tables, styling, full screen, development."""
+
 
 # --- the menu ---
 
@@ -46,6 +49,10 @@ def test_no_two_entries_have_the_same_letter_key_or_name(plugin, iface):
     assert len({text.replace("&", "") for text in texts}) == len(texts)
     keys = [key.toString() for action in actions for key in action.shortcuts()]
     assert len(keys) == len(set(keys)) >= len(KEYS)
+
+
+def test_qgis_itself_has_none_of_the_keys():
+    assert not set(KEYS.values()) & FUNCTION_KEYS_OF_QGIS
 
 
 def test_what_has_no_key_has_a_letter(plugin, iface):
