@@ -85,8 +85,11 @@ class QuestionDialog(QDialog):
         return line
 
     def lay_out(self) -> None:
-        """Put the buttons beneath all that was added."""
+        """Put the buttons beneath all that was added, and be as high as that is."""
         self._form.addRow(self._foot)
+        # Left to itself Qt takes the height for the width that it would like, which is less, with more lines.
+        width = max(WIDTH, self._form.totalMinimumSize().width())
+        self.resize(width, self._form.totalHeightForWidth(width))
 
 
 def _button(name: str, text: str) -> QPushButton:

@@ -19,7 +19,8 @@ class WholeText(QLabel):
         self._least = lines * self.fontMetrics().lineSpacing() + 2
         self.setWordWrap(True)
         self.setTextFormat(Qt.TextFormat.PlainText)
-        self._fit()
+        # How high it becomes is known at its width; guessed before, a dialog would stay that high.
+        self.setMinimumHeight(self._least)
 
     def setText(self, text: str) -> None:
         super().setText(text)
