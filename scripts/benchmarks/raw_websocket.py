@@ -9,7 +9,7 @@ import os
 import socket
 import struct
 
-PING, TEXT = 9, 1
+BINARY, PING, TEXT = 2, 9, 1
 
 
 def frame(text: str | bytes, opcode: int = TEXT) -> bytes:
@@ -29,6 +29,11 @@ def call(method: str, params: object, id: int | None = None) -> bytes:
     """Return the frame of a JSON-RPC call."""
     value = {"jsonrpc": "2.0", "method": method, "params": params}
     return frame(json.dumps(value if id is None else {**value, "id": id}))
+
+
+def result(id: int) -> bytes:
+    """Return the frame that acknowledges the call ``id``."""
+    return frame(json.dumps({"jsonrpc": "2.0", "id": id, "result": {}}))
 
 
 def connect(host: str, port: int, path: str, receive_buffer: int | None = None) -> socket.socket:
@@ -100,8 +105,8 @@ class Stream:
         """Return a stream on a socket that is connected."""
         return cls(*await asyncio.open_connection(sock=sock, limit=1 << 22))
 
-    async def receive(self) -> bytes:
-        """Return the payload of the next text frame; pings are answered."""
+    async def receive(self) -> tuple[int, bytes]:
+        """Return the next frame that is TEXT or BINARY, and its payload; pings are answered."""
         while True:
             first, second = await self.reader.readexactly(2)
             length = second & 0x7F
@@ -110,5 +115,5 @@ class Stream:
             payload = await self.reader.readexactly(length)
             if first & 0x0F == PING:
                 self.writer.write(pong(payload))
-            elif first & 0x0F == TEXT:
-                return payload
+            elif first & 0x0F in (BINARY, TEXT):
+                return first & 0x0F, payload

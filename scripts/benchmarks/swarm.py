@@ -24,6 +24,9 @@ HERE = Path(__file__).parent
 COUNT = re.compile(r'^robot_bridge_requests_total\{link="websocket",op="SendPos"\} (\S+)', re.MULTILINE)
 SETTLE = 3.0
 """seconds of each window that do not count."""
+IDLE_BELOW, IDLE_WITHIN = 0.2, 120.0
+"""of a core, for a second: so much the pings and looks of a gateway with nothing to do may take; and the
+seconds after which it must have come to that."""
 GIVE_UP_AFTER = 3.0
 """seconds without a message read, after which no more will be."""
 
@@ -81,7 +84,11 @@ class Seen:
 
 
 class Swarm:
-    """A context in which everybody of a plan is connected; ``core`` is the one they share."""
+    """A context in which everybody of a plan is connected, and the server has done all that came of it.
+
+    ``core`` is the one they share; ``arrival`` is the seconds from the first robot's connection, each
+    following the one before, until the last one had its map.
+    """
 
     def __init__(self, plan: Plan, core: int) -> None:
         self._plan = plan
@@ -98,8 +105,9 @@ class Swarm:
         )
 
     def __enter__(self) -> Swarm:
-        for process in (self._robots, self._operators):
-            _line(process)
+        self.arrival = float(_line(self._robots))
+        _line(self._operators)
+        self._wait_until_idle()
         return self
 
     def __exit__(
@@ -134,6 +142,14 @@ class Swarm:
             **told,
             **{name: sent[name] for name in ("held_back", "late", "own_cpu")},
         )
+
+    def _wait_until_idle(self) -> None:
+        until, used = time.monotonic() + IDLE_WITHIN, float("-inf")
+        while (now := cpu_seconds(self._plan.pid)) - used > IDLE_BELOW:
+            if time.monotonic() > until:
+                raise RuntimeError(f"the server is still busy {IDLE_WITHIN:g} s after everybody has come")
+            used = now
+            time.sleep(1.0)
 
     def _wait(self, wanted: int, end: float) -> tuple[int, float]:
         """Return how many messages were never read, and the seconds until the last one was."""

@@ -8,6 +8,7 @@ from __future__ import annotations
 import asyncio
 import itertools
 import json
+import math
 import re
 import sys
 import threading
@@ -15,7 +16,12 @@ import time
 from dataclasses import asdict, dataclass, field
 
 import msgspec
-from raw_websocket import Stream, call, connect
+import numpy as np
+from raw_websocket import BINARY, Stream, call, connect
+
+from robot_bridge.messages import POSITION_HEAD, POSITION_VALUE, PositionForm
+
+DEVICE_TIME = "device_time"
 
 
 @dataclass
@@ -30,18 +36,15 @@ class Told:
     ages: list[float | None] = field(default_factory=list)
 
 
-class _Position(msgspec.Struct):
-    robot: str
-    device_time: float | None = None
+class _Table(msgspec.Struct):
+    """The head of a table of positions: who is in it, and which column is which."""
+
+    robots: list[str]
+    columns: list[str]
 
 
-class _Positions(msgspec.Struct):
-    robots: list[_Position]
-
-
-class _Notification(msgspec.Struct):
-    method: str = ""
-    params: _Positions | None = None
+class _Head(msgspec.Struct):
+    params: _Table
 
 
 class _Pose(msgspec.Struct):
@@ -87,7 +90,8 @@ class Operators:
     async def _subscribed(self, rate: object, receive_buffer: int | None = None) -> Stream:
         host, port = str(self._plan["host"]), int(str(self._plan["port"]))
         stream = await Stream.on(await asyncio.to_thread(connect, host, port, "/desk", receive_buffer))
-        stream.writer.write(call("hello", {"operator": "load"}, 1) + call("subscribe", {"rate": rate}, 2))
+        positions = {"rate": rate, "form": PositionForm.COLUMNS}
+        stream.writer.write(call("hello", {"operator": "load"}, 1) + call("subscribe", positions, 2))
         return stream
 
     def _begin(self, stream: Stream, look: object) -> None:
@@ -96,29 +100,35 @@ class Operators:
     async def _read(self, stream: Stream, look: object) -> None:
         newest: dict[object, float] = {}
         while True:
-            payload = await stream.receive()
+            kind, payload = await stream.receive()
             now, at = time.time(), time.monotonic()
             if look is not None and self._window[0] <= at < self._window[1]:
-                look(payload, now, newest)  # type: ignore[operator]
+                look(kind, payload, now, newest)  # type: ignore[operator]
 
-    def _delay(self, payload: bytes, now: float, newest: dict[object, float]) -> None:
-        for robot, sent in self._positions(payload):
+    def _delay(self, kind: int, payload: bytes, now: float, newest: dict[object, float]) -> None:
+        for robot, sent in self._positions(kind, payload):
             if sent > newest.get(robot, 0.0):
                 newest[robot] = sent
                 self._delays.append((now - sent) * 1e3)
 
-    def _age(self, payload: bytes, now: float, _newest: dict[object, float]) -> None:
+    def _age(self, _kind: int, payload: bytes, now: float, _newest: dict[object, float]) -> None:
         if found := re.search(rb'"params":\{"t":([0-9.]+)', payload[:200]):
             self._ages.append((now - float(found.group(1))) * 1e3)
 
-    def _positions(self, payload: bytes) -> list[tuple[object, float]]:
+    def _positions(self, kind: int, payload: bytes) -> list[tuple[object, float]]:
         if not self._plan["rpc"]:
             pose = msgspec.json.decode(payload, type=_Forwarded).params
             return [(pose.y, pose.t)]
-        message = msgspec.json.decode(payload, type=_Notification)
-        if message.method != "positions" or message.params is None:
+        if kind != BINARY:
             return []
-        return [(p.robot, p.device_time) for p in message.params.robots if p.device_time is not None]
+        begin = POSITION_HEAD + int.from_bytes(payload[:POSITION_HEAD], "little")
+        head = msgspec.json.decode(payload[POSITION_HEAD:begin], type=_Head).params
+        if DEVICE_TIME not in head.columns:
+            return []
+        robots = len(head.robots)
+        offset = begin + head.columns.index(DEVICE_TIME) * robots * np.dtype(POSITION_VALUE).itemsize
+        times = np.frombuffer(payload, POSITION_VALUE, robots, offset).tolist()
+        return [(robot, at) for robot, at in zip(head.robots, times, strict=True) if not math.isnan(at)]
 
 
 def _median_and_p99(times: list[float]) -> list[float | None]:

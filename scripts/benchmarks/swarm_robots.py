@@ -1,6 +1,7 @@
 """Robots by the thousand in one process: ``python swarm_robots.py PLAN``, see :mod:`.swarm`.
 
-It prints ``ready``, and for each window that comes as a line of JSON what was sent in it, when it is over.
+It prints the seconds that their arrival took, and for each window that comes as a line of JSON what was sent
+in it, when it is over.
 """
 
 from __future__ import annotations
@@ -11,10 +12,12 @@ import sys
 import time
 from dataclasses import asdict, dataclass
 
-from raw_websocket import PING, Inbox, call, connect, frame, pong
+from raw_websocket import PING, Inbox, call, connect, frame, pong, result
 
 PAUSE = 0.0005
 """seconds between two looks at the clock."""
+ARRIVED_WITHIN = 120.0
+"""seconds."""
 AT_ONCE = 200
 """messages before robots hear again, however late they are."""
 
@@ -31,7 +34,7 @@ class Sent:
 
 
 class Robot:
-    """One robot: it says where it is, and answers pings."""
+    """One robot: it takes its map, says where it is, and answers pings; ``arrived`` once it has the map."""
 
     def __init__(self, host: str, port: int, number: int, *, rpc: bool) -> None:
         self.sock = connect(host, port, f"/robot?robot=load-{number}")
@@ -39,6 +42,7 @@ class Robot:
         self._left = b""
         self._x, self._step = 10.0 + number % 30, 0
         self._number = number
+        self.arrived = not rpc
         if rpc:
             self.sock.sendall(call("Ready", {"magic": number}, 1))
 
@@ -67,6 +71,15 @@ class Robot:
         for opcode, payload in self._inbox.take(self.sock.recv(1 << 16)):
             if opcode == PING:
                 self._send(pong(payload))
+            elif not self.arrived:
+                self._take_map(payload)
+
+    def _take_map(self, payload: bytes) -> None:
+        """Acknowledge the map, if this is it."""
+        message = json.loads(payload)
+        if message.get("method") == "SetMap":
+            self._send(result(message["id"]))
+            self.arrived = True
 
 
 class Robots:
@@ -81,6 +94,14 @@ class Robots:
         self._by_file = {robot.sock.fileno(): robot for robot in self._robots}
         for file in self._by_file:
             self._poll.register(file, select.EPOLLIN)
+
+    def arrive(self) -> None:
+        """Hear until every robot has its map."""
+        until = time.monotonic() + ARRIVED_WITHIN
+        while missing := sum(not robot.arrived for robot in self._robots):
+            if time.monotonic() > until:
+                raise TimeoutError(f"{missing} robots have no map after {ARRIVED_WITHIN:g} s")
+            self.hear(0.02)
 
     def hear(self, seconds: float) -> None:
         """Take in what comes for that long."""
@@ -116,8 +137,10 @@ class Robots:
 
 def main() -> None:
     """Drive as told on standard input until that ends."""
+    began = time.monotonic()
     robots = Robots(json.loads(sys.argv[1]))
-    print("ready", flush=True)
+    robots.arrive()
+    print(time.monotonic() - began, flush=True)
     poll = select.poll()
     poll.register(sys.stdin, select.POLLIN)
     while True:
