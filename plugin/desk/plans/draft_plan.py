@@ -128,7 +128,7 @@ class DraftPlan(QObject):
     def judged(self, plan: Plan, of: Draft) -> Draft:
         """Return ``plan`` on the ground of ``of``, with where robots come too near each other, and what of it
         leads along closed roads."""
-        near = tuple(meetings(plan, self.settings.apart_m))
+        near = tuple(meetings(plan, self.settings.apart_m, of.ways.standing, of.ways.settings.off_standing_m))
         return Draft(plan, of.ways, of.facts, of.name, near, closed_ways(plan, self._desk.roads.closures))
 
     def look_at_closures(self) -> None:
@@ -150,7 +150,7 @@ class DraftPlan(QObject):
             raise PlanningError(str(error)) from error
         ways = PlanWays(self._desk.project, frame, self.settings)
         ways.cones = self._cones_of_before({one.placement for one in facts.values()})
-        ways.robots = self._standing_robots()
+        ways.standing = self._standing_robots()
         blank = Draft(Plan((), (), (), "", "", "", ""), ways, facts, uuid.uuid4().hex)
         ways.closures = self._desk.roads.closures
         self.run(
@@ -216,15 +216,13 @@ class DraftPlan(QObject):
         ]
         return np.array(cones, dtype=float).reshape(-1, 2)
 
-    def _standing_robots(self) -> np.ndarray:
-        """Return where robots are that do not take part, (n, 2)."""
-        views = self._desk.picture.views(self._desk.clock())
-        others = [
-            (view.report.x, view.report.y)
-            for view in views
+    def _standing_robots(self) -> dict[str, tuple[float, float]]:
+        """Return where robots are that do not take part."""
+        return {
+            view.name: (view.report.x, view.report.y)
+            for view in self._desk.picture.views(self._desk.clock())
             if view.has_pose and not (self.settings.of_robot(view.name).used and is_there(view))
-        ]
-        return np.array(others, dtype=float).reshape(-1, 2)
+        }
 
 
 def is_there(view: RobotView) -> bool:

@@ -175,8 +175,7 @@ class DrivenPlan(QObject):
         placed = [(one.x, one.y) for one in progress.placed.values() if one.collected_at is None]
         driven.ways.closures = self._desk.roads.closures
         driven.ways.cones = np.array([*driven.ways.cones, *placed], dtype=float).reshape(-1, 2)
-        standing = [place for name, place in places.items() if name not in drive]
-        driven.ways.robots = np.array(standing, dtype=float).reshape(-1, 2)
+        driven.ways.standing = {name: place for name, place in places.items() if name not in drive}
         now = situation_of(driven.plan, progress, places, trouble, time.time(), try_again=try_again)
         wanted = Wanted(driven.plan.objective, time_limit_s=min(self._drafts.settings.seconds, _REPLANNING_S))
         self._drafts.run(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from itertools import combinations
 
@@ -14,6 +14,8 @@ from ...language import tr
 
 Floats = npt.NDArray[np.float64]
 STEP_S = 0.5
+_SAMPLED = 0.05
+"""Metres by which a way that is led round something may seem nearer, looked at every step."""
 
 
 @dataclass(frozen=True)
@@ -43,15 +45,37 @@ class Meeting:
         )
 
 
-def meetings(plan: Plan, least: float) -> list[Meeting]:
-    """Return for each two robots when they come nearer than ``least`` metres first, soonest first."""
+def meetings(
+    plan: Plan,
+    least: float,
+    standing: Mapping[str, tuple[float, float]] | None = None,
+    off_standing: float = 0.0,
+) -> list[Meeting]:
+    """Return for each two robots when they come nearer than ``least`` metres first, soonest first.
+
+    ``standing`` are the places of robots that do not drive by the plan, a lost one among them: who drives
+    comes nearer than ``off_standing`` metres to one of them where that stands at his cone.
+    """
     driving = [one for one in plan.robots if not one.lost]
-    if len(driving) < 2:
+    if not driving:
         return []
     begin = min(one.robot.ready_s for one in driving)
     times = np.arange(begin, max(one.end_s for one in driving) + STEP_S, STEP_S)
     places = {one.robot.id: positions(one, times) for one in driving}
-    return sorted(_found(places, times, least), key=lambda one: one.at_s)
+    found = [
+        *(
+            meeting
+            for (robot, here), (other, there) in combinations(places.items(), 2)
+            for meeting in _first(robot, other, here, there, times, least)
+        ),
+        *(
+            meeting
+            for robot, here in places.items()
+            for other, place in (standing or {}).items()
+            for meeting in _first(robot, other, here, np.array([place]), times, off_standing - _SAMPLED)
+        ),
+    ]
+    return sorted(found, key=lambda one: one.at_s)
 
 
 def positions(one: RobotPlan, times: Floats) -> Floats:
@@ -69,15 +93,17 @@ def positions(one: RobotPlan, times: Floats) -> Floats:
     return np.column_stack([np.interp(times, at, where[:, axis]) for axis in (0, 1)])
 
 
-def _found(places: dict[str, Floats], times: Floats, least: float) -> Iterator[Meeting]:
-    for (robot, here), (other, there) in combinations(places.items(), 2):
-        apart = np.hypot(*(here - there).T)
-        near = np.flatnonzero(apart < least)
-        if len(near) == 0:
-            continue
-        # The nearest point of the first time that they meet says more than the moment it begins.
-        breaks = np.flatnonzero(np.diff(near) > 1)
-        run = near[: breaks[0] + 1] if len(breaks) else near
-        k = int(run[apart[run].argmin()])
-        x, y = (here[k] + there[k]) / 2
-        yield Meeting(robot, other, float(times[k]), float(apart[k]), float(x), float(y))
+def _first(
+    robot: str, other: str, here: Floats, there: Floats, times: Floats, least: float
+) -> Iterator[Meeting]:
+    """Yield the first meeting of two, if there is one; ``there`` is (n, 2) as ``here``, or one place."""
+    apart = np.hypot(*(here - there).T)
+    near = np.flatnonzero(apart < least)
+    if len(near) == 0:
+        return
+    # The nearest point of the first time that they meet says more than the moment it begins.
+    breaks = np.flatnonzero(np.diff(near) > 1)
+    run = near[: breaks[0] + 1] if len(breaks) else near
+    k = int(run[apart[run].argmin()])
+    x, y = ((here + there) / 2)[k]
+    yield Meeting(robot, other, float(times[k]), float(apart[k]), float(x), float(y))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -40,15 +40,15 @@ Floats = npt.NDArray[np.float64]
 class PlanWays:
     """The ground of one plan; made in the window's thread, used by one task after the other.
 
-    ``cones`` (n, 2) are those of before, beside the plan's own; ``robots`` (n, 2) are where robots stand that
-    do not drive by it. ``closures`` are the roads that are closed at the gateway. All hold for the next plan
+    ``cones`` (n, 2) are those of before, beside the plan's own; ``standing`` is where robots stand that do
+    not drive by it. ``closures`` are the roads that are closed at the gateway. All hold for the next plan
     that is made.
     """
 
     def __init__(self, project: QgsProject, frame: SiteFrame, settings: PlanSettings) -> None:
         self.settings = settings
         self.cones: Floats = np.empty((0, 2))
-        self.robots: Floats = np.empty((0, 2))
+        self.standing: Mapping[str, tuple[float, float]] = {}
         self.closures: Sequence[ClosureReport] = ()
         self._router: Router | None = None
         self._shut: set[int] = set()
@@ -80,13 +80,12 @@ class PlanWays:
             roads = RoadTravel(job, router, progress=lambda share: _ask(goes_on))
             travel = _NearOrByRoad(job, travel, roads, self.settings.direct_m)
         cones = np.concatenate([job.places[job.first_target :], self.cones])
+        robots = np.array(list(self.standing.values()), dtype=float).reshape(-1, 2)
         clear = ClearTravel(
             travel,
             job.places,
-            np.concatenate([cones, self.robots]),
-            np.repeat(
-                [self.settings.clearance_m, self.settings.off_standing_m], [len(cones), len(self.robots)]
-            ),
+            np.concatenate([cones, robots]),
+            np.repeat([self.settings.clearance_m, self.settings.off_standing_m], [len(cones), len(robots)]),
         )
         return CancellableTravel(clear, goes_on)
 

@@ -68,6 +68,14 @@ def test_a_lost_robot_meets_nobody_and_one_alone_neither():
     assert meetings(plan(driving("a", (0, 0), (5, 0)), lost), 2.0) == []
 
 
+def test_a_robot_that_stands_at_anothers_cone_is_met_and_one_that_is_passed_far_enough_is_not():
+    one = plan(driving("a", (0, 0), (10, 0), (10, 10), wait=5.0))
+    (found,) = meetings(one, 2.0, {"dead": (10.3, 0.4), "off": (5.0, 1.0)}, 1.0)
+    assert (found.robot, found.other, found.metres) == ("a", "dead", pytest.approx(0.4, abs=0.1))
+    assert found.at_s == pytest.approx(15, abs=1)
+    assert meetings(one, 2.0, {"dead": (10.3, 0.4)}, 0.3) == []
+
+
 def test_positions_follow_the_stops_and_what_is_done_there():
     one = driving("a", (0, 0), (10, 0), (10, 10), wait=5.0)
     times = np.array([0.0, 5.0, 10.0, 14.0, 20.0, 25.0, 99.0])

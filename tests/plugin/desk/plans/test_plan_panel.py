@@ -354,6 +354,21 @@ def test_a_lost_robot_is_told_and_nothing_is_sent_before_somebody_agrees(under_w
     assert [task["cone"] for task in gateway.asked("set_queue")[-1]["tasks"]] == cones["r2"]
 
 
+def test_nobody_is_sent_by_itself_to_a_cone_at_which_a_lost_robot_stands(
+    under_way, gateway, wait, make_robot
+):
+    cone = under_way.driven.driven.plan.robot("r1").stops[1]
+    gateway.show(make_robot("r1", cone.x, cone.y))
+    picture = under_way._desk.picture
+    wait(lambda: picture.view("r1", under_way._desk.clock()).report.x == pytest.approx(cone.x), 5)
+    under_way.bar.by_itself.click()
+    lose_r1(under_way, gateway, wait)
+    wait(lambda: under_way.driven.offer is not None and not under_way.driven.busy, 15, "a new plan")
+    assert "r2 and r1 come within 0.0 m" in under_way.bar.trouble.text()
+    QTest.qWait(300)
+    assert under_way.driven.offer is not None and gateway.asked("take_over") == []
+
+
 @pytest.mark.parametrize("again", [False, True])
 def test_a_cone_that_failed_is_told_and_given_up_or_tried_again(under_way, gateway, wait, iface, again):
     first, *others = cones_of(under_way.driven.driven.plan)["r1"]
