@@ -30,11 +30,13 @@ class Film:
 
         :raises StageError: when a part of the plugin cannot be read or reached, or something raised.
         """
+        self._operator.wait_for_map()
+        # While it draws, QGIS shows that in its status bar, which may then be broader than the screen.
+        self._operator.keep_to_the_screen()
         if faults := [*self._operator.out_of_sight(), *self._operator.complaints()]:
             raise StageError(f"in the picture {name!r}: " + "; ".join(faults))
         self._shots += 1
         path = self._folder / f"operator-{self._shots:02d}-{name}.png"
-        self._operator.wait_for_map()
         self._screen.photograph(path)
         while not self._operator.is_map_drawn():
             # QGIS began to draw again meanwhile, as it does each second for the live layers.

@@ -179,6 +179,10 @@ class OperatorAtScreen:
         self._screen.fill(main)
         self._screen.focus(main)
 
+    def keep_to_the_screen(self) -> None:
+        """Let the QGIS window fill the screen again, no more and no less."""
+        self._screen.fill(self._window.ask("window")["main"])
+
     def wait_for_dialog(self, name: str) -> None:
         """Look until a dialog is there, framed and with the keyboard."""
         self.wait(f"the dialog {name}", lambda: self.widget(name)["visible"])
