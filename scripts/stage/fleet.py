@@ -9,6 +9,7 @@ from pathlib import Path
 
 from plugin_files import ROOT
 
+from .patience import START
 from .processes import Processes
 
 SITE = ROOT / "resources" / "sample_site"
@@ -39,7 +40,7 @@ def start_gateway(processes: Processes, database: Path, site: Path = SITE) -> st
     """
     serve = ["serve", "--site", site, "--port", "0", "--database", f"sqlite:///{database}"]
     processes.start("gateway", [sys.executable, "-m", "robot_bridge", *serve])
-    return processes.wait_for_line("gateway", r"listening on (ws://[\w.]+:\d+)", 30).group(1)
+    return processes.wait_for_line("gateway", r"listening on (ws://[\w.]+:\d+)", START).group(1)
 
 
 def start_robots(processes: Processes, address: str, database: Path, speed: float = 1.5) -> None:

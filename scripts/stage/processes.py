@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -22,8 +23,14 @@ def dying_with_this(command: Sequence[str | Path]) -> list[str]:
     """Return a command that is killed when this program ends, even when that is killed itself.
 
     The system goes by the thread that starts the command.
+
+    :raises StageError: when the system has no setpriv.
     """
-    return ["setpriv", "--pdeathsig", "KILL", *map(str, command)]
+    # Not by PATH: whoever starts a stage may narrow that to what its programs shall find.
+    setpriv = shutil.which("setpriv", path=os.defpath)
+    if setpriv is None:
+        raise StageError(f"setpriv is not in {os.defpath}: install util-linux")
+    return [setpriv, "--pdeathsig", "KILL", *map(str, command)]
 
 
 class Processes:
