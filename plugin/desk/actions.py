@@ -28,6 +28,7 @@ class Actions(QObject):
         self.road_route = self._made(
             "fleet_road_route", tr("Route on roads"), "route_on_roads.svg", checkable=True
         )
+        self.way_wishes = self._made("fleet_way_wishes", tr("Ways on roads …"), "route_on_roads.svg")
         self.closures = self._made("fleet_close_road", tr("Close road"), "close_road.svg", checkable=True)
         self.start = self._made("fleet_start_position", tr("Start position"), "start.svg", checkable=True)
         self.coordinates = self._made("fleet_coordinates", tr("Coordinates …"), "coordinates.svg")
@@ -52,6 +53,7 @@ class Actions(QObject):
         self.emergency.setAutoRepeat(False)
         self.clear_emergency = self._made("fleet_clear_emergency", tr("Clear emergency stop …"), "cancel.svg")
         self.off_toolbar = (
+            self.way_wishes,
             self.undo,
             self.redo,
             self.reverse,
@@ -70,6 +72,7 @@ class Actions(QObject):
             self.select,
             self.cone,
             self.road_route,
+            self.way_wishes,
             self.route,
             self.start,
             self.coordinates,
@@ -137,6 +140,12 @@ class Actions(QObject):
             tr(
                 "Route along the roads for the selected robot: the way to the mouse is shown, a click takes "
                 "it; Backspace takes the last leg back, Enter or Send sends, Esc cancels"
+            )
+        )
+        self.way_wishes.setToolTip(
+            tr(
+                "Say how Route on roads is to lead: shortest or fastest, on which surfaces, off the roads of "
+                "other robots"
             )
         )
         self.closures.setToolTip(

@@ -121,8 +121,11 @@ def _tools(actions: Actions) -> QGridLayout:
     grid.setSpacing(4)
     for column, action in enumerate((actions.select, actions.follow, actions.abort)):
         grid.addWidget(tool_button(action), 0, 2 * column, 1, 2)
-    for column, action in enumerate((actions.cone, actions.road_route, actions.route)):
-        grid.addWidget(tool_button(action), 1, 2 * column, 1, 2)
+    road_route = tool_button(actions.road_route)
+    road_route.addAction(actions.way_wishes)
+    road_route.setPopupMode(QToolButton.ToolButtonPopupMode.MenuButtonPopup)
+    for column, button in enumerate((tool_button(actions.cone), road_route, tool_button(actions.route))):
+        grid.addWidget(button, 1, 2 * column, 1, 2)
     for column in range(6):
         grid.setColumnStretch(column, 1)
     return grid

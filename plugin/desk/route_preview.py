@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
+from typing import Any
 
 from qgis.PyQt.QtCore import QObject, pyqtSignal
 
@@ -13,6 +14,7 @@ from ..errors import NotSentError
 from ..language import tr
 from ..wire.outbox import Answer, Order
 from .drafts import Point
+from .way_wishes import SHORTEST, WayWishes
 
 UNANSWERED_AFTER = 3.0
 """Seconds after which a question is taken to be lost, so that the next is asked."""
@@ -26,6 +28,7 @@ class Question:
     start: Point | None
     goal: Point
     taken: bool = False
+    wishes: WayWishes = SHORTEST
 
 
 class RoutePreview(QObject):
@@ -99,14 +102,27 @@ class RoutePreview(QObject):
 
     def _ask(self, question: Question) -> None:
         from_robot = question.start is None
-        request = GetRoute(*question.goal, robot=question.robot if from_robot else None, start=question.start)
+        request = GetRoute(
+            *question.goal,
+            robot=question.robot if from_robot else None,
+            start=question.start,
+            **_restrictions(question.wishes),
+        )
         key = f"route-{id(self)}-{next(self._numbers)}"
         self._submit(Order(key, request.method, to_json(request), self._clock()))
         self._asked = key, question, self._clock()
 
 
-def in_words(route: RouteReport, apart: str = "; ") -> str:
-    """Return a way's length, time and surfaces, and what is not as it should be, set apart by ``apart``."""
+def _restrictions(wishes: WayWishes) -> dict[str, Any]:
+    """Return wishes as the question's parameters."""
+    return {**asdict(wishes), "surfaces": list(wishes.surfaces) or None}
+
+
+def in_words(route: RouteReport, wishes: WayWishes, apart: str = "; ") -> str:
+    """Return a way's length, time and surfaces, what was wanted of it, and what is not as it should be.
+
+    ``apart`` stands between these.
+    """
     minutes, seconds = divmod(round(route.seconds), 60)
     time = (
         tr(
@@ -126,6 +142,8 @@ def in_words(route: RouteReport, apart: str = "; ") -> str:
         for one in route.surfaces
     ]
     text = ", ".join([tr("{metres:.1f} m", metres=route.metres), time, *parts])
+    if wishes.in_words():
+        text += apart + ", ".join(wishes.in_words())
     if route.tight:
         text += apart + tr("corners tighter than the robot turns: {tight}", tight=len(route.tight))
     return text + apart + route.note if route.note else text

@@ -15,6 +15,7 @@ from ..errors import FleetError, NotSentError, PlacementError
 from .desk import Desk
 from .drafts import Point
 from .route_preview import Question, in_words
+from .way_wishes import SHORTEST, WayWishes
 
 ALONG, STRAIGHT = QColor("#1e88e5"), QColor("#c62828")
 BESIDE = QPoint(16, 16)
@@ -28,17 +29,24 @@ class WayToMouse:
         self._desk = desk
         self._band: QgsRubberBand | None = None
         self._mouse: QPoint | None = None
+        self._wishes = SHORTEST
         desk.preview.shown.connect(self._show)
         desk.selection_changed.connect(self._hide)
 
-    def lead_to(self, event: QgsMapMouseEvent, robot: str | None, start: Point | None) -> None:
+    def lead_to(
+        self,
+        event: QgsMapMouseEvent,
+        robot: str | None,
+        start: Point | None,
+        wishes: WayWishes = SHORTEST,
+    ) -> None:
         """Have the way shown from ``start``, or from where the robot is, to where the mouse is."""
-        self._mouse = QCursor.pos()
+        self._mouse, self._wishes = QCursor.pos(), wishes
         if robot is None:
             return
         try:
             goal = self._desk.placement().to_site(event.mapPoint())
-            self._desk.preview.want(Question(robot, start, goal))
+            self._desk.preview.want(Question(robot, start, goal, wishes=wishes))
         except (NotSentError, PlacementError):
             # A click says what is wrong; moving the mouse is no request to be told so.
             self.clear()
@@ -71,7 +79,7 @@ class WayToMouse:
         route = self._desk.preview.route
         if self._mouse is None:
             return
-        text = self._desk.preview.why_not if route is None else in_words(route, apart="\n")
+        text = self._desk.preview.why_not if route is None else in_words(route, self._wishes, apart="\n")
         QToolTip.showText(self._mouse + BESIDE, text, self._desk.canvas)
         if route is not None:
             self._draw(route)

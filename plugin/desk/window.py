@@ -28,6 +28,7 @@ from .queues.queue_marks import QueueMarks
 from .road_layers import RoadLayers
 from .road_route_tool import RoadRouteTool
 from .route_tool import RouteTool
+from .way_wishes_dialog import WayWishesDialog
 
 MENU = "Fleet Supervisor"
 
@@ -52,10 +53,11 @@ class DeskWindow(QObject):
         self.road_layers = RoadLayers(self.desk, self)
         self.toolbar: QToolBar = iface.addToolBar("Fleet Supervisor")
         self.toolbar.setObjectName("fleet_toolbar")
+        self._road_route = RoadRouteTool(self.desk)
         self._tools = {
             self.actions.select: SelectTool(self.desk, self.view),
             self.actions.cone: ConeTool(self.desk),
-            self.actions.road_route: RoadRouteTool(self.desk),
+            self.actions.road_route: self._road_route,
             self.actions.route: RouteTool(self.desk),
             self.actions.start: StartTool(self.desk),
             self.actions.closures: ClosureTool(self.desk, iface.mainWindow()),
@@ -115,6 +117,7 @@ class DeskWindow(QObject):
         actions.abort_all.triggered.connect(desk.abort_all)
         actions.emergency.triggered.connect(desk.emergency_stop)
         actions.clear_emergency.triggered.connect(self._ask_to_clear)
+        actions.way_wishes.triggered.connect(self._ask_for_ways)
         desk.emergency_changed.connect(self._show_emergency)
         self.dock.table.zoom_wanted.connect(self.view.zoom_to)
         self.dock.log.place_wanted.connect(self.view.show_place)
@@ -169,6 +172,11 @@ class DeskWindow(QObject):
     def _show_emergency(self) -> None:
         if not self.dock.banner.isHidden() and not self.dock.isUserVisible():
             self.dock.setUserVisible(True)
+
+    def _ask_for_ways(self) -> None:
+        dialog = WayWishesDialog(self._road_route.wishes, self._iface.mainWindow())
+        dialog.confirmed.connect(self._road_route.lead_so)
+        dialog.open()
 
     def _ask_to_clear(self) -> None:
         report = self.desk.emergency

@@ -513,6 +513,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/actions.py" />
+            <source>Say how Route on roads is to lead: shortest or fastest, on which surfaces, off the roads of other robots</source>
+            <translation>Digues com ha de portar la Ruta per vies: la més curta o la més ràpida, per quines superfícies, fora de les vies d'altres robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
             <source>Select robot</source>
             <translation>Selecciona robot</translation>
         </message>
@@ -590,6 +595,11 @@
             <location filename="../../plugin/desk/actions.py" />
             <source>Undo</source>
             <translation>Desfés</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Ways on roads …</source>
+            <translation>Camins per vies …</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/desk/alarms/alarm_bar.py" />
@@ -4237,6 +4247,81 @@
             <translation>&amp;Tanca</translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/way_wishes.py" />
+            <source>off the roads of other robots</source>
+            <translation>fora de les vies d'altres robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes.py" />
+            <source>only on {surfaces}</source>
+            <translation>només per {surfaces}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes.py" />
+            <source>roads at least {metres:g} m wide</source>
+            <translation>vies d'almenys {metres:g} m d'amplada</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes.py" />
+            <source>the fastest way</source>
+            <translation>el camí més ràpid</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes_dialog.py" />
+            <source>Keep off roads on which other robots are sent</source>
+            <translation>Evita les vies per on s'han enviat altres robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes_dialog.py" />
+            <source>Lead ways so</source>
+            <translation>Porta-ho així</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes_dialog.py" />
+            <source>Surfaces</source>
+            <translation>Superfícies</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes_dialog.py" />
+            <source>This holds for every leg that is led from now on, until QGIS is closed.</source>
+            <translation>Això val per a cada tram que es traci d'ara endavant, fins que es tanqui el QGIS.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes_dialog.py" />
+            <source>Way</source>
+            <translation>Recorregut</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes_dialog.py" />
+            <source>Ways on roads</source>
+            <translation>Camins per vies</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes_dialog.py" />
+            <source>Width</source>
+            <translation>Amplada</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes_dialog.py" />
+            <source>all; or names with commas, such as: asphalt, concrete</source>
+            <translation>totes; o noms amb comes, com ara: asphalt, concrete</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes_dialog.py" />
+            <source>as wide as the robots are</source>
+            <translation>tan ampla com els robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes_dialog.py" />
+            <source>the fastest</source>
+            <translation>el més ràpid</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes_dialog.py" />
+            <source>the shortest</source>
+            <translation>el més curt</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/window.py" />
             <source>Disconnect</source>
             <translation>Desconnecta</translation>
@@ -4959,11 +5044,6 @@
             <location filename="../../plugin/processing/build_road_surfaces.py" />
             <source>Roads without a width</source>
             <translation>Vies sense amplada</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/build_road_surfaces.py" />
-            <source>Surfaces</source>
-            <translation>Superfícies</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/build_road_surfaces.py" />
@@ -5699,11 +5779,6 @@
             <location filename="../../plugin/processing/find_route.py" />
             <source>Turning radius of the robot [m]</source>
             <translation>Radi de gir del robot [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/find_route.py" />
-            <source>Way</source>
-            <translation>Recorregut</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/find_route.py" />

@@ -513,6 +513,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/actions.py" />
+            <source>Say how Route on roads is to lead: shortest or fastest, on which surfaces, off the roads of other robots</source>
+            <translation>Diga cómo debe llevar la Ruta por vías: la más corta o la más rápida, por qué superficies, fuera de las vías de otros robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
             <source>Select robot</source>
             <translation>Seleccionar robot</translation>
         </message>
@@ -590,6 +595,11 @@
             <location filename="../../plugin/desk/actions.py" />
             <source>Undo</source>
             <translation>Deshacer</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Ways on roads …</source>
+            <translation>Caminos por vías …</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/desk/alarms/alarm_bar.py" />
@@ -4237,6 +4247,81 @@
             <translation>&amp;Cerrar</translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/way_wishes.py" />
+            <source>off the roads of other robots</source>
+            <translation>fuera de las vías de otros robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes.py" />
+            <source>only on {surfaces}</source>
+            <translation>solo por {surfaces}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes.py" />
+            <source>roads at least {metres:g} m wide</source>
+            <translation>vías de al menos {metres:g} m de ancho</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes.py" />
+            <source>the fastest way</source>
+            <translation>el camino más rápido</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes_dialog.py" />
+            <source>Keep off roads on which other robots are sent</source>
+            <translation>Evitar las vías por las que se han enviado otros robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes_dialog.py" />
+            <source>Lead ways so</source>
+            <translation>Llevar así</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes_dialog.py" />
+            <source>Surfaces</source>
+            <translation>Superficies</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes_dialog.py" />
+            <source>This holds for every leg that is led from now on, until QGIS is closed.</source>
+            <translation>Esto vale para cada tramo que se trace a partir de ahora, hasta que se cierre QGIS.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes_dialog.py" />
+            <source>Way</source>
+            <translation>Recorrido</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes_dialog.py" />
+            <source>Ways on roads</source>
+            <translation>Caminos por vías</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes_dialog.py" />
+            <source>Width</source>
+            <translation>Anchura</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes_dialog.py" />
+            <source>all; or names with commas, such as: asphalt, concrete</source>
+            <translation>todas; o nombres con comas, como: asphalt, concrete</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes_dialog.py" />
+            <source>as wide as the robots are</source>
+            <translation>tan ancha como los robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes_dialog.py" />
+            <source>the fastest</source>
+            <translation>el más rápido</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes_dialog.py" />
+            <source>the shortest</source>
+            <translation>el más corto</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/window.py" />
             <source>Disconnect</source>
             <translation>Desconectar</translation>
@@ -4959,11 +5044,6 @@
             <location filename="../../plugin/processing/build_road_surfaces.py" />
             <source>Roads without a width</source>
             <translation>Vías sin anchura</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/build_road_surfaces.py" />
-            <source>Surfaces</source>
-            <translation>Superficies</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/build_road_surfaces.py" />
@@ -5699,11 +5779,6 @@
             <location filename="../../plugin/processing/find_route.py" />
             <source>Turning radius of the robot [m]</source>
             <translation>Radio de giro del robot [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/find_route.py" />
-            <source>Way</source>
-            <translation>Recorrido</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/find_route.py" />

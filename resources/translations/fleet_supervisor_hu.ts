@@ -512,6 +512,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/actions.py" />
+            <source>Say how Route on roads is to lead: shortest or fastest, on which surfaces, off the roads of other robots</source>
+            <translation>Megadja, hogyan vezessen az Útvonal utakon: a legrövidebb vagy a leggyorsabb legyen, mely felületeken, más robotok útjait elkerülve</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
             <source>Select robot</source>
             <translation>Robot kijelölése</translation>
         </message>
@@ -589,6 +594,11 @@
             <location filename="../../plugin/desk/actions.py" />
             <source>Undo</source>
             <translation>Visszavonás</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Ways on roads …</source>
+            <translation>Útvonalak utakon …</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/desk/alarms/alarm_bar.py" />
@@ -4233,6 +4243,81 @@
             <translation>&amp;Bezárás</translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/way_wishes.py" />
+            <source>off the roads of other robots</source>
+            <translation>más robotok útjait elkerülve</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes.py" />
+            <source>only on {surfaces}</source>
+            <translation>csak ezeken: {surfaces}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes.py" />
+            <source>roads at least {metres:g} m wide</source>
+            <translation>legalább {metres:g} m széles utakon</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes.py" />
+            <source>the fastest way</source>
+            <translation>a leggyorsabb útvonal</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes_dialog.py" />
+            <source>Keep off roads on which other robots are sent</source>
+            <translation>Kerülje el az utakat, amelyeken más robotok vannak úton</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes_dialog.py" />
+            <source>Lead ways so</source>
+            <translation>Így vezessen</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes_dialog.py" />
+            <source>Surfaces</source>
+            <translation>Felületek</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes_dialog.py" />
+            <source>This holds for every leg that is led from now on, until QGIS is closed.</source>
+            <translation>Ez minden ezután vezetett szakaszra érvényes, a QGIS bezárásáig.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes_dialog.py" />
+            <source>Way</source>
+            <translation>Út</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes_dialog.py" />
+            <source>Ways on roads</source>
+            <translation>Útvonalak utakon</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes_dialog.py" />
+            <source>Width</source>
+            <translation>Szélesség</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes_dialog.py" />
+            <source>all; or names with commas, such as: asphalt, concrete</source>
+            <translation>mind; vagy nevek vesszővel, például: asphalt, concrete</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes_dialog.py" />
+            <source>as wide as the robots are</source>
+            <translation>amilyen szélesek a robotok</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes_dialog.py" />
+            <source>the fastest</source>
+            <translation>a leggyorsabb</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/way_wishes_dialog.py" />
+            <source>the shortest</source>
+            <translation>a legrövidebb</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/window.py" />
             <source>Disconnect</source>
             <translation>Bontás</translation>
@@ -4955,11 +5040,6 @@
             <location filename="../../plugin/processing/build_road_surfaces.py" />
             <source>Roads without a width</source>
             <translation>Szélesség nélküli utak</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/build_road_surfaces.py" />
-            <source>Surfaces</source>
-            <translation>Felületek</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/build_road_surfaces.py" />
@@ -5695,11 +5775,6 @@
             <location filename="../../plugin/processing/find_route.py" />
             <source>Turning radius of the robot [m]</source>
             <translation>A robot fordulási sugara [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/find_route.py" />
-            <source>Way</source>
-            <translation>Út</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/find_route.py" />

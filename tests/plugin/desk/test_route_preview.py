@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 import pytest
-from fleet_supervisor.plugin.desk.route_preview import Question, RoutePreview
+from fleet_supervisor.plugin.desk.route_preview import Question, RoutePreview, in_words
+from fleet_supervisor.plugin.desk.way_wishes import SHORTEST, WayWishes, surfaces_of
+from fleet_supervisor.plugin.desk.way_wishes_dialog import WayWishesDialog
 from fleet_supervisor.plugin.wire.outbox import Answer
+from fleet_supervisor.robot_bridge.messages import RouteReport
+from qgis.PyQt.QtWidgets import QLineEdit, QPushButton, QWidget
 
 
 class Gateway:
@@ -84,3 +88,45 @@ def test_what_is_no_way_is_said_and_other_answers_are_left_alone(preview, gatewa
     preview.want(to(1.0))
     gateway.answer(preview, result={})
     assert "holds no way" in preview.why_not
+
+
+def test_what_is_wanted_of_the_way_is_asked_of_the_gateway(preview, gateway):
+    wishes = WayWishes(fastest=True, surfaces=("asphalt",), least_width=3.5, avoid_reserved=True)
+    preview.want(to(1.0))
+    gateway.answer(preview)
+    preview.want(to(2.0, wishes=wishes))
+    names = ("fastest", "surfaces", "least_width", "avoid_reserved")
+    plain, wished = ([order.params.get(name) for name in names] for order in gateway.orders)
+    assert plain == [False, None, 0.0, False]
+    assert wished == [True, ["asphalt"], 3.5, True]
+
+
+def test_what_was_wanted_stands_beside_the_way():
+    route = RouteReport([(0.0, 0.0), (9.0, 0.0)], 9.0, 5.0)
+    wishes = WayWishes(fastest=True, surfaces=("asphalt", "gravel"), least_width=3.5, avoid_reserved=True)
+    assert in_words(route, SHORTEST) == "9.0 m, 5 s"
+    told = (
+        "the fastest way, off the roads of other robots, only on asphalt, gravel, roads at least 3.5 m wide"
+    )
+    assert in_words(route, wishes, apart="\n") == f"9.0 m, 5 s\n{told}"
+
+
+def test_names_of_surfaces_are_read_with_commas_between():
+    assert surfaces_of(" asphalt,, slippery section ,asphalt") == ("asphalt", "slippery section")
+    assert surfaces_of(" ") == ()
+
+
+def test_the_dialog_begins_with_what_holds_and_gives_what_was_changed(qgis_app):
+    wishes = WayWishes(fastest=True, surfaces=("asphalt", "gravel"), least_width=3.5, avoid_reserved=True)
+    window = QWidget()
+    confirmed = []
+    for begin in (wishes, SHORTEST):
+        dialog = WayWishesDialog(begin, window)
+        dialog.confirmed.connect(confirmed.append)
+        if begin is SHORTEST:
+            dialog.findChild(QLineEdit, "fleet_way_wishes_surfaces").setText("gravel")
+        dialog.findChild(QPushButton, "fleet_way_wishes_confirm").click()
+    dialog = WayWishesDialog(wishes, window)
+    dialog.confirmed.connect(confirmed.append)
+    dialog.findChild(QPushButton, "fleet_way_wishes_dialog_cancel").click()
+    assert confirmed == [wishes, WayWishes(surfaces=("gravel",))]

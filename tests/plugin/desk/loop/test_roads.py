@@ -8,7 +8,7 @@ from inside_qgis.mouse import move_mouse
 from qgis.core import QgsPointXY, QgsProject
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
-from qgis.PyQt.QtWidgets import QAction, QComboBox, QLabel, QLineEdit, QPushButton, QToolButton
+from qgis.PyQt.QtWidgets import QAction, QCheckBox, QComboBox, QLabel, QLineEdit, QPushButton, QToolButton
 
 CRS = "EPSG:32633"
 SOUTH = (60.0, 8.0)
@@ -103,6 +103,32 @@ def test_a_road_is_closed_by_a_click_the_robot_on_it_sent_round_and_opened_again
     QTest.mouseClick(part(operator, QPushButton, "fleet_open_road_confirm"), Qt.MouseButton.LeftButton)
     operator.wait("the road open", lambda: operator.desk.roads.closures == (), 10)
     assert layer("Closed roads").featureCount() == 0
+
+
+def test_a_route_keeps_off_the_road_of_another_robot_where_the_operator_wants_it(loop, operator):
+    loop.start_robot("r1", (10, 8, 0), speed=1)
+    loop.start_robot("r2", (60, 8, 0), speed=0.1)
+    operator.connect_to(loop, ["r1", "r2"])
+    operator.show_site()
+    operator.choose("fleet_road_route")
+    operator.select("r2")
+    operator.click_site(100.0, 8.0)
+    operator.wait("the route", lambda: operator.desk.drafts.draft, 10)
+    operator.press("fleet_send")
+    operator.wait_for_state("r2", "SetPath", CommandState.ACKNOWLEDGED)
+    operator.select("r1")
+    operator.click_site(126.0, 8.0)
+    operator.wait("the shortest way", lambda: operator.desk.drafts.draft, 10)
+    assert max(y for _, y in operator.desk.drafts.draft.points) < 9
+    operator.press("fleet_cancel")
+    part(operator, QAction, "fleet_way_wishes").trigger()
+    operator.wait("the dialog", lambda: part(operator, QCheckBox, "fleet_way_wishes_avoid"), 5)
+    part(operator, QCheckBox, "fleet_way_wishes_avoid").setChecked(True)
+    QTest.mouseClick(part(operator, QPushButton, "fleet_way_wishes_confirm"), Qt.MouseButton.LeftButton)
+    operator.click_site(126.0, 8.0)
+    operator.wait("the way round", lambda: operator.desk.drafts.draft, 10)
+    assert max(y for _, y in operator.desk.drafts.draft.points) > 20
+    assert "off the roads of other robots" in part(operator, QLabel, "fleet_draft_text").text()
 
 
 def test_a_conflict_is_shown_with_place_and_time_and_one_gives_way(loop, operator):
