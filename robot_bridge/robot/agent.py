@@ -36,6 +36,8 @@ STANDING = 0.01
 """m/s."""
 RANGE = 10_000.0
 """metres that the simulated battery lasts."""
+STEER_EVERY = 0.05
+"""seconds; a robot steers as often, however late the program is in letting time pass."""
 GREET_AGAIN = 1.0
 """seconds after which a robot that was refused says Ready once more."""
 
@@ -118,12 +120,9 @@ class Agent:
 
     def step(self, dt: float) -> None:
         """Let ``dt`` seconds pass: drive, and say where the robot is when it is time."""
-        if self._driver is not None:
-            motion = self._driver.steer(self._body.pose)
-            if motion is None:
-                self._driver = None
-            self._body.drive(*(motion or (0.0, 0.0)))
-        self._body.step(dt)
+        steps = max(1, math.ceil(dt / STEER_EVERY))
+        for _ in range(steps):
+            self._move(dt / steps)
         if not self._admitted:
             self._greet_in -= dt
             if self._greet_in <= 0:
@@ -135,6 +134,14 @@ class Agent:
             self._since_pose = 0.0
             self._say(self._position())
         self._notice_stop()
+
+    def _move(self, dt: float) -> None:
+        if self._driver is not None:
+            motion = self._driver.steer(self._body.pose)
+            if motion is None:
+                self._driver = None
+            self._body.drive(*(motion or (0.0, 0.0)))
+        self._body.step(dt)
 
     def stop(self) -> None:
         """Say that the robot stands and does nothing."""

@@ -1,4 +1,4 @@
-"""How the robot drives to a target or along a path: pure pursuit, then a turn on the spot."""
+"""How the robot drives to a target or along a path: pure pursuit, slow in corners, a turn at the end."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..polyline import Polyline
 from .body import BodyLimits, Pose
@@ -21,6 +22,15 @@ HEADING_REACHED = 0.03
 WINDOW = 4.0
 """metres of path searched ahead for the place where the robot is, so that it cuts no loop short."""
 
+CORNER = 0.6
+"""metres before and behind a corner in which the robot takes it."""
+TURNING = 0.6
+"""Of its turn rate, what a corner takes: with the rest the robot comes back to its path."""
+LEAST_SPEED = 0.2
+"""m/s through the sharpest corner."""
+BRAKING = 0.5
+"""Of its acceleration, what the robot brakes with: it can do more."""
+
 Motion = tuple[float, float]
 """Speed in m/s and turn rate in rad/s."""
 
@@ -34,6 +44,8 @@ class Driver:
         self._line = Polyline(points)
         self._theta = theta
         self._limits = limits
+        self._braking = 2 * BRAKING * limits.acceleration
+        self._stations, self._squares = self._corners()
         self._driven = 0.0
         self._at_end = False
 
@@ -56,8 +68,28 @@ class Driver:
         if abs(bearing) > TURN_FIRST:
             return 0.0, turn
         to_go = max(distance, self._line.length - self._driven)
-        braking = math.sqrt(2 * 0.5 * self._limits.acceleration * to_go)
-        return min(self._limits.speed, braking) * math.cos(bearing), turn
+        speed = min(self._limits.speed, math.sqrt(self._braking * to_go), self._before_corners())
+        return speed * math.cos(bearing), turn
+
+    def _corners(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Return stations and, for each, the least of v² + 2as of the corners from there on.
+
+        Who drives with v at a station s can then still brake by a for each of them, where 2as less is left.
+        """
+        bends = self._line.turns(CORNER) / (2 * CORNER)
+        fastest = TURNING * self._limits.turn_rate / np.maximum(bends, 1e-9)
+        speeds = np.minimum(np.maximum(fastest, LEAST_SPEED), self._limits.speed)
+        stations = np.array(self._line.stations)
+        squares = speeds**2 + self._braking * stations
+        return stations, np.minimum.accumulate(squares[::-1])[::-1]
+
+    def _before_corners(self) -> float:
+        """Return the speed with which the robot can still be slow enough in each corner ahead."""
+        # One that lies just behind is still being driven round.
+        begin = np.searchsorted(self._stations, self._driven - CORNER)
+        if begin == len(self._squares):
+            return math.inf
+        return math.sqrt(max(float(self._squares[begin]) - self._braking * self._driven, LEAST_SPEED**2))
 
     def _on_last_metres(self) -> bool:
         return bool(self._driven >= self._line.length - LOOK_AHEAD)

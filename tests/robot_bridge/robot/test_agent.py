@@ -252,3 +252,14 @@ def test_it_tells_of_a_thing_once_when_it_comes_near():
     (image,) = robot.heard(SendImage)
     assert (image.image, image.object, image.source) == (PNG, "cone-7", "2")
     assert 9.0 < image.x < 12.0
+
+
+def test_when_time_passes_late_and_at_once_it_drives_as_it_would_have_step_by_step():
+    poses = []
+    for dt in (DT, 10 * DT):
+        robot = Robot()
+        robot.agent.receive(SetPath([(8.0, 0.0), (8.0, 8.0)]), 7)
+        for _ in range(round(6.0 / dt)):
+            robot.agent.step(dt)
+        poses.append(robot.agent.pose)
+    assert poses[1] == pytest.approx(poses[0], abs=0.01)

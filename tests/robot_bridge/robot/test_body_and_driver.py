@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from robot_bridge.polyline import Polyline
 from robot_bridge.robot.body import Body, BodyLimits
 from robot_bridge.robot.driver import Driver
 
@@ -82,3 +83,30 @@ def test_the_robot_turns_on_the_spot_before_it_drives_back():
     _, trace = drive((0.0, 0.0, 0.0), [(-5.0, 0.0)])
     assert max(x for x, _, _ in trace) < 0.05
     assert min(x for x, _, theta in trace if abs(theta) < 2.0) > -0.05
+
+
+CORNERS = {
+    "right angle": [(0, 0), (20, 0), (20, 20)],
+    "hairpin": [(0, 0), (20, 0), (6, 14)],
+    "there and back": [(0, 0), (20, 0), (0, 0.5)],
+    "half a circle": [
+        *((x, 0) for x in np.arange(0, 20, 0.5)),
+        *((20 + 2 * math.sin(a), 2 - 2 * math.cos(a)) for a in np.arange(0, math.pi, 0.2)),
+        *((20 - x, 4) for x in np.arange(0.5, 20, 0.5)),
+    ],
+    "waves": [(x, math.sin(x / 1.5)) for x in np.arange(0, 30, 0.25)],
+}
+
+
+@pytest.mark.parametrize("speed", [1.5, 2.5, 5.0])
+@pytest.mark.parametrize("name", CORNERS)
+def test_a_fast_robot_brakes_before_a_corner_and_keeps_to_its_path(name, speed):
+    _, trace = drive((0.0, 0.0, 0.0), CORNERS[name], limits=BodyLimits(speed=speed))
+    line = Polyline(CORNERS[name])
+    assert max(line.feet(x, y)[1].min() for x, y, _ in trace) < 0.4
+
+
+def test_a_fast_robot_is_fast_where_its_path_is_straight():
+    _, trace = drive((0.0, 0.0, 0.0), CORNERS["right angle"], limits=BodyLimits(speed=5.0))
+    steps = np.hypot(*np.diff(np.array(trace)[:, :2], axis=0).T)
+    assert steps.max() / DT > 3.5
