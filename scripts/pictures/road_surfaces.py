@@ -2,7 +2,7 @@
 
 PYTHONPATH=scripts python -m pictures.road_surfaces [docs/images]
 
-The second one is of the real track: without the data beside the project it is left as it is.
+The two of the real track are left as they are without the data beside the project.
 """
 
 from __future__ import annotations
@@ -19,6 +19,8 @@ DATA = ROOT.parent / "shared" / "data" / "zalazone"
 EXTENT = (640420.0, 5193482.0, 640620.0, 5193622.0)
 PIXELS_PER_M = 5
 MARGIN_M = 8.0
+PHOTO_PIXELS_PER_M = 2
+"""Less than the photo has: an illustration, not the photo."""
 
 
 def main() -> None:
@@ -26,7 +28,7 @@ def main() -> None:
         made = Path(place)
         sample_site(made / "sample.gpkg", folder / "road-surfaces.png")
         if DATA.is_dir():
-            real_track(made, folder / "road-surfaces-track.png")
+            real_track(made, folder / "road-surfaces-track.png", folder / "road-surfaces-photo.png")
 
 
 def sample_site(made: Path, picture: Path) -> None:
@@ -37,8 +39,11 @@ def sample_site(made: Path, picture: Path) -> None:
     draw_map(layers, EXTENT, PIXELS_PER_M, picture)
 
 
-def real_track(folder: Path, picture: Path) -> None:
-    """Draw what the lanes of the real track make, its digitised surfaces as outlines, and the real drive."""
+def real_track(folder: Path, picture: Path, beside: Path) -> None:
+    """Draw what the lanes of the real track make, its digitised surfaces as outlines, and the real drive.
+
+    ``beside`` becomes the photo of the same ground, with the outlines of what was made.
+    """
     roads = str(DATA / "university_track_centrelines.geojson")
     real = str(DATA / "university_track_surfaces_derived_utm33.gpkg")
     made = str(folder / "track.gpkg")
@@ -49,6 +54,9 @@ def real_track(folder: Path, picture: Path) -> None:
     box = surfaces.extent().buffered(MARGIN_M)
     extent = (box.xMinimum(), box.yMinimum(), box.xMaximum(), box.yMaximum())
     draw_map([_dots(drive), _outline(real, "#c01c28"), surfaces], extent, PIXELS_PER_M, picture)
+    taken = photo(DATA / "zalazone_university_track_utm33_35cm.tif")
+    lanes = _line(roads, "#ffd43b", 0.3, "solid")
+    draw_map([lanes, _outline(made, "#ffffff"), taken], extent, PHOTO_PIXELS_PER_M, beside)
 
 
 def _solid(source: str) -> Any:

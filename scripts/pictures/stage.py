@@ -68,11 +68,11 @@ def vector(source: str, *, style: str | None = None, provider: str = "ogr") -> A
     return layer
 
 
-def photo() -> Any:
-    """Return the sample site's orthophoto."""
+def photo(file: Path = SITE / "orthophoto.tif") -> Any:
+    """Return an orthophoto, the sample site's unless told otherwise."""
     from qgis.core import QgsRasterLayer
 
-    return QgsRasterLayer(str(SITE / "orthophoto.tif"), "Orthophoto", "gdal")
+    return QgsRasterLayer(str(file), "Orthophoto", "gdal")
 
 
 def draw_map(layers: list[Any], extent: Sequence[float], pixels_per_m: float, picture: Path) -> None:
