@@ -13,7 +13,7 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "scripts"))
 
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
-    # A shell starts what runs in its background deaf to Ctrl-C; so would be the programs that a test ends by it.
+    # A shell starts what runs in its background deaf to Ctrl-C, and with it what the tests start.
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
