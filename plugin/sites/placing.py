@@ -33,13 +33,14 @@ class PlacingError(Exception):
 class SitePlacing:
     """Where the site is: its CRS (invalid when nothing has one) and its frame in it.
 
-    ``local`` says that layers whose place is not known are in the site frame's metres already.
+    ``local`` says whether layers whose place is not known are in the site frame's metres already; None: they
+    cannot be, and nobody is asked.
     """
 
     crs: QgsCoordinateReferenceSystem
     frame: SiteFrame
     transform_context: QgsCoordinateTransformContext
-    local: bool = False
+    local: bool | None = None
 
     def of_layer(self, name: str, crs: QgsCoordinateReferenceSystem) -> LayerPlacing:
         """Return how the coordinates of the layer ``name`` come into the site frame.
@@ -56,6 +57,8 @@ class SitePlacing:
         return LayerPlacing(QgsCoordinateTransform(crs, self.crs, self.transform_context), self.frame)
 
     def _why_unplaced(self, name: str, crs: QgsCoordinateReferenceSystem) -> str:
+        if self.local is None:
+            return _why_not_related(name, crs, self.crs)
         tick = tr("tick 'Layers without a CRS are already in the site frame's metres' (LOCAL=true)")
         if not crs.isValid():
             return tr(
@@ -72,6 +75,24 @@ class SitePlacing:
             site_crs=crs_name(self.crs),
             tick=tick,
         )
+
+
+def _why_not_related(
+    name: str, crs: QgsCoordinateReferenceSystem, others: QgsCoordinateReferenceSystem
+) -> str:
+    if not crs.isValid():
+        return tr(
+            "The layer {name} has no CRS, so its place is not known: set the layer's CRS (Layer > Set CRS of "
+            "Layer).",
+            name=name,
+        )
+    return tr(
+        "The layer {name} is in the CRS {crs}, which has no known relation to the CRS {site_crs}: give both "
+        "layers a CRS that says where on the Earth they are.",
+        name=name,
+        crs=crs_name(crs),
+        site_crs=crs_name(others),
+    )
 
 
 @dataclass(frozen=True)

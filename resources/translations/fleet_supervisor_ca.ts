@@ -7547,8 +7547,18 @@
         </message>
         <message>
             <location filename="../../plugin/sites/placing.py" />
+            <source>The layer {name} has no CRS, so its place is not known: set the layer's CRS (Layer &gt; Set CRS of Layer).</source>
+            <translation>La capa {name} no té SRC, per això no se'n coneix el lloc: definiu el SRC de la capa (Capa &gt; Defineix el SRC de la capa).</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/placing.py" />
             <source>The layer {name} has no CRS, so its place on the site is not known: set the layer's CRS (Layer &gt; Set CRS of Layer), or {tick}.</source>
             <translation>La capa {name} no té SRC, així que el seu lloc al recinte no es coneix: definiu el SRC de la capa (Capa &gt; Defineix el SRC de la capa), o {tick}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/placing.py" />
+            <source>The layer {name} is in the CRS {crs}, which has no known relation to the CRS {site_crs}: give both layers a CRS that says where on the Earth they are.</source>
+            <translation>La capa {name} és en el SRC {crs}, que no té cap relació coneguda amb el SRC {site_crs}: doneu a les dues capes un SRC que digui on són a la Terra.</translation>
         </message>
         <message>
             <location filename="../../plugin/sites/placing.py" />

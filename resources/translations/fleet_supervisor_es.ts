@@ -7547,8 +7547,18 @@
         </message>
         <message>
             <location filename="../../plugin/sites/placing.py" />
+            <source>The layer {name} has no CRS, so its place is not known: set the layer's CRS (Layer &gt; Set CRS of Layer).</source>
+            <translation>La capa {name} no tiene SRC, por eso no se conoce su lugar: defina el SRC de la capa (Capa &gt; Establecer SRC de la capa).</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/placing.py" />
             <source>The layer {name} has no CRS, so its place on the site is not known: set the layer's CRS (Layer &gt; Set CRS of Layer), or {tick}.</source>
             <translation>La capa {name} no tiene SRC, así que su lugar en el recinto no se conoce: defina el SRC de la capa (Capa &gt; Establecer SRC de la capa), o {tick}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/placing.py" />
+            <source>The layer {name} is in the CRS {crs}, which has no known relation to the CRS {site_crs}: give both layers a CRS that says where on the Earth they are.</source>
+            <translation>La capa {name} está en el SRC {crs}, que no tiene relación conocida con el SRC {site_crs}: dé a ambas capas un SRC que diga dónde están en la Tierra.</translation>
         </message>
         <message>
             <location filename="../../plugin/sites/placing.py" />

@@ -7543,8 +7543,18 @@
         </message>
         <message>
             <location filename="../../plugin/sites/placing.py" />
+            <source>The layer {name} has no CRS, so its place is not known: set the layer's CRS (Layer &gt; Set CRS of Layer).</source>
+            <translation>A(z) {name} rétegnek nincs vetülete, ezért a helye nem ismert: állítsa be a réteg vetületét (Réteg &gt; Réteg vetületének beállítása).</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/placing.py" />
             <source>The layer {name} has no CRS, so its place on the site is not known: set the layer's CRS (Layer &gt; Set CRS of Layer), or {tick}.</source>
             <translation>A(z) {name} rétegnek nincs vetülete, így helye a telephelyen nem ismert: állítsa be a réteg vetületét (Réteg &gt; Réteg vetületének beállítása), vagy {tick}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/placing.py" />
+            <source>The layer {name} is in the CRS {crs}, which has no known relation to the CRS {site_crs}: give both layers a CRS that says where on the Earth they are.</source>
+            <translation>A(z) {name} réteg vetülete {crs}, amelynek nincs ismert kapcsolata ezzel: {site_crs}. Adjon mindkét rétegnek olyan vetületet, amely megmondja, hol vannak a Földön.</translation>
         </message>
         <message>
             <location filename="../../plugin/sites/placing.py" />

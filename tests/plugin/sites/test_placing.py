@@ -13,6 +13,9 @@ from fleet_supervisor.robot_bridge.sites.frame import SiteFrame
 from qgis.core import QgsCoordinateReferenceSystem, QgsCoordinateTransformContext
 
 ORIGIN = (640420.0, 5193480.0)
+ENGINEERING = (
+    'ENGCRS["yard",EDATUM["yard"],CS[Cartesian,2],AXIS["x",east],AXIS["y",north],LENGTHUNIT["metre",1]]'
+)
 
 
 def test_degrees_become_the_metres_that_pyproj_and_the_frame_give(make_layer, read):
@@ -37,6 +40,17 @@ def test_a_layer_without_a_crs_is_refused_by_name_unless_it_is_said_to_be_local(
         read(layer)
     (row,) = read(layer, local=True, origin=ORIGIN, rotation=1.0).rows
     assert row.points.tolist() == [[1, 2], [3, 4]]
+
+
+@pytest.mark.parametrize(
+    ("crs", "why"), [("", "has no CRS"), (ENGINEERING, "is in the CRS yard.*EPSG:32633")]
+)
+def test_where_nobody_is_asked_whether_a_layer_is_local_no_such_choice_is_advised(qgis_app, crs, why):
+    site = QgsCoordinateReferenceSystem("EPSG:32633")
+    placing = SitePlacing(site, SiteFrame("EPSG:32633", ORIGIN), QgsCoordinateTransformContext())
+    with pytest.raises(LayerCrsError, match=f"The layer scan {why}") as error:
+        placing.of_layer("scan", QgsCoordinateReferenceSystem.fromWkt(crs))
+    assert "LOCAL" not in str(error.value)
 
 
 def test_an_engineering_layer_on_another_site_crs_is_refused_by_name(data, read):
