@@ -277,7 +277,7 @@ def report(run: Run, minutes: float) -> str:
         **{what: growth(run.samples, minutes * 60, what) for what in ("megabytes", "in_use", "blocks")},
         first=run.unloaded[0],
         last=run.unloaded[-1],
-        kept=kept_of_a_version(run.unloaded),
+        kept=_kept_in_words(kept_of_a_version(run.unloaded)),
         wrong="Wrong in all of this: nothing."
         if not wrong
         else "Wrong:\n\n" + "\n".join(f"- {w}" for w in wrong),
@@ -287,6 +287,12 @@ def report(run: Run, minutes: float) -> str:
         places=_places(run.end),
         load=os.getloadavg()[0],
     )
+
+
+def _kept_in_words(kept: float) -> str:
+    if np.isnan(kept):
+        return "there were too few reloads to tell what each one leaves"
+    return f"each reload left {kept:,.0f} pieces of Python's"
 
 
 def _table(samples: Sequence[Sample]) -> str:
@@ -364,7 +370,7 @@ Over the last {counted:.0f} of {minutes:.0f} minutes the process grew by {megaby
 in use of it, and not free to be used again, by {in_use:+.0f} MB an hour, and what Python had for its objects
 by {blocks:+,.0f} pieces an hour. With the plugin unloaded {first.megabytes:.0f} MB were in use after the
 first time, {first.rasters:.0f} of them GDAL's, and {last.megabytes:.0f} MB after the last, {last.rasters:.0f}
-of them GDAL's; each reload left {kept:,.0f} pieces of Python's.
+of them GDAL's; {kept}.
 
 What grows, as a heap profiler tells by comparing two moments some minutes apart:
 
