@@ -84,7 +84,12 @@ class Hand:
         QTest.qWait(150)
         return self.gateway.asked("send") == [] and self.gateway.asked("add_tasks") == []
 
-    def complained(self, part: str) -> bool:
+    def complained(self, *parts: str) -> bool:
+        """Wait until one of ``parts`` stands in the message bar: a check may take its time."""
+        self.wait(lambda: any(map(self.is_told, parts)), what=" or ".join(parts))
+        return True
+
+    def is_told(self, part: str) -> bool:
         return any(part in text for text in self.iface.texts())
 
 

@@ -82,7 +82,7 @@ def test_a_draft_that_was_moved_meanwhile_has_nothing_of_the_check_before(slow, 
     settle(slow)
     assert slow.nothing_sent()
     assert slow.drafts.draft.findings.faults == ()
-    assert not slow.complained("enters the keepout Bay")
+    assert not slow.is_told("enters the keepout Bay")
     slow.click((70, 55))
     settle(slow)
     assert "enters the keepout Bay" in slow.told

@@ -98,6 +98,7 @@ def test_a_killed_gateway_ages_the_robots_and_its_return_repeats_nothing(impatie
     operator.wait("r1 coming back", lambda: operator.states()["r1"] == "fresh", 30)
     command = operator.wait_for_state("r1", "SetPosEnd", CommandState.REACHED)
     assert len(operator.sent_to("r1")) == 1
+    operator.wait("where r1 is", lambda: operator.report("r1").x is not None, 10)
     assert off(operator.report("r1"), command.params["x"], command.params["y"]) <= TOLERANCE
 
 
