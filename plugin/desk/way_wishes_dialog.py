@@ -30,7 +30,7 @@ class WayWishesDialog(QuestionDialog):
         self._way = self.add_choice(tr("Way"), WAYS, "fleet_way_wishes_way")
         self._way.setCurrentIndex(self._way.findData(wishes.fastest))
         self._surfaces = QLineEdit(", ".join(wishes.surfaces))
-        self._surfaces.setPlaceholderText(tr("all; or names with commas, such as: asphalt, concrete"))
+        self._surfaces.setPlaceholderText(tr("all, or such as: asphalt, concrete"))
         self.add_field(tr("Surfaces"), self._surfaces, "fleet_way_wishes_surfaces")
         self._width = _metres(wishes.least_width)
         self.add_field(tr("Width"), self._width, "fleet_way_wishes_width")

@@ -4303,8 +4303,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/way_wishes_dialog.py" />
-            <source>all; or names with commas, such as: asphalt, concrete</source>
-            <translation>todas; o nombres con comas, como: asphalt, concrete</translation>
+            <source>all, or such as: asphalt, concrete</source>
+            <translation>todas, o como: asphalt, concrete</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/way_wishes_dialog.py" />

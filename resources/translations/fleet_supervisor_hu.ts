@@ -4299,8 +4299,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/way_wishes_dialog.py" />
-            <source>all; or names with commas, such as: asphalt, concrete</source>
-            <translation>mind; vagy nevek vesszővel, például: asphalt, concrete</translation>
+            <source>all, or such as: asphalt, concrete</source>
+            <translation>mind, vagy például: asphalt, concrete</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/way_wishes_dialog.py" />
