@@ -23,6 +23,8 @@ from inside_qgis.session import Session, end, start
 
 TIMEOUT = 30
 DRIVING = 120
+BETWEEN_GATES = 1.4
+"""Seconds until a robot that leaves a gate of cones is far from it, and not yet near the next."""
 
 
 class Film:
@@ -64,6 +66,11 @@ class Film:
         """Return how many cones the panel says are placed."""
         words = self.text("fleet_plan_text").split()
         return int(words[words.index("of") - 1]) if "of" in words and words[0] in ("Under", "Done:") else 0
+
+    def placed_by(self, robot: str) -> int:
+        """Return how many cones the command log says that a robot has reached."""
+        ours = f"{robot} · cone"
+        return sum(c.state == "reached" for c in self.operator.commands() if c.what.startswith(ours))
 
 
 def work(session: Session) -> None:
@@ -123,6 +130,8 @@ def send(film: Film) -> None:
 
 
 def go_on_without_r1(film: Film) -> None:
+    film.operator.wait("r1 leaving its second gate", lambda: film.placed_by("r1") >= 4, DRIVING)
+    film.operator.pause(BETWEEN_GATES)
     film.session.happened("kill r1", "r1 is killed")
     film.operator.wait("r1 being missed", lambda: "r1 is lost" in film.text("fleet_plan_trouble"), TIMEOUT)
     film.shoot("lost", film.text("fleet_plan_trouble"))
