@@ -52,19 +52,18 @@ class Polyline:
 
         It is the angle between the ways from ``reach`` metres before the point, and to as far behind it.
         """
-        before, after = (self._places(self._stations + step) for step in (-reach, reach))
+        before, after = (np.column_stack(self._along(self._stations + step)) for step in (-reach, reach))
         came, goes = self._points - before, after - self._points
         turned = np.arctan2(*goes.T[::-1]) - np.arctan2(*came.T[::-1])
         still = (np.hypot(*came.T) < 1e-9) | (np.hypot(*goes.T) < 1e-9)
         return np.where(still, 0.0, np.abs(np.remainder(turned + np.pi, 2 * np.pi) - np.pi))
 
-    def _places(self, stations: NDArray[np.float64]) -> NDArray[np.float64]:
-        columns = [np.interp(stations, self._stations, column) for column in self._points.T]
-        return np.column_stack(columns)
-
     def at(self, station: float) -> tuple[float, float]:
         """Return the point at ``station``; before the beginning the first, beyond the end the last."""
-        return (
-            float(np.interp(station, self._stations, self._points[:, 0])),
-            float(np.interp(station, self._stations, self._points[:, 1])),
-        )
+        x, y = self._along(station)
+        return float(x), float(y)
+
+    def _along(self, stations: float | NDArray[np.float64]) -> tuple[Any, Any]:
+        """Return x and y at one or many stations."""
+        x, y = (np.interp(stations, self._stations, column) for column in self._points.T)
+        return x, y

@@ -54,6 +54,8 @@ class RoutePreview(QObject):
         self._asked: tuple[str, Question, float] | None = None
         self._next: Question | None = None
         self.route: RouteReport | None = None
+        self.wishes = SHORTEST
+        """What was wanted of that way."""
         self.why_not = ""
         """Why there is no way to where the mouse is."""
 
@@ -88,7 +90,7 @@ class RoutePreview(QObject):
         return True
 
     def _show(self, question: Question, answer: Answer) -> None:
-        self.route, self.why_not = None, answer.error or ""
+        self.route, self.wishes, self.why_not = None, question.wishes, answer.error or ""
         if answer.error is None:
             try:
                 self.route = route_report(answer.result or {})

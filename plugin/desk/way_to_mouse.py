@@ -29,7 +29,6 @@ class WayToMouse:
         self._desk = desk
         self._band: QgsRubberBand | None = None
         self._mouse: QPoint | None = None
-        self._wishes = SHORTEST
         desk.preview.shown.connect(self._show)
         desk.selection_changed.connect(self._hide)
 
@@ -41,7 +40,7 @@ class WayToMouse:
         wishes: WayWishes = SHORTEST,
     ) -> None:
         """Have the way shown from ``start``, or from where the robot is, to where the mouse is."""
-        self._mouse, self._wishes = QCursor.pos(), wishes
+        self._mouse = QCursor.pos()
         if robot is None:
             return
         try:
@@ -76,10 +75,11 @@ class WayToMouse:
 
     def _show(self) -> None:
         self._take_away()
-        route = self._desk.preview.route
+        preview = self._desk.preview
+        route = preview.route
         if self._mouse is None:
             return
-        text = self._desk.preview.why_not if route is None else in_words(route, self._wishes, apart="\n")
+        text = preview.why_not if route is None else in_words(route, preview.wishes, apart="\n")
         QToolTip.showText(self._mouse + BESIDE, text, self._desk.canvas)
         if route is not None:
             self._draw(route)

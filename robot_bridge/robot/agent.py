@@ -120,7 +120,8 @@ class Agent:
 
     def step(self, dt: float) -> None:
         """Let ``dt`` seconds pass: drive, and say where the robot is when it is time."""
-        steps = max(1, math.ceil(dt / STEER_EVERY))
+        # A step that comes a little late is one step all the same.
+        steps = max(1, round(dt / STEER_EVERY))
         for _ in range(steps):
             self._move(dt / steps)
         if not self._admitted:

@@ -11,13 +11,12 @@ from sqlalchemy import URL
 
 from ..access.credentials import Credentials
 from ..messages import Request, check_robot_name
-from .agent import Agent, AgentSettings
+from .agent import STEER_EVERY, Agent, AgentSettings
 from .body import BodyLimits, Pose
 from .sightings import Thing
 from .sql_link import SqlLink
 from .websocket_link import WebSocketLink
 
-STEP = 0.05
 ALIVE_INTERVAL = 1.0
 
 
@@ -73,7 +72,7 @@ async def run(settings: RobotSettings, stop: asyncio.Event) -> None:
     ]
     done, _ = await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
     agent.stop()
-    await asyncio.sleep(2 * STEP)
+    await asyncio.sleep(2 * STEER_EVERY)
     for task in tasks:
         task.cancel()
     await asyncio.gather(*tasks, return_exceptions=True)
@@ -94,9 +93,9 @@ async def _live(agent: Agent) -> None:
     loop = asyncio.get_running_loop()
     last = loop.time()
     while True:
-        await asyncio.sleep(STEP)
+        await asyncio.sleep(STEER_EVERY)
         now = loop.time()
-        agent.step(min(now - last, 10 * STEP))
+        agent.step(min(now - last, 10 * STEER_EVERY))
         last = now
 
 
