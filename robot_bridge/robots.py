@@ -23,7 +23,9 @@ Report = TypeVar("Report")
 class Robot:
     """One robot. ``received_at`` is the gateway's time of its last message, ``pose_at`` that of its pose.
 
-    ``latency`` is the seconds that its link took there and back when that was last measured.
+    ``latency`` is the seconds that its link took there and back when that was last measured. ``located`` is
+    true once it has said where it is since its last Ready: until then its pose is what was stored of it, or
+    what it was before its link broke, and it may have driven on unseen.
     """
 
     name: str
@@ -33,6 +35,7 @@ class Robot:
     ended_in_order: bool = False
     pose: SendPos | None = None
     pose_at: float | None = None
+    located: bool = False
     state: RobotState = RobotState.FRESH
     command: str | None = None
     latency: float | None = None
@@ -85,7 +88,7 @@ class Robots:
             # A robot that started anew may have a clock that did so too.
             robot.pose = replace(robot.pose, t=None)
             robot.order.restarted()
-        robot.magic, robot.link = magic, link
+        robot.magic, robot.link, robot.located = magic, link, False
         self.heard(name, link, now)
         return started
 
@@ -104,7 +107,7 @@ class Robots:
         self.heard(name, link, now, stopped=standing_still)
         if not robot.order.admit(pose.fix_t, pose.t, link, now):
             return False
-        robot.pose, robot.pose_at = pose, now
+        robot.pose, robot.pose_at, robot.located = pose, now, True
         return True
 
     def closed(self, name: str) -> None:

@@ -222,6 +222,8 @@ class QueueDriving:
         other = self.waits_for(robot, head.id)
         if other is not None:
             return f"waits for {other}"
+        if head.task.path is not None and not self._robots.get(robot).located:
+            return "waits for the robot to say where it is"
         # What was begun is not given up because of what another robot does.
         return None if head.is_current else await self._precedence.waits_for(robot, head.task)
 
@@ -237,11 +239,11 @@ class QueueDriving:
         if not isinstance(message, SetPath):
             return message
         pose = self._robots.get(queue.robot).pose
-        here = None if pose is None else (pose.x, pose.y)
+        assert pose is not None
         before = None if head.command is None else await self._stored(head.command)
         driven = 0.0 if before is None else before.driven or 0.0
         join = before is not None or head.task.kind is not TaskKind.DRIVE
-        return path_left(message, here, driven, join=join)
+        return path_left(message, (pose.x, pose.y), driven, join=join)
 
     async def _send(
         self,

@@ -55,15 +55,13 @@ def cone_place(stood: tuple[float, float, float], offset: Offset) -> Place:
     return x + ahead, y + left
 
 
-def path_left(path: SetPath, here: Place | None, driven: float, *, join: bool) -> SetPath:
+def path_left(path: SetPath, here: Place, driven: float, *, join: bool) -> SetPath:
     """Return what a robot that stands ``here`` has to drive of ``path``, of which it has driven some metres.
 
     With ``join`` it may go on from where it is beside it, else it has to stand at the beginning.
 
     :raises RefusedError: when the robot is too far off; how it gets there is for people to say.
     """
-    if here is None:
-        raise RefusedError("it is not known where the robot is; wait for its position")
     away = math.dist(here, path.points[0])
     if away <= CORRIDOR and driven <= CORRIDOR:
         return path

@@ -160,6 +160,30 @@ async def test_a_lost_robot_is_sent_nothing_and_goes_on_when_it_is_back_in_time(
     assert await line.sent() == [PLACES["a"], PLACES["b"]]
 
 
+async def test_a_path_waits_until_its_robot_has_said_where_it_is(line):
+    """What is stored of a robot is older than what brought it to where the path begins."""
+    path = [PLACES["a"], PLACES["b"]]
+    await line.yard.fleet.save()
+    await line.set(task("a"), task("b", path=path))
+    await line.yard.take()
+    await line.yard.at(*PLACES["a"])  # reached, and the gateway ends before it looks at the queue
+    await line.yard.restart()
+    for again in range(2):
+        await line.go()
+        report = await line.seen()
+        assert (report.state.value, report.tasks[0].reason) == (
+            "running",
+            "waits for the robot to say where it is",
+        )
+        if not again:
+            await line.yard.ready()
+    assert await line.sent() == [PLACES["a"]]
+    await line.yard.at(*PLACES["a"])
+    await line.go()
+    assert (await line.sent())[1:] == ["SetPath"]
+    assert (await line.seen()).tasks[0].reason is None
+
+
 async def test_a_robot_that_was_away_for_long_is_not_sent_off_by_surprise(line):
     await line.set(task("a"), task("b"))
     await line.yard.take()

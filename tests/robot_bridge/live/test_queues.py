@@ -19,23 +19,21 @@ def bridge(start_bridge, sample_site):
 
 
 class Operator:
-    """An operator's connection that keeps the newest of each queue, and every cone that was put down."""
+    """An operator's connection that also keeps every cone that was put down."""
 
     def __init__(self, bridge):
         self.desk = bridge.desk()
-        self.queues, self.placed = {}, {}
+        self.queues, self.placed = self.desk.queues, {}
         hear = self.desk._hear
 
         def listen(frame):
             hear(frame)
-            if frame["method"] == "queue":
-                self.queues[frame["params"]["robot"]] = frame["params"]
             if frame["method"] == "placement":
                 self.placed[frame["params"]["task"]] = frame["params"]
 
         self.desk._hear = listen
         self.desk.ask("subscribe", {"rate": 20})
-        self.queues = {q["robot"]: q for q in self.ask("get_queue")["queues"]}
+        self.queues.update({q["robot"]: q for q in self.ask("get_queue")["queues"]})
 
     def ask(self, method, **params):
         return self.desk.ask(method, params)

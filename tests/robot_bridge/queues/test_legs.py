@@ -76,7 +76,6 @@ def test_of_a_loop_nothing_is_left_out_that_was_not_driven():
 @pytest.mark.parametrize(
     ("here", "driven", "join", "said"),
     [
-        (None, 0.0, True, "it is not known where the robot is"),
         ((10.0, 0.0), 0.0, False, r"stands 10\.0 m from where the path begins"),
         ((10.0, 3.0), 0.0, True, r"stands 3\.0 m off what is left of the path"),
         ((0.0, 0.0), 15.0, True, r"stands 15\.0 m off what is left"),

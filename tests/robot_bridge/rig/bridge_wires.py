@@ -89,12 +89,13 @@ class Wire:
 
 
 class Desk(Wire):
-    """An operator's connection; keeps the newest report of each robot and command, and every snapshot."""
+    """An operator's connection; keeps the newest report of each robot, queue and command, and every snapshot."""
 
     def __init__(self, url: str, operator: str, **options: Any):
         super().__init__(url, **options)
         self.robots: dict[str, dict[str, Any]] = {}
         self.commands: dict[str, dict[str, Any]] = {}
+        self.queues: dict[str, dict[str, Any]] = {}
         self.observations: dict[int, dict[str, Any]] = {}
         self.snapshots: list[dict[str, Any]] = []
         self.hello = self.ask("hello", {"operator": operator})
@@ -116,7 +117,7 @@ class Desk(Wire):
         return self.commands[command]
 
     def state(self) -> str:
-        return json.dumps({"robots": self.robots, "commands": self.commands}, indent=1)
+        return json.dumps({"robots": self.robots, "commands": self.commands, "queues": self.queues}, indent=1)
 
     def _hear(self, frame: dict[str, Any]) -> None:
         if frame["method"] == "positions":
@@ -126,6 +127,8 @@ class Desk(Wire):
             self.observations[frame["params"]["observation"]] = frame["params"]
         elif frame["method"] == "emergency":
             self.emergency = frame["params"]
+        elif frame["method"] == "queue":
+            self.queues[frame["params"]["robot"]] = frame["params"]
         elif frame["method"] == "command":
             self.commands[frame["params"]["command"]] = frame["params"]
 
