@@ -89,7 +89,7 @@ class Wire:
 
 
 class Desk(Wire):
-    """An operator's connection; keeps the newest report of each robot, queue and command, and every snapshot."""
+    """An operator's connection; keeps the newest report of each robot, queue and command, all snapshots."""
 
     def __init__(self, url: str, operator: str, **options: Any):
         super().__init__(url, **options)
