@@ -64,12 +64,14 @@ ROWS = 15
 class Sample:
     """What there was ``at`` so many seconds after the begin; ``drops`` and ``reloads`` so far.
 
-    ``megabytes`` is what the process has, ``in_use`` what of it is not free to be used again, ``rasters``
-    what of that GDAL keeps of rasters that it read, ``blocks`` how many pieces Python has for its objects.
+    ``megabytes`` is what the process has, ``files`` what of it is of files or shared, ``in_use`` what of the
+    rest is not free to be used again, ``rasters`` what of that GDAL keeps of rasters that it read, ``blocks``
+    how many pieces Python has for its objects.
     """
 
     at: float
     megabytes: float
+    files: float
     in_use: float
     rasters: float
     blocks: int
@@ -300,7 +302,8 @@ def _table(samples: Sequence[Sample]) -> str:
     head = [
         "minute",
         "memory, MB",
-        "of it in use",
+        "of it files'",
+        "in use",
         "of that GDAL's",
         "links dropped",
         "reloads",
@@ -315,6 +318,7 @@ def _table(samples: Sequence[Sample]) -> str:
             [
                 f"{one.at / 60:.1f}",
                 f"{one.megabytes:.0f}",
+                f"{one.files:.0f}",
                 f"{one.in_use:.0f}",
                 f"{one.rasters:.0f}",
                 one.drops,

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import ctypes
-import resource
 from pathlib import Path
 
 from osgeo import gdal
+
+_PARTS = ("RssAnon", "RssFile", "RssShmem")
 
 
 class _Mallinfo(ctypes.Structure):
@@ -17,10 +18,16 @@ class _Mallinfo(ctypes.Structure):
     ]
 
 
-def megabytes() -> float:
-    """Return the memory that the system has given to this process."""
-    pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[1])
-    return pages * resource.getpagesize() / 1e6
+def megabytes() -> tuple[float, float]:
+    """Return the memory that the system has given to this process, and what of it is of files and shared."""
+    lines = Path("/proc/self/status").read_text(encoding="ascii").splitlines()
+    kilobytes = {
+        name: float(rest.split()[0])
+        for name, _, rest in (line.partition(":") for line in lines)
+        if name in _PARTS
+    }
+    own, *others = (kilobytes[name] * 1.024e-3 for name in _PARTS)
+    return own + sum(others), sum(others)
 
 
 def megabytes_in_use() -> float:

@@ -129,11 +129,13 @@ class Endurance:
     def _sample(self) -> None:
         self._pulse.hold()
         gc.collect()
+        all_of_it, files = megabytes()
         self._session.happened(
             "sample",
             "",
             at=time.monotonic() - self._began,
-            megabytes=megabytes(),
+            megabytes=all_of_it,
+            files=files,
             in_use=megabytes_in_use(),
             rasters=megabytes_of_rasters(),
             blocks=sys.getallocatedblocks(),

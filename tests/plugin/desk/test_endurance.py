@@ -47,7 +47,7 @@ def test_rasters_that_gdal_keeps_are_bounded_and_known(run):
 
 
 def test_memory_that_grows_is_seen():
-    samples = [Sample(10.0 * k, 500.0 + k, 100.0, 16.0, 1000 * k, 0, 10, 2, 24, 0) for k in range(60)]
+    samples = [Sample(10.0 * k, 500.0 + k, 200.0, 100.0, 16.0, 1000 * k, 0, 10, 2, 24, 0) for k in range(60)]
     assert growth(samples, 600.0, "megabytes") == pytest.approx(360.0)
     assert growth(samples, 600.0, "in_use") == pytest.approx(0.0, abs=1e-6)
     assert growth(samples, 600.0, "blocks") == pytest.approx(360_000.0)
@@ -55,7 +55,8 @@ def test_memory_that_grows_is_seen():
 
 def test_a_warm_up_does_not_count_as_growth():
     samples = [
-        Sample(10.0 * k, min(500.0 + 50 * k, 700.0), 100.0, 16.0, 0, 0, 10, 2, 24, 0) for k in range(60)
+        Sample(10.0 * k, min(500.0 + 50 * k, 700.0), 200.0, 100.0, 16.0, 0, 0, 10, 2, 24, 0)
+        for k in range(60)
     ]
     assert growth(samples, 600.0, "megabytes") == pytest.approx(0.0, abs=1e-6)
 
