@@ -20,17 +20,25 @@ MOST = 50
 class RobotFilter(QgsLocatorFilter):
     """Finds robots by any part of their name; ``go`` is called with the one that was chosen.
 
+    ``typed`` returns what stands in the locator's field, None where there is none.
+
     QGIS looks with a clone of the filter, in the window's thread: it is fast. In a thread of its own it could
     wait for Python for ever, where the plugin is unloaded meanwhile and QGIS waits for that thread.
     """
 
-    def __init__(self, fleet: FleetNow, icons: Mapping[str, QIcon], go: Callable[[str], None]):
+    def __init__(
+        self,
+        fleet: FleetNow,
+        icons: Mapping[str, QIcon],
+        go: Callable[[str], None],
+        typed: Callable[[], str | None],
+    ):
         super().__init__()
-        self._fleet, self._icons, self._go = fleet, icons, go
+        self._fleet, self._icons, self._go, self._typed = fleet, icons, go, typed
         self._robots: RobotsNow | None = None
 
     def clone(self):
-        return RobotFilter(self._fleet, self._icons, self._go)
+        return RobotFilter(self._fleet, self._icons, self._go, self._typed)
 
     def name(self):
         return NAME
@@ -59,10 +67,28 @@ class RobotFilter(QgsLocatorFilter):
         for score, name in ranked(string, list(robots.rows))[:MOST]:
             if feedback.isCanceled():
                 return
-            self.resultFetched.emit(self._result(name, robots, score))
+            result = self._result(name, robots, score)
+            result.userData = string.strip()
+            self.resultFetched.emit(result)
 
     def triggerResult(self, result: QgsLocatorResult):
-        self._go(result.displayString)
+        # QGIS looks a moment after the last letter. Whoever presses Enter sooner is given a row of what was
+        # typed before, which may be another robot: what is typed counts.
+        typed = self._typed_name()
+        if typed is None or typed == result.userData:
+            self._go(result.displayString)
+        elif self._fleet.robots is not None:
+            for _, name in ranked(typed, list(self._fleet.robots.rows))[:1]:
+                self._go(name)
+
+    def _typed_name(self) -> str | None:
+        """Return what stands in the locator's field behind the prefix."""
+        text = self._typed()
+        if text is None:
+            return None
+        prefix, space, name = text.partition(" ")
+        behind = name if space and prefix.casefold() == self.activePrefix().casefold() else text
+        return behind.strip()
 
     def _result(self, name: str, robots: RobotsNow, score: float) -> QgsLocatorResult:
         state, age = robots.state(name), robots.silence(name)
@@ -72,7 +98,6 @@ class RobotFilter(QgsLocatorFilter):
         result.description = (
             told if age is None else tr("{state}, heard of {age:.0f} s ago", state=told, age=age)
         )
-        result.group = tr("Robots")
         result.score = score
         if state in self._icons:
             result.icon = self._icons[state]

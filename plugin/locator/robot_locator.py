@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from qgis.core import Qgis, QgsSettings
-from qgis.gui import QgisInterface
+from qgis.gui import QgisInterface, QgsLocatorWidget
 from qgis.PyQt.QtGui import QIcon
+from qgis.PyQt.QtWidgets import QLineEdit
 
 from ..desk.glyphs import state_icon
 from ..desk.picture import STATES
@@ -24,7 +25,7 @@ class RobotLocator:
     """The filter as long as the plugin is loaded. :meth:`remove` undoes the constructor."""
 
     def __init__(self, iface: QgisInterface, fleet: FleetNow, go: Callable[[str], None]):
-        self._iface, self._filter = iface, RobotFilter(fleet, _icons(), go)
+        self._iface, self._filter = iface, RobotFilter(fleet, _icons(), go, self._typed)
         settings = QgsSettings()
         # As if the user had chosen it: of plugins themselves QGIS takes none of less than three letters.
         if not settings.value(PREFIX_KEY, ""):
@@ -37,6 +38,12 @@ class RobotLocator:
         settings = QgsSettings()
         if settings.value(PREFIX_KEY, "") == PREFIX:
             settings.remove(PREFIX_KEY)
+
+    def _typed(self) -> str | None:
+        """Return what stands in the locator's field of the window, None where the window has none."""
+        locator = self._iface.mainWindow().findChild(QgsLocatorWidget)
+        field = None if locator is None else locator.findChild(QLineEdit)
+        return None if field is None else field.text()
 
 
 def _icons() -> dict[str, QIcon]:

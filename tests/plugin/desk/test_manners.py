@@ -22,7 +22,7 @@ from qgis.core import (
     QgsProject,
     QgsSettings,
 )
-from qgis.gui import QgsGui
+from qgis.gui import QgsGui, QgsLocatorWidget
 from qgis.PyQt.QtCore import QCoreApplication, QEvent, Qt, QThread, QUrl
 from qgis.PyQt.QtTest import QSignalSpy, QTest
 from qgis.PyQt.QtWidgets import (
@@ -68,6 +68,40 @@ def test_rb_and_a_name_finds_robots_goes_there_and_selects(at_desk, iface, wait,
     assert at_desk.desk.selection == ("forklift-12",)
     centre = iface.canvas.center()
     assert (centre.x() - 488000, centre.y() - 5190000) == pytest.approx((150, 120), abs=1)
+
+
+@pytest.mark.parametrize(
+    ("typed", "goes_to"),
+    [
+        ("rb r1", ["r1"]),
+        ("RB r1 ", ["r1"]),
+        # QGIS has not looked for the last letters yet, and hands on what it found for those before.
+        ("rb r2", ["r2"]),
+        ("r2", ["r2"]),
+        ("rb r27", []),
+        ("roads", []),
+    ],
+)
+def test_enter_before_the_list_is_there_goes_by_what_is_typed(
+    at_desk, iface, wait, monkeypatch, typed, goes_to
+):
+    locator = QgsLocatorWidget(iface.mainWindow())
+    locator.findChild(QLineEdit).setText(typed)
+    wait(lambda: QgsExpression("robot_state('r2') IS NOT NULL").evaluate())
+    (result,) = found(iface, "rb r1", wait)
+    gone_to = []
+    monkeypatch.setattr(result.filter, "_go", gone_to.append)
+    result.filter.triggerResult(result)
+    assert gone_to == goes_to
+
+
+def test_a_row_that_was_chosen_counts(at_desk, iface, wait):
+    locator = QgsLocatorWidget(iface.mainWindow())
+    locator.findChild(QLineEdit).setText("rb r")
+    wait(lambda: QgsExpression("robot_state('r2') IS NOT NULL").evaluate())
+    _, second = found(iface, "rb r", wait)
+    second.filter.triggerResult(second)
+    assert at_desk.desk.selection == ("r2",)
 
 
 def test_rb_alone_lists_every_robot(at_desk, iface, wait):
