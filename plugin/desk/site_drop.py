@@ -1,16 +1,20 @@
-"""A published site that is dropped onto the QGIS window is loaded."""
+"""A published site that is dropped onto the QGIS window is loaded, from QGIS's browser panel, too."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
-from qgis.core import QgsProject
+from qgis.core import QgsMimeDataUtils, QgsProject
 from qgis.gui import QgisInterface, QgsCustomDropHandler
+from qgis.PyQt.QtCore import QMimeData
 
 from ..errors import FleetError
 from ..language import tr
 from ..sites.published_layers import LoadedSite, load_site, loaded_already, site_folder
 from .notices import Notices
+
+WHOLE = ("directory", "collection")
+"""What the browser panel calls a folder, and a GeoPackage with all that is in it; a layer of it goes alone."""
 
 
 class SiteDrop(QgsCustomDropHandler):
@@ -29,27 +33,41 @@ class SiteDrop(QgsCustomDropHandler):
         self._iface.unregisterCustomDropHandler(self)
         self.deleteLater()
 
+    def handleMimeDataV2(self, data: QMimeData) -> bool:
+        # Not as files: what comes from the browser panel names data sources.
+        sources = QgsMimeDataUtils.decodeUriList(data) if QgsMimeDataUtils.isUriList(data) else []
+        folders = [site_folder(Path(one.uri)) for one in sources if one.layerType in WHOLE]
+        if not folders or None in folders or len(folders) < len(sources):
+            return False
+        for folder in folders:
+            self._load(folder)
+        return True
+
     def handleFileDrop(self, file: str) -> bool:
         folder = site_folder(Path(file))
         if folder is None:
             return False
+        self._load(folder)
+        return True
+
+    def _load(self, folder: Path) -> None:
+        """Load the site, or say why not."""
         known = loaded_already(folder, self._project)
         if known:
             names = ", ".join(layer.name() for layer in known)
             self._notices.info(
                 tr("The site in {folder} is in the project already: {names}.", folder=folder, names=names)
             )
-            return True
+            return
         was_empty = not self._project.mapLayers()
         try:
             site = load_site(folder, self._project)
         except FleetError as error:
             self._notices.error(error)
-            return True
+            return
         self._notices.info(_in_words(site))
         if was_empty:
             self._iface.mapCanvas().zoomToFullExtent()
-        return True
 
 
 def _in_words(site: LoadedSite) -> str:

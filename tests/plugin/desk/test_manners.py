@@ -16,9 +16,11 @@ from fleet_supervisor.plugin.settings.preferences import Preferences, read_prefe
 from fleet_supervisor.plugin.supervisor import FleetSupervisor
 from qgis.core import (
     QgsApplication,
+    QgsDirectoryItem,
     QgsExpression,
     QgsLocatorContext,
     QgsLocatorResult,
+    QgsMimeDataUtils,
     QgsProject,
     QgsSettings,
 )
@@ -179,6 +181,34 @@ def test_roles_that_other_layers_have_are_left_to_them(plugin, iface, make_layer
     loaded = QgsProject.instance().mapLayersByName("Keepouts")[0]
     assert not loaded.customProperty("fleet/role")
     assert any("Keepouts have no role" in text for text in iface.texts())
+
+
+def drop_from_browser(iface, *items):
+    """Let the window have items of QGIS's browser panel, dragged together, as QGIS does."""
+    data = QgsMimeDataUtils.encodeUriList([uri for item in items for uri in item.mimeUris()])
+    return any(handler.handleMimeDataV2(data) for handler in iface.drop_handlers)
+
+
+def in_browser(folder):
+    """The items of a folder in the browser panel, by their names."""
+    return {item.name(): item for item in QgsDirectoryItem(None, "", str(folder)).createChildren()}
+
+
+def test_a_published_site_comes_from_the_browser_panel(plugin, iface):
+    assert drop_from_browser(iface, in_browser(SITE.parent)["sample_site"])
+    assert len(QgsProject.instance().mapLayers()) == 4
+    assert drop_from_browser(iface, in_browser(SITE)["site.gpkg"])
+    assert any("in the project already" in text for text in iface.texts())
+
+
+def test_what_is_no_site_in_the_browser_panel_is_left_to_qgis(plugin, iface):
+    here = in_browser(SITE)
+    assert not drop_from_browser(iface, here["drawing"])
+    assert not drop_from_browser(iface, here["orthophoto.tif"])
+    assert not drop_from_browser(iface, here["sample_site.gpkg"])
+    assert not drop_from_browser(iface, here["site.gpkg"], here["orthophoto.tif"])
+    assert not drop_from_browser(iface)
+    assert QgsProject.instance().mapLayers() == {}
 
 
 def test_what_is_no_site_is_left_to_qgis(plugin, iface, tmp_path):
