@@ -14,7 +14,7 @@ from ..sites.published_layers import LoadedSite, load_site, loaded_already, site
 from .notices import Notices
 
 WHOLE = ("directory", "collection")
-"""What the browser panel calls a folder, and a GeoPackage with all that is in it; a layer of it goes alone."""
+"""What the browser panel calls a folder, and a GeoPackage with all that is in it."""
 
 
 class SiteDrop(QgsCustomDropHandler):
