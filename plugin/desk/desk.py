@@ -20,6 +20,7 @@ from ..wire.addresses import Credentials
 from ..wire.mailbox import News
 from ..wire.outbox import Order
 from ..wire.status import LinkStatus, Phase
+from .beat import PULL_EVERY_MS, Beat
 from .checks import LayerCheck, check_bounds
 from .command_book import CommandBook
 from .drafting.draft_checker import DraftChecker
@@ -34,8 +35,6 @@ from .placement_book import PlacementBook
 from .queue_book import QueueBook
 from .road_board import RoadBoard
 from .route_preview import RoutePreview
-
-PULL_EVERY_MS = 50
 
 
 class Desk(QObject):
@@ -77,6 +76,7 @@ class Desk(QObject):
         self.canvas = canvas
         self.project = project
         self.clock = clock
+        self.beat = Beat()
         self.connection = Connection(self)
         self.picture = RobotPicture()
         self.book = CommandBook()
@@ -145,6 +145,7 @@ class Desk(QObject):
             self._take_site(news.site)
         self._take_news(news)
         self.orders.watch()
+        self.beat.pulls += 1
         self.pulled.emit()
 
     def _take_site(self, site: SiteReport) -> None:

@@ -8,10 +8,9 @@ from qgis.PyQt.QtCore import QObject
 
 from ...robot_bridge.sites.frame import SiteFrame
 from ..expressions.robots_now import FleetNow, RobotsNow
-from .desk import PULL_EVERY_MS, Desk
+from .desk import Desk
 from .picture import STATES
 
-EVERY = 500 // PULL_EVERY_MS
 _NAMES = np.array([state.value for state in STATES], dtype=object)
 
 
@@ -21,7 +20,7 @@ class RobotFeed(QObject):
     def __init__(self, desk: Desk, fleet: FleetNow):
         super().__init__(desk)
         self._desk, self._fleet = desk, fleet
-        self._pulls = 0
+        self._turn = desk.beat.turn()
         self._rows: dict[str, int] = {}
         self._generation = -1
         desk.pulled.connect(self._pulled)
@@ -53,6 +52,5 @@ class RobotFeed(QObject):
         )
 
     def _pulled(self) -> None:
-        self._pulls += 1
-        if self._pulls % EVERY == 0:
+        if self._turn.has_come():
             self.feed()

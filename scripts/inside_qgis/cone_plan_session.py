@@ -13,7 +13,7 @@ from qgis.PyQt.QtWidgets import (
     QDoubleSpinBox,
     QLabel,
     QMessageBox,
-    QTableWidget,
+    QTableView,
     QTabWidget,
 )
 from qgis.utils import iface
@@ -110,11 +110,11 @@ def place_layout(film: Film) -> None:
 
 
 def make_plan(film: Film) -> None:
-    robots = film.find(QTableWidget, "fleet_plan_robots")
+    robots = film.find(QTableView, "fleet_plan_robots").model()
     film.operator.wait("robots in the panel", lambda: robots.rowCount() == 3, TIMEOUT)
     for row in range(robots.rowCount()):
         for column, value in enumerate((12, 12, film.plan["speed"]), 1):
-            robots.item(row, column).setText(f"{value:g}")
+            robots.setData(robots.index(row, column), f"{value:g}")
     film.find(QDoubleSpinBox, "fleet_plan_seconds").setValue(2.0)
     film.press("fleet_plan_solve")
     film.operator.wait("the plan", lambda: "Not sent yet" in film.text("fleet_plan_text"), TIMEOUT)

@@ -11,7 +11,8 @@ from qgis.PyQt.QtCore import QObject, QTimer
 
 from ...errors import PlacementError
 from ...language import tr
-from ..desk import PULL_EVERY_MS, Desk
+from ..beat import PULL_EVERY_MS
+from ..desk import Desk
 from .following import Whom, keep_in_view, show_places
 from .hover_card import card
 from .hovering import Hovering

@@ -12,7 +12,7 @@ from ...settings.preferences import Preferences, read_preferences
 from ..actions import ICONS
 from ..alarms.stored_limits import write_limits
 from ..alarms.thresholds import Thresholds
-from ..desk import PULL_EVERY_MS
+from ..beat import PULL_EVERY_MS
 from ..window import DeskWindow
 from .options_page import OptionsPage
 

@@ -66,8 +66,12 @@ class _Road:
         line = np.array(closure.line, dtype=float)
         self._low, self._high = line.min(axis=0) - DEFAULT_WIDTH_M, line.max(axis=0) + DEFAULT_WIDTH_M
         self._nearest = NearestEdge(build_network(centrelines([line], width=[DEFAULT_WIDTH_M])))
+        self._all = np.ones(len(self._nearest.network), dtype=bool)
 
     def is_along(self, path: Floats) -> bool:
         """Tell whether ``path``, (n, 2) in the site frame, runs along the road."""
         near = (path.min(axis=0) <= self._high).all() and (path.max(axis=0) >= self._low).all()
-        return bool(near) and len(path) > 1 and len(edges_along(self._nearest, path)) > 0
+        if not near or len(path) < 2:
+            return False
+        # Asked for certain edges it passes over what is far from them, which is most of a long way.
+        return len(edges_along(self._nearest, path, self._all)) > 0

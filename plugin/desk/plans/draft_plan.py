@@ -20,7 +20,7 @@ from ....robot_bridge.sites.frame import SiteFrame
 from ...errors import FleetError, PlacementError
 from ...language import tr
 from ..desk import Desk
-from ..picture import RobotView
+from .available_robots import has_place, taking_part
 from .closed_ways import ClosedWay, closed_ways
 from .cone_source import ConeFacts, read_cones, read_stores
 from .near_meetings import Meeting, meetings
@@ -197,14 +197,16 @@ class DraftPlan(QObject):
         return self._desk.placement().frame
 
     def _robots(self) -> tuple[Robot, ...]:
-        views = self._desk.picture.views(self._desk.clock())
-        used = [view for view in views if self.settings.of_robot(view.name).used and is_there(view)]
-        if not used:
+        robots = self._desk.picture.arrays(self._desk.clock())
+        used = taking_part(robots, self.settings)
+        if not used.any():
             raise PlanningError(
                 tr("No robot that is there is chosen: tick robots in the table, or connect some.")
             )
         return tuple(
-            self.settings.of_robot(view.name).robot(view.name, view.report.x, view.report.y) for view in used
+            self.settings.of_robot(robots.names[row]).robot(robots.names[row], *robots.xy[row].tolist())
+            for row in self._desk.picture.by_name()
+            if used[row]
         )
 
     def _cones_of_before(self, collected: set[int | None]) -> np.ndarray:
@@ -218,13 +220,6 @@ class DraftPlan(QObject):
 
     def _standing_robots(self) -> dict[str, tuple[float, float]]:
         """Return where robots are that do not take part."""
-        return {
-            view.name: (view.report.x, view.report.y)
-            for view in self._desk.picture.views(self._desk.clock())
-            if view.has_pose and not (self.settings.of_robot(view.name).used and is_there(view))
-        }
-
-
-def is_there(view: RobotView) -> bool:
-    """Tell whether a robot can be planned with: it has said where it is, and is not away."""
-    return view.has_pose and view.state.value in ("fresh", "stale")
+        robots = self._desk.picture.arrays(self._desk.clock())
+        stand = has_place(robots) & ~taking_part(robots, self.settings)
+        return {robots.names[row]: tuple(robots.xy[row].tolist()) for row in np.flatnonzero(stand)}

@@ -17,6 +17,7 @@ from ...errors import FleetError
 from ...language import tr
 from ..desk import Desk
 from ..placement_book import MOST_ASKED
+from .available_robots import has_place
 from .closed_ways import closed_ways
 from .draft_plan import Draft, DraftPlan, PlanningError
 from .progress import Progress, Trouble, behind, cones_under_way, situation_of, trouble_of, under_way
@@ -169,8 +170,10 @@ class DrivenPlan(QObject):
 
     def _plan_rest(self, trouble: Trouble, try_again: bool) -> None:
         driven, progress = self.driven, self.progress
-        views = [view for view in self._desk.picture.views(self._desk.clock()) if view.has_pose]
-        places = {view.name: (view.report.x, view.report.y) for view in views}
+        robots = self._desk.picture.arrays(self._desk.clock())
+        places = {
+            robots.names[row]: tuple(robots.xy[row].tolist()) for row in np.flatnonzero(has_place(robots))
+        }
         drive = {one.robot.id for one in driven.plan.robots if not one.lost} - set(trouble.away)
         placed = [(one.x, one.y) for one in progress.placed.values() if one.collected_at is None]
         driven.ways.closures = self._desk.roads.closures

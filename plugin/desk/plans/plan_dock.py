@@ -35,7 +35,7 @@ from .plan_tree import PlanTree
 from .robots_form import RobotsForm
 from .sending_check import before_sending
 from .settings_form import SettingsForm
-from .wanted_job import keep_settings, settings_in
+from .wanted_job import PlanSettings, keep_settings, settings_in
 
 
 class PlanDock(ActionDock):
@@ -60,6 +60,7 @@ class PlanDock(ActionDock):
         )
         self.cancel = _button(tr("Cancel"), "fleet_plan_cancel", tr("Give up what is being planned"))
         self.progress = QProgressBar()
+        self._turn = desk.beat.turn()
         self.question: QMessageBox | None = None
         self._site: str | None = None if desk.site is None else desk.site.id
         self._lay_out()
@@ -131,14 +132,19 @@ class PlanDock(ActionDock):
             self.layers.show_placed(self.placed.placements)
 
     def _pulled(self) -> None:
-        if self.isVisible():
-            views = self._desk.picture.views(self._desk.clock())
-            self.robots.show_robots(views, self.drafts.settings)
+        if self.isVisible() and self._turn.has_come():
+            self._show_robots()
         if self.drafts.task is not None:
             self.progress.setValue(round(self.drafts.task.progress()))
 
-    def _settings_changed(self) -> None:
-        settings = self.robots.settings(self.form.settings(self.drafts.settings))
+    def _shown(self, is_visible: bool) -> None:
+        if is_visible:
+            self._show_robots()
+
+    def _show_robots(self) -> None:
+        self.robots.show_robots(self._desk, self.drafts.settings)
+
+    def _keep(self, settings: PlanSettings) -> None:
         if settings != self.drafts.settings:
             self.drafts.settings = settings
             keep_settings(self._desk.project, settings)
@@ -208,8 +214,8 @@ class PlanDock(ActionDock):
 
     def _wire(self) -> None:
         desk, bar = self._desk, self.bar
-        self.form.changed.connect(self._settings_changed)
-        self.robots.changed.connect(self._settings_changed)
+        self.form.changed.connect(lambda: self._keep(self.form.settings(self.drafts.settings)))
+        self.robots.edited.connect(lambda name, one: self._keep(self.drafts.settings.with_robot(name, one)))
         self.robots.refused.connect(desk.complained)
         self.preview.clicked.connect(lambda: self.make(preview=True))
         self.solve.clicked.connect(lambda: self.make(preview=False))
@@ -236,6 +242,7 @@ class PlanDock(ActionDock):
         self.placed.shown.connect(self._show_placed_layer)
         desk.placements_changed.connect(self._placements_changed)
         desk.pulled.connect(self._pulled)
+        self.visibilityChanged.connect(self._shown)
         desk.site_changed.connect(self._site_changed)
         desk.project.readProject.connect(self._read_settings)
 

@@ -23,14 +23,13 @@ from ....robot_bridge.messages import GetCommands
 from ...errors import FleetError, PlacementError
 from ...language import tr
 from ..alarms.alarm import Alarm
-from ..desk import PULL_EVERY_MS, Desk
+from ..desk import Desk
 from ..small_views import shrink
 from . import detail_rows as rows_of
 from .deviations import deviation
 from .last_image import LastImage
 from .position_crs import PositionCrs
 
-REFRESH_EVERY = 500 // PULL_EVERY_MS
 NOW, ALARMS, RECEIVED, QUEUE, COMMANDS = SECTIONS = (
     tr("Now"),
     tr("Alarms"),
@@ -50,7 +49,7 @@ class RobotDetails(QWidget):
         self.setObjectName("fleet_robot_details")
         self._desk = desk
         self._positions = positions
-        self._pulls = 0
+        self._turn = desk.beat.turn()
         self._asked_for = ""
         self.alarms_of: Callable[[str], list[Alarm]] = lambda robot: []
         """Returns a robot's alarms."""
@@ -146,8 +145,7 @@ class RobotDetails(QWidget):
         rows.addWidget(self._about)
 
     def _pulled(self) -> None:
-        self._pulls += 1
-        if self._pulls % REFRESH_EVERY == 0 and self.isVisible():
+        if self._turn.has_come() and self.isVisible():
             self.refresh()
 
     def _position(self, at: tuple[float, float] | None) -> str:

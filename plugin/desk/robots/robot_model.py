@@ -16,14 +16,11 @@ from ...wire.sightings import STATES
 from ..colours import STATE_COLOURS, for_letters
 from ..command_book import CommandBook, in_words
 from ..glyphs import state_icon
+from ..item_values import TO_THE_RIGHT
 from ..picture import RobotPicture
 from ..state_words import COMMAND_STATES
 from .columns import COLUMNS, POSITION, TITLES, number_in_words, short_link
 from .fleet_rows import FleetRows, Rows, Which, fleet_rows
-
-_FLAGS = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
-# A number on Qt 5, an enum on Qt 6; a model has to hand out the number.
-TO_THE_RIGHT = int(getattr(_FLAGS, "value", _FLAGS))
 
 
 class RobotModel(QAbstractTableModel):

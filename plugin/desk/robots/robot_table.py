@@ -16,13 +16,12 @@ from qgis.PyQt.QtWidgets import QAbstractItemView, QHeaderView, QTableView, QWid
 from ...errors import PlacementError
 from ...language import tr
 from ..column_heads import fit_heads
-from ..desk import PULL_EVERY_MS, Desk
+from ..desk import Desk
 from ..small_views import shrink
 from .columns import COLUMNS, TASK
 from .position_crs import PositionCrs
 from .robot_model import RobotModel
 
-REFRESH_EVERY = 500 // PULL_EVERY_MS
 MANY = 500
 """With more robots the table is renewed half as often, with ten times as many four times as seldom."""
 HIDDEN_KEY = "fleet_supervisor/robot_table/hidden"
@@ -40,7 +39,7 @@ class RobotTable(QTableView):
         super().__init__(parent)
         self.setObjectName("fleet_robot_table")
         self._desk = desk
-        self._pulls = 0
+        self._turn = desk.beat.turn()
         self._marking = self._is_reset = False
         self.positions = PositionCrs(desk.project, self)
         self._model = RobotModel(desk.picture, desk.book, self)
@@ -108,10 +107,9 @@ class RobotTable(QTableView):
         header.setSectionResizeMode(TASK, QHeaderView.ResizeMode.Stretch)
 
     def _pulled(self) -> None:
-        self._pulls += 1
         count = len(self._desk.picture)
-        every = REFRESH_EVERY * (1 if count <= MANY else 2 if count <= 10 * MANY else 4)
-        if self._pulls % every == 0 or count != self._model.count():
+        half_seconds = 1 if count <= MANY else 2 if count <= 10 * MANY else 4
+        if self._turn.has_come(half_seconds) or count != self._model.count():
             self.refresh()
 
     def _name(self, index: QModelIndex) -> str:

@@ -27,6 +27,7 @@ from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import QAction, QApplication, QCheckBox, QDockWidget, QMessageBox, QPushButton
 
 E, N = 488000.0, 5190000.0
+CARRIES, ABOARD = 1, 2
 
 
 def put_cones(*places, layout="row"):
@@ -41,7 +42,7 @@ def site(site):
 
 
 @pytest.fixture
-def panel(at_desk, iface):
+def panel(at_desk, iface, wait):
     put_cones((40, 40), (45, 40), (50, 44), (75, 60), (80, 64), (85, 60))
     iface.findChild(QAction, "fleet_plan_panel").trigger()
     dock = iface.findChild(QDockWidget, "fleet_plan_dock")
@@ -49,6 +50,7 @@ def panel(at_desk, iface):
         dock.drafts.settings = dock.drafts.settings.with_robot(
             robot, dock.drafts.settings.of_robot(robot).__class__(True, 8, 8, 1.0)
         )
+    wait(lambda: dock.robots.model().rowCount() == 2, 5, "the robots in the panel")
     yield dock
 
 
@@ -187,9 +189,8 @@ def test_a_cone_is_taken_out_and_named_as_left_out(panel, wait):
 
 
 def test_what_cannot_be_driven_is_told_and_the_plan_stays(panel, wait, iface):
-    wait(lambda: panel.robots.rowCount() == 2, 5)
     for row in range(2):
-        panel.robots.item(row, 2).setText("3")
+        write(panel, row, ABOARD, "3")
     before = planned(panel, wait)
     drop(panel, child(panel, "r1", cones_of(before)["r1"][0]), panel.tree.topLevelItem(1))
     wait(lambda: any("r2 cannot serve" in text for text in iface.texts()), 10, "the refusal")
@@ -201,20 +202,25 @@ def test_what_cannot_be_driven_is_told_and_the_plan_stays(panel, wait, iface):
     [
         (lambda dock: dock.form.cones.setCurrentIndex(0), "No layer of cones is chosen"),
         (lambda dock: [untick(dock, row) for row in range(2)], "No robot that is there is chosen"),
-        (lambda dock: [dock.robots.item(row, 2).setText("0") for row in range(2)], "There is no store"),
+        (lambda dock: [write(dock, row, ABOARD, "0") for row in range(2)], "There is no store"),
         (lambda dock: dock.form.selected_only.setChecked(True), "no selected features"),
-        (lambda dock: dock.robots.item(0, 1).setText("many"), "Carries of r1 is 'many'"),
+        (lambda dock: write(dock, 0, CARRIES, "many"), "Carries of r1 is 'many'"),
     ],
 )
 def test_what_is_missing_is_named(panel, wait, iface, spoil, expected):
-    wait(lambda: panel.robots.rowCount() == 2, 5)
     spoil(panel)
     press(panel, "fleet_plan_preview")
     wait(lambda: any(expected in text for text in iface.texts()), 10, expected)
 
 
 def untick(dock, row):
-    dock.robots.item(row, 0).setCheckState(Qt.CheckState.Unchecked)
+    robots = dock.robots.model()
+    robots.setData(robots.index(row, 0), Qt.CheckState.Unchecked, Qt.ItemDataRole.CheckStateRole)
+
+
+def write(dock, row, column, text):
+    robots = dock.robots.model()
+    robots.setData(robots.index(row, column), text, Qt.ItemDataRole.EditRole)
 
 
 def question(dock):

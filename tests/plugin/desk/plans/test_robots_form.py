@@ -1,51 +1,79 @@
-"""The table of robots that may take part: what is written anew while robots come and go."""
+"""The table of robots that may take part, as the operator sees it."""
 
 from __future__ import annotations
 
-import pytest
-from fleet_supervisor.plugin.desk.picture import RobotView
-from fleet_supervisor.plugin.desk.plans.robots_form import RobotsForm
-from fleet_supervisor.plugin.desk.plans.wanted_job import PlanSettings
-from fleet_supervisor.robot_bridge.messages import RobotState
+from dataclasses import replace
+from types import SimpleNamespace
 
-FRESH, LOST = RobotState.FRESH, RobotState.LOST
+import pytest
+from fleet_supervisor.plugin.desk.picture import RobotPicture
+from fleet_supervisor.plugin.desk.plans.robots_form import SHOWN, RobotsForm
+from fleet_supervisor.plugin.desk.plans.wanted_job import PlanSettings
+from fleet_supervisor.plugin.wire.position_rows import sightings
+from fleet_supervisor.robot_bridge.messages import RobotState, to_json
+from qgis.PyQt.QtCore import Qt
+from qgis.PyQt.QtTest import QTest
+from qgis.PyQt.QtWidgets import QLineEdit
+
+CARRIES = 1
+NOW = 1000.0
 
 
 @pytest.fixture
 def form(qgis_app):
     form = RobotsForm()
-    form.show_robots(_views(FRESH, FRESH, FRESH), PlanSettings())
-    return form
+    form.show()
+    yield form
+    form.close()
+    form.deleteLater()
 
 
-def _views(*states: RobotState) -> list[RobotView]:
-    return [
-        RobotView(f"r{number}", {"name": f"r{number}", "x": 1.0, "y": 2.0}, state, 0.1)
-        for number, state in enumerate(states, 1)
-    ]
+@pytest.fixture
+def show(form):
+    """Show these robots, heard of this moment."""
+    desk = SimpleNamespace(picture=RobotPicture(), clock=lambda: NOW)
+
+    def shown(*robots):
+        desk.picture.merge(sightings([to_json(robot) for robot in robots], NOW))
+        form.show_robots(desk, PlanSettings())
+
+    return shown
 
 
-def _cells(form: RobotsForm, row: int) -> list[object]:
-    return [form.item(row, column) for column in range(form.columnCount())]
+def tip(form, name):
+    model = form.model()
+    (row,) = [row for row in range(model.rowCount()) if model.index(row, 0).data() == name]
+    return model.index(row, 0).data(Qt.ItemDataRole.ToolTipRole)
 
 
-def test_a_robot_that_goes_away_leaves_the_others_rows_alone(form):
-    first, last = _cells(form, 0), _cells(form, 2)
-    form.show_robots(_views(FRESH, LOST, FRESH), PlanSettings())
-    assert form.item(1, 0).toolTip() == "r2 is away: it takes no part"
-    assert (_cells(form, 0), _cells(form, 2)) == (first, last)
+def test_who_can_take_part_is_seen_from_place_and_state(form, show, make_robot):
+    placeless = replace(make_robot("r12"), x=None, y=None, theta=None)
+    show(make_robot("r10"), make_robot("r11", state=RobotState.OFFLINE), placeless)
+    assert tip(form, "r10") is None
+    assert tip(form, "r11") == "r11 is away: it takes no part"
+    assert tip(form, "r12") == "r12 is away: it takes no part"
 
 
-def test_the_rows_are_those_of_the_robots_that_there_are(form):
-    form.show_robots(_views(FRESH), PlanSettings())
-    assert form.rowCount() == 1
-    form.show_robots(_views(FRESH, LOST), PlanSettings())
-    assert [form.item(row, 0).text() for row in range(form.rowCount())] == ["r1", "r2"]
-    assert form.item(1, 1).text() != ""
+def test_it_is_as_high_as_its_rows_and_no_higher_than_there_is_room_for(form, show, make_robot):
+    low = form.height()
+    show(*(make_robot(f"r{number}") for number in range(1, SHOWN + 1)))
+    high = form.height()
+    show(*(make_robot(f"r{number}") for number in range(1, SHOWN + 9)))
+    assert low < high == form.height()
 
 
-def test_what_was_refused_is_shown_as_it_was(form):
-    form.item(0, 1).setText("many")
-    form.settings(PlanSettings())
-    form.show_robots(_views(FRESH, FRESH, FRESH), PlanSettings())
-    assert form.item(0, 1).text() != "many"
+def test_what_is_being_typed_stays_while_other_robots_come_and_go(form, show, make_robot, wait):
+    show(make_robot("r1"), make_robot("r3"))
+    index = form.model().index(0, CARRIES)
+    form.setCurrentIndex(index)
+    form.edit(index)
+    editor = form.findChild(QLineEdit)
+    editor.selectAll()
+    QTest.keyClicks(editor, "12")
+    show(make_robot("r0"), make_robot("r1", state=RobotState.OFFLINE), make_robot("r2"), make_robot("r3"))
+    assert form.findChild(QLineEdit) is editor and editor.text() == "12"
+    edited = []
+    form.edited.connect(lambda name, one: edited.append((name, one.capacity)))
+    QTest.keyClick(editor, Qt.Key.Key_Return)
+    wait(lambda: edited, 5, "what was typed")
+    assert edited == [("r1", 12)]
