@@ -100,6 +100,7 @@ class Fleet:
             self._check,
             self._consider,
         )
+        self._book.seen = self.robots.pose
         self.ways = Ways(self.robots, self._book)
         self.roads = planner if isinstance(planner, RoadPlanner) else None
         self.orders = Orders(site, self.robots, self._book, database)

@@ -70,6 +70,11 @@ class Robots:
             raise NotReadyError(f"robot {name!r} has not said Ready to this gateway; send Ready first")
         return robot
 
+    def pose(self, name: str) -> SendPos | None:
+        """Return where a robot was when it said so last, None for one that never did."""
+        robot = self._robots.get(name)
+        return None if robot is None else robot.pose
+
     def restore(self, robot: Robot, now: float) -> None:
         """Take in a robot that an earlier gateway knew."""
         self._robots[robot.name] = robot

@@ -56,16 +56,24 @@ class PathArrival:
     may be anywhere on what is left, since it may have driven on unseen; where that passes a place twice, the
     sooner place counts: a robot that stands blocked at the beginning of a loop has not come to its end. Where
     it is not known how far the robot came (``driven`` is None), the later counts. After poses were missed the
-    robot is looked for on all of the path that is left.
+    robot is looked for on all of the path that is left. So is one that has moved since it was ``handed`` the
+    path: where its link broke, its acknowledgement may come long after.
     """
 
     def __init__(
-        self, path: SetPath, tolerance: float, *, driven: float | None = 0.0, under_way: bool = False
+        self,
+        path: SetPath,
+        tolerance: float,
+        *,
+        driven: float | None = 0.0,
+        under_way: bool = False,
+        handed: SendPos | None = None,
     ) -> None:
         self.line = Polyline(path.points)
         self._tolerance = tolerance
         self._theta = path.theta
         self._seek = under_way
+        self._handed = handed
         self._sooner = driven is not None
         self._last: SendPos | None = None
         self.driven = driven or 0.0
@@ -85,10 +93,13 @@ class PathArrival:
     def _moved(self, pose: SendPos) -> bool:
         """Tell whether the robot is far enough from where it was followed last to be looked for again."""
         last = self._last
-        return last is None or math.hypot(pose.x - last.x, pose.y - last.y) >= STRIDE
+        return last is None or _apart(pose, last) >= STRIDE
 
     def _follow(self, pose: SendPos) -> None:
         station, off = self.line.feet(pose.x, pose.y)
+        if self._handed is not None:
+            self._seek = self._seek or _apart(pose, self._handed) > LOOK_AHEAD
+            self._handed = None
         if self._seek and (off <= CORRIDOR).any():
             self._seek, self._last = False, pose
             self.driven = max(self.driven, self._found(station, off))
@@ -109,8 +120,7 @@ class PathArrival:
         """Return how many metres of path ahead the robot may be since its last pose."""
         last, self._last = self._last or pose, pose
         reach = LOOK_AHEAD + LOOK_AHEAD_TIME * max(abs(pose.v), abs(last.v))
-        missed = math.hypot(pose.x - last.x, pose.y - last.y) > reach
-        return math.inf if missed else reach
+        return math.inf if _apart(pose, last) > reach else reach
 
 
 @dataclass
@@ -139,19 +149,29 @@ Arrival = TargetArrival | PathArrival | BeginArrival | AbortArrival
 
 
 def judge(
-    command: Command, tolerance: float, *, driven: float | None = 0.0, under_way: bool = False
+    command: Command,
+    tolerance: float,
+    *,
+    driven: float | None = 0.0,
+    under_way: bool = False,
+    handed: SendPos | None = None,
 ) -> Arrival:
     """Return the judge of a command; ``tolerance`` is metres, ``under_way`` if the robot may be driving.
 
-    ``driven`` is metres of a path that it is known to have driven, None if that is not known.
+    ``driven`` is metres of a path that it is known to have driven, None if that is not known; ``handed`` is
+    where it was when it was handed the command.
     """
     if isinstance(command, SetPosEnd):
         return TargetArrival(command, tolerance)
     if isinstance(command, SetPath):
-        return PathArrival(command, tolerance, driven=driven, under_way=under_way)
+        return PathArrival(command, tolerance, driven=driven, under_way=under_way, handed=handed)
     if isinstance(command, SetPosIni):
         return BeginArrival(command, tolerance)
     return AbortArrival()
+
+
+def _apart(a: SendPos, b: SendPos) -> float:
+    return math.hypot(a.x - b.x, a.y - b.y)
 
 
 def _turn(a: float, b: float) -> float:

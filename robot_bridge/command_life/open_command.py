@@ -5,7 +5,17 @@ from __future__ import annotations
 import dataclasses
 from dataclasses import dataclass
 
-from ..messages import Abort, Command, CommandReport, CommandState, CommandStep, SetPath, SetPosEnd, to_json
+from ..messages import (
+    Abort,
+    Command,
+    CommandReport,
+    CommandState,
+    CommandStep,
+    SendPos,
+    SetPath,
+    SetPosEnd,
+    to_json,
+)
 from ..polyline import Polyline
 from .arrival import Arrival, PathArrival, judge
 from .states import advance, note
@@ -37,7 +47,10 @@ class Order:
 
 @dataclass
 class OpenCommand:
-    """A command with a step to come; ``sa_id`` is its message's row in SA, written at ``written_at``."""
+    """A command with a step to come; ``sa_id`` is its message's row in SA, written at ``written_at``.
+
+    ``handed`` is where the robot was, as far as it is known, when it was handed the message at the earliest.
+    """
 
     report: CommandReport
     sa_id: int
@@ -45,6 +58,7 @@ class OpenCommand:
     arrival: Arrival | None = None
     expires_at: float | None = None
     written_at: float | None = None
+    handed: SendPos | None = None
 
     @property
     def is_motion(self) -> bool:
@@ -102,7 +116,7 @@ class OpenCommand:
 
     def judged(self, tolerance: float) -> OpenCommand:
         """Return the command as one that the robot has just taken on."""
-        return dataclasses.replace(self, arrival=judge(self.message, tolerance))
+        return dataclasses.replace(self, arrival=judge(self.message, tolerance, handed=self.handed))
 
 
 def drafted(order: Order, now: float) -> OpenCommand:

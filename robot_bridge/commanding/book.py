@@ -70,6 +70,8 @@ class CommandBook:
         self._consider = consider
         self.waits: Callable[[str], bool] = lambda _robot: False
         """Tells whether a robot waits for another: that ends with whatever else it is told."""
+        self.seen: Callable[[str], SendPos | None] = lambda _robot: None
+        """Tells where a robot was seen last."""
         self._open = OpenCommands()
         self._locks: dict[str, asyncio.Lock] = {}
         self._doubtful = False
@@ -210,7 +212,8 @@ class CommandBook:
         except RefusedError as error:
             refusal = error
         mine = self._open.of(order.robot)
-        return Draft(order, drafted(order, now), voided(order, mine, now), refusal, self.waits(order.robot))
+        command = dataclasses.replace(drafted(order, now), handed=self.seen(order.robot))
+        return Draft(order, command, voided(order, mine, now), refusal, self.waits(order.robot))
 
     def _check_task(self, order: Order) -> None:
         if order.instead_of is not None and not self._is_open_to(order.robot, order.instead_of):
@@ -241,7 +244,8 @@ class CommandBook:
         async with self._holding(robots):
             queued = [self._open.queued[id] for id in sa_ids if id in self._open.queued]
             now = self._clock()
-            await self._save([command.step(CommandState.DELIVERED, now, GATEWAY) for command in queued])
+            handed = [dataclasses.replace(c, handed=self.seen(c.report.robot)) for c in queued]
+            await self._save([command.step(CommandState.DELIVERED, now, GATEWAY) for command in handed])
 
     async def _acknowledged(self, robot: str, ack: OpAck) -> float | None:
         async with self._holding([robot]):
@@ -330,7 +334,7 @@ class CommandBook:
             mine = self._open.of(robot)
             return [*steps, *ended_by(command, mine, now, "the robot acknowledged the Abort")]
         if command.arrival is None:
-            arrival = judge(command.message, self.tolerance)
+            arrival = judge(command.message, self.tolerance, handed=command.handed)
             return [command.noted(now, robot, "acknowledged again", arrival)]
         return []
 
@@ -338,10 +342,11 @@ class CommandBook:
         """Return a command to be sent once more; one that was never fetched keeps its place behind."""
         if command.report.state is CommandState.QUEUED:
             reason = "behind what the robot is told once more"
-        return dataclasses.replace(command.noted(now, GATEWAY, reason), written_at=now)
+        noted, handed = command.noted(now, GATEWAY, reason), self.seen(command.report.robot)
+        return dataclasses.replace(noted, written_at=now, handed=handed)
 
     def _restored(self, stored: StoredCommand) -> OpenCommand:
-        command = opened(stored)
+        command = dataclasses.replace(opened(stored), handed=self.seen(stored.report.robot))
         if stored.report.state is CommandState.ACKNOWLEDGED:
             command.arrival = judge(command.message, self.tolerance, driven=stored.driven, under_way=True)
         return command

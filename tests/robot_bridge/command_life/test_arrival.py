@@ -74,6 +74,23 @@ def test_a_path_that_ends_where_it_began_is_not_reached_at_its_start():
     assert arrival.driven < 1.0
 
 
+def test_a_path_that_was_driven_before_its_acknowledgement_came_is_reached():
+    path = SetPath([(0.0, 0.0), (10.0, 0.0), (10.0, 10.0)])
+    arrival = judge(path, TOLERANCE, handed=pose(0.0, 0.5))
+    assert arrival.deviation(pose(10.0, 10.1)) == pytest.approx(0.1)
+
+
+def test_a_path_is_not_reached_by_a_robot_that_stands_where_it_was_handed_it():
+    arrival = judge(SetPath([(0.0, 0.0), (10.0, 0.0), (10.0, 10.0)]), TOLERANCE, handed=pose(10.0, 10.0))
+    assert arrival.deviation(pose(10.0, 10.1)) is None
+
+
+def test_a_loop_is_not_reached_by_a_robot_that_came_to_its_beginning_before_it_acknowledged():
+    arrival = judge(SetPath(LOOP), TOLERANCE, handed=pose(-8.0, 0.0))
+    assert arrival.deviation(pose(0.0, 0.05)) is None
+    assert arrival.deviation(pose(0.05, 0.0)) is None
+
+
 def test_a_path_that_ends_where_it_began_is_reached_once_driven():
     told, at_the_end = walk(PathArrival(SetPath(LOOP), TOLERANCE), LOOP)
     assert told is None
