@@ -102,7 +102,7 @@ class AsPlacedReport(FleetAlgorithm):
         source = self.parameterAsSource(parameters, INPUT, context)
         if source is None:
             raise QgsProcessingException(self.invalidSourceError(parameters, INPUT))
-        with shown_by_processing():
+        with shown_by_processing(feedback):
             read = read_cones(source, feedback)
             if read is None:
                 return {}

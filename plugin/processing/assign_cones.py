@@ -110,7 +110,7 @@ class AssignCones(FleetAlgorithm):
     def processAlgorithm(
         self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
     ):
-        with shown_by_processing():
+        with shown_by_processing(feedback):
             try:
                 return self._run(parameters, context, feedback)
             except CancelledError:

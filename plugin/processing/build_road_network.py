@@ -100,7 +100,7 @@ class BuildRoadNetwork(FleetAlgorithm):
     def processAlgorithm(
         self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
     ):
-        with shown_by_processing():
+        with shown_by_processing(feedback):
             reading = self._source.read(feedback)
             if reading is None:
                 return {}

@@ -114,7 +114,7 @@ class BuildRoadSurfaces(FleetAlgorithm):
     def processAlgorithm(
         self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
     ):
-        with shown_by_processing():
+        with shown_by_processing(feedback):
             reading = self._source.read(feedback)
             drawn = None if reading is None else self._read_drawn(reading, context, feedback)
             if drawn is None:

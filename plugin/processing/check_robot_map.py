@@ -95,7 +95,7 @@ class CheckRobotMap(FleetAlgorithm):
     def processAlgorithm(
         self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
     ):
-        with shown_by_processing():
+        with shown_by_processing(feedback):
             robot_map = read_map_file(Path(self.parameterAsFile(parameters, MAP, context)))
             place = map_place(self, parameters, context, robot_map.meta, feedback)
             for warning in robot_map.warnings:

@@ -116,7 +116,7 @@ class ConeLayout(FleetAlgorithm):
     def processAlgorithm(
         self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
     ):
-        with shown_by_processing():
+        with shown_by_processing(feedback):
             kind = LAYOUTS[self.parameterAsEnumString(parameters, LAYOUT, context)]
             layout = kind.of(dimensions_in(self.parameterAsString(parameters, DIMENSIONS, context)))
             feedback.pushInfo(f"{TITLES[kind.NAME]} ({standard_in_words(kind)})")

@@ -107,7 +107,7 @@ class ExportNavigationMap(FleetAlgorithm):
         formats = self.parameterAsEnumStrings(parameters, FORMATS, context)
         source = Path(self.parameterAsFile(parameters, MAP, context))
         folder = Path(self.parameterAsString(parameters, OUTPUT, context))
-        with shown_by_processing():
+        with shown_by_processing(feedback):
             export = self._plan(source, formats, parameters, context)
             self._read_areas(export, formats, parameters, context, feedback)
             made: dict[str, Files] = {}

@@ -11,7 +11,6 @@ from qgis.core import (
     QgsCoordinateReferenceSystem,
     QgsProcessingAlgorithm,
     QgsProcessingContext,
-    QgsProcessingUtils,
     QgsProviderRegistry,
     QgsVectorLayer,
 )
@@ -27,11 +26,12 @@ from ..sites.roles import LayerExpressions
 from ..sites.site_crs import site_crs_for
 from .errors import ParameterError
 from .fleet_algorithm import Parameters
+from .given_layers import layers_problem
 from .map_format import MapFormat, format_of
 from .map_profile import setups_of
 from .map_shaping import shaping_of
 from .map_window import LOCAL, SITE_CRS, map_window, site_frame
-from .whole_file import OutputError
+from .whole_file import OutputError, check_target
 
 OBSTACLES, OUTPUT = "OBSTACLES", "OUTPUT"
 HEIGHT_EXPRESSION, DEFAULT_HEIGHT = "HEIGHT_EXPRESSION", "DEFAULT_HEIGHT"
@@ -124,30 +124,14 @@ def obstacle_plan_of(
     )
 
 
-def unopened_layer(parameters: Parameters, context: QgsProcessingContext) -> str:
-    """Return what is wrong with the first obstacle layer that cannot be opened, or nothing.
-
-    Where there are others, Processing itself passes over such a layer in silence.
-    """
-    values = parameters.get(OBSTACLES)
-    for value in values if isinstance(values, (list, tuple)) else [values]:
-        if isinstance(value, str) and QgsProcessingUtils.mapLayerFromString(value, context) is None:
-            return tr(
-                "The obstacle layer {layer} cannot be opened: check the file, and the layer's name "
-                "after '|layername='.",
-                layer=value,
-            )
-    return ""
-
-
 def obstacle_layers(
     algorithm: QgsProcessingAlgorithm, parameters: Parameters, context: QgsProcessingContext
 ) -> list[QgsVectorLayer]:
     """Return the layers in OBSTACLES.
 
-    :raises LayerTypeError: naming the first that cannot be opened or is no vector layer.
+    :raises LayerTypeError: naming the first that cannot be read or is no vector layer.
     """
-    problem = unopened_layer(parameters, context)
+    problem = layers_problem(parameters, OBSTACLES, context)
     if problem:
         raise LayerTypeError(problem)
     layers = algorithm.parameterAsLayerList(parameters, OBSTACLES, context)
@@ -205,6 +189,7 @@ def default_height(
 
 def _target(algorithm: QgsProcessingAlgorithm, parameters: Parameters, context: QgsProcessingContext) -> Path:
     target = Path(algorithm.parameterAsFileOutput(parameters, OUTPUT, context))
+    check_target(target, tr("The robot map"))
     for layer in obstacle_layers(algorithm, parameters, context):
         path = QgsProviderRegistry.instance().decodeUri(layer.providerType(), layer.source()).get("path")
         if path and target.exists() and Path(path).exists() and target.samefile(path):

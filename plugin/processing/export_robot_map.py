@@ -33,9 +33,9 @@ from .export_plan import (
     OUTPUT,
     SEMANTICS_EXPRESSION,
     plan_of,
-    unopened_layer,
 )
 from .fleet_algorithm import FleetAlgorithm, Parameters
+from .given_layers import layers_problem
 from .map_format import format_parameters
 from .map_profile import profile_parameter
 from .map_shaping import shaping_parameters
@@ -82,7 +82,7 @@ class ExportRobotMap(FleetAlgorithm):
 
     def checkParameterValues(self, parameters: Parameters, context: QgsProcessingContext):
         # Before QGIS's own checks, which say that a value is wrong and not why.
-        problem = window_problem(parameters) or unopened_layer(parameters, context)
+        problem = window_problem(parameters) or layers_problem(parameters, OBSTACLES, context)
         if problem:
             return False, problem
         fine, message = super().checkParameterValues(parameters, context)
@@ -98,7 +98,7 @@ class ExportRobotMap(FleetAlgorithm):
     def processAlgorithm(
         self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
     ):
-        with shown_by_processing():
+        with shown_by_processing(feedback):
             plan = self._plan
             border = plan.window.border
             found = obstacle_outlines(plan, border, feedback)

@@ -27,9 +27,10 @@ from ...robot_bridge.robotmap.index import OutlineIndex
 from ..errors import FleetError
 from ..language import tr, tr_page
 from .errors import shown_by_processing
-from .export_plan import OBSTACLES, unopened_layer
+from .export_plan import OBSTACLES
 from .export_robot_map import value_parameters
 from .fleet_algorithm import FleetAlgorithm, Parameters, fields_of
+from .given_layers import layers_problem
 from .map_file import layer_crs
 from .map_format import format_parameters
 from .map_profile import profile_parameter
@@ -130,7 +131,7 @@ class ExportRobotMapTiles(FleetAlgorithm):
             self.addOutput(QgsProcessingOutputNumber(name, title))
 
     def checkParameterValues(self, parameters: Parameters, context: QgsProcessingContext):
-        problem = tiles_problem(parameters) or unopened_layer(parameters, context)
+        problem = tiles_problem(parameters) or layers_problem(parameters, OBSTACLES, context)
         if problem:
             return False, problem
         fine, message = super().checkParameterValues(parameters, context)
@@ -155,7 +156,7 @@ class ExportRobotMapTiles(FleetAlgorithm):
     ):
         plan = self._plan
         steps = QgsProcessingMultiStepFeedback(2, feedback)
-        with shown_by_processing(), TileFolder(plan.folder) as folder:
+        with shown_by_processing(feedback), TileFolder(plan.folder) as folder:
             if feedback.isCanceled():
                 return {}
             found = obstacle_outlines(plan, area_of(plan.tiles), steps)

@@ -149,7 +149,7 @@ class FindRoute(FleetAlgorithm):
         self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
     ):
         lengths = {name: self.parameterAsDouble(parameters, name, context) for name in _LENGTHS}
-        with shown_by_processing():
+        with shown_by_processing(feedback):
             driving = Driving(lengths["SPACING"], lengths["TURNING_RADIUS"], lengths["ROBOT_WIDTH"])
             reading = self._source.read(feedback)
             if reading is None:

@@ -17,6 +17,7 @@ from qgis.core import (
 from qgis.PyQt.QtGui import QIcon
 
 from ..language import tr
+from .value_spelling import spelling_problem
 
 RESOURCES = Path(__file__).parents[2] / "resources"
 
@@ -67,6 +68,10 @@ class FleetAlgorithm(QgsProcessingAlgorithm):
 
     def createInstance(self):
         return type(self)()
+
+    def checkParameterValues(self, parameters: Parameters, context: QgsProcessingContext):
+        problem = spelling_problem(self.parameterDefinitions(), parameters, context)
+        return (False, problem) if problem else super().checkParameterValues(parameters, context)
 
     def remember(self, layers: dict[str, str]) -> None:
         """Keep which layers were made, by the names of their outputs, to be styled when they are loaded."""

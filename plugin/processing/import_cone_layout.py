@@ -118,7 +118,7 @@ class ImportConeLayout(FleetAlgorithm):
                 for name, (field, _, _) in _COLUMNS.items()
             }
         )
-        with shown_by_processing():
+        with shown_by_processing(feedback):
             name = self._name(parameters, context, columns)
             if self._lies():
                 cones = self._as_it_lies(columns, name, context)

@@ -123,7 +123,7 @@ class LoadRobotMap(FleetAlgorithm):
     def processAlgorithm(
         self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
     ):
-        with shown_by_processing():
+        with shown_by_processing(feedback):
             robot_map = read_map_file(Path(self.parameterAsFile(parameters, MAP, context)))
             feedback.setProgress(30)
             place = map_place(self, parameters, context, robot_map.meta, feedback)

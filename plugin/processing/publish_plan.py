@@ -12,7 +12,6 @@ from qgis.core import (
     QgsMapLayer,
     QgsProcessingAlgorithm,
     QgsProcessingContext,
-    QgsProcessingUtils,
     QgsProject,
     QgsVectorLayer,
 )
@@ -42,6 +41,7 @@ from ..sites.site_crs import crs_name, is_engineering
 from .errors import ParameterError
 from .export_plan import default_height, site_crs
 from .fleet_algorithm import Parameters
+from .given_layers import layers_problem
 from .map_profile import setups_of
 from .map_window import LOCAL, site_frame
 
@@ -143,19 +143,11 @@ def _layers(
     name: str,
     setups: Setups,
 ) -> list[QgsVectorLayer]:
-    values = parameters.get(name)
-    if not values:
+    if not parameters.get(name):
         return _project_layers(context.project(), LAYERS[name], setups)
-    for value in values if isinstance(values, (list, tuple)) else [values]:
-        if isinstance(value, str) and QgsProcessingUtils.mapLayerFromString(value, context) is None:
-            raise LayerTypeError(
-                tr(
-                    "{name}: the layer {layer} cannot be opened: check the file, and the layer's name after "
-                    "'|layername='.",
-                    name=name,
-                    layer=value,
-                )
-            )
+    problem = layers_problem(parameters, name, context)
+    if problem:
+        raise LayerTypeError(problem)
     layers = algorithm.parameterAsLayerList(parameters, name, context)
     _check_vectors(layers)
     return layers

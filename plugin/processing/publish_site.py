@@ -122,7 +122,7 @@ class PublishSite(FleetAlgorithm):
         self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
     ):
         plan = self._plan
-        with shown_by_processing(), only_publication(plan.folder):
+        with shown_by_processing(feedback), only_publication(plan.folder):
             # Anew: another publication may have ended since the plan was made.
             settings = next_version(plan.settings, plan.folder, replace_other=plan.replace_other)
             content = _content(plan, feedback)

@@ -96,7 +96,7 @@ class SurfaceAtPoint(FleetAlgorithm):
     def processAlgorithm(
         self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
     ):
-        with shown_by_processing():
+        with shown_by_processing(feedback):
             points = self._points(parameters, context)
             if self._sources is None:
                 raise ParameterError(

@@ -117,7 +117,7 @@ class Trajectories(FleetAlgorithm):
         source = self.parameterAsSource(parameters, INPUT, context)
         if source is None:
             raise QgsProcessingException(self.invalidSourceError(parameters, INPUT))
-        with shown_by_processing():
+        with shown_by_processing(feedback):
             names = [
                 self.parameterAsString(parameters, n, context) for n in (ROBOT_FIELD, TIME_FIELD, SPEED_FIELD)
             ]

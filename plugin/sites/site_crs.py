@@ -21,16 +21,18 @@ def site_crs_for(
     The layers' own wins over the project's when it is one engineering CRS, which nothing else relates to, and
     where there is no project. The result is invalid when no CRS is known at all.
 
-    :raises SiteCrsError: when that CRS cannot carry a site.
+    :raises SiteCrsError: when that CRS cannot carry a site, or the layers have several and nothing chooses.
     """
     own = [crs for crs in layers if crs.isValid()]
     shared = own[0] if own and all(crs == own[0] for crs in own) else QgsCoordinateReferenceSystem()
     if chosen.isValid():
         crs = chosen
-    elif is_engineering(shared) or not project.isValid():
-        crs = shared
-    else:
+    elif project.isValid() and not is_engineering(shared):
         crs = project
+    elif not shared.isValid() and not all(map(is_engineering, own)):
+        raise SiteCrsError(_several(own))
+    else:
+        crs = shared
     if crs.isValid():
         check_site_crs(crs)
     return crs
@@ -81,9 +83,10 @@ def is_engineering(crs: QgsCoordinateReferenceSystem) -> bool:
 def stated_crs(crs: QgsCoordinateReferenceSystem) -> QgsCoordinateReferenceSystem:
     """Return ``crs``, invalid where it only says that there is none.
 
-    A GeoPackage without a CRS comes as a local one in metres called "Undefined SRS" or the like.
+    A GeoPackage without a CRS comes as one called "Undefined SRS" or the like: a local one in metres, or one
+    in degrees.
     """
-    undefined = crs.description().startswith("Undefined ") and is_engineering(crs)
+    undefined = crs.description().startswith("Undefined ") and not crs.authid()
     return QgsCoordinateReferenceSystem() if undefined else crs
 
 
@@ -92,6 +95,15 @@ def crs_name(crs: QgsCoordinateReferenceSystem) -> str:
     if crs.authid() and crs.description():
         return f"{crs.authid()} ({crs.description()})"
     return crs.authid() or crs.description() or tr("without a name")
+
+
+def _several(own: Sequence[QgsCoordinateReferenceSystem]) -> str:
+    names = ", ".join(dict.fromkeys(crs_name(crs) for crs in own))
+    return tr(
+        "The layers are in different CRSs ({names}), and nothing says which is the site's: give SITE_CRS, "
+        "or set the project's CRS.",
+        names=names,
+    )
 
 
 def _suggestion(crs: QgsCoordinateReferenceSystem) -> str:

@@ -149,8 +149,8 @@ def run_for_cones(provider, listener):
 
 
 @pytest.fixture(scope="session")
-def qgis_process(root, tmp_path_factory):
-    """Run ``qgis_process`` with the plugin in a profile of its own and no display."""
+def qgis_process_place(root, tmp_path_factory):
+    """``qgis_process``, and the environment in which it has the plugin and no display."""
     program = shutil.which("qgis_process.bin") or shutil.which("qgis_process")
     assert program, "qgis_process is not on the path: run make setup"
     home = tmp_path_factory.mktemp("qgis_process")
@@ -167,6 +167,13 @@ def qgis_process(root, tmp_path_factory):
         "QGIS_PLUGINPATH": str(home / "plugins"),
         "QGIS_CUSTOM_CONFIG_PATH": str(home / "cfg"),
     }
+    return program, environment
+
+
+@pytest.fixture(scope="session")
+def qgis_process(qgis_process_place):
+    """Run ``qgis_process`` with the plugin to its end."""
+    program, environment = qgis_process_place
 
     def run(*words, packages=True) -> Finished:
         """``packages`` shows it the packages of this environment, such as zstandard."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from osgeo import ogr, osr
 from qgis.core import QgsCoordinateReferenceSystem, QgsProcessingException, QgsProject
 
 WALL = "LineString(0 5, 50 5)"
@@ -74,7 +75,7 @@ def test_a_layer_without_a_crs_is_refused_by_name(refused, wall, make_layer):
 
 def test_a_layer_that_cannot_be_opened_is_refused_by_name(refused, wall, tmp_path):
     missing = f"{tmp_path / 'gone.gpkg'}|layername=walls"
-    assert f"The obstacle layer {missing} cannot be opened" in refused(wall, missing, CENTER="0,0")
+    assert f"OBSTACLES: the layer {missing} cannot be opened" in refused(wall, missing, CENTER="0,0")
 
 
 def test_points_are_refused_by_name(refused, make_layer):
@@ -94,8 +95,62 @@ def test_a_negative_default_height_is_refused(refused, wall):
 def test_a_folder_that_is_not_there_is_named(export, wall, tmp_path):
     target = tmp_path / "file" / "map.txt"
     (tmp_path / "file").write_text("no folder")
-    with pytest.raises(QgsProcessingException, match=f"cannot be written to {target}: Not a directory"):
+    with pytest.raises(QgsProcessingException, match=f"cannot be written to {target}: there is no folder"):
         export(wall, CENTER="0,0", OUTPUT=str(target))
+
+
+def test_layers_in_different_crss_are_not_mixed(refused, wall, make_layer):
+    other = make_layer("other", crs="EPSG:32634", features=[(WALL, 1.0)])
+    said = refused(wall, other, CENTER="0,0")
+    assert "The layers are in different CRSs" in said and "EPSG:32634" in said and "give SITE_CRS" in said
+
+
+def test_a_file_of_several_layers_needs_the_name_of_one(refused, export, tmp_path):
+    """QGIS takes the first, and a map without the walls would tell a robot that all is free there."""
+    file = tmp_path / "campus.gpkg"
+    source = ogr.GetDriverByName("GPKG").CreateDataSource(str(file))
+    metres = osr.SpatialReference()
+    metres.ImportFromEPSG(32633)
+    for name in ("buildings", "walls"):
+        source.CreateLayer(name, metres, ogr.wkbLineString)
+    source.CreateLayer("notes", None, ogr.wkbNone)
+    source = None
+    said = refused(str(file), CENTER="0,0")
+    assert f"OBSTACLES: the file {file} holds 2 layers (buildings, walls)" in said
+    assert f"{file}|layername=buildings" in said
+    assert export(f"{file}|layername=walls", CENTER="0,0").results["OBSTACLE_COUNT"] == 0
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "wanted"),
+    [
+        ("STRICT", "no", "true or false"),
+        ("ROTATION", "north", "a number"),
+        ("ROTATION", "1_0", "a number"),
+        ("PLANE_LOW", "nan", "a number"),
+        ("FORMAT", "xml", "one of text, binary, compact"),
+        ("CENTER", "here", "'x,y', or"),
+        ("ORIGIN", "1", "'x,y', or"),
+    ],
+)
+def test_a_value_that_qgis_would_take_for_another_is_refused(refused, wall, name, value, wanted):
+    said = refused(wall, **{"CENTER": "0,0", name: value})
+    assert f"{name} is {value}: give {wanted}" in said
+
+
+def test_an_extent_that_is_none_is_told_how_to_write(refused, wall):
+    assert "EXTENT is here: give 'xmin,xmax,ymin,ymax'" in refused(wall, EXTENT="here")
+
+
+def test_a_parameter_that_there_is_not_is_refused(refused, wall):
+    said = refused(wall, CENTER="0,0", PLANE_HI=2)
+    assert "There is no parameter PLANE_HI" in said and "PLANE_HIGH" in said
+
+
+@pytest.mark.parametrize("value", ["true", "False", "1", "0", True, False])
+def test_every_spelling_of_a_truth_that_qgis_understands_is_taken(export, wall, value):
+    strict = export(wall, CENTER="0,0", STRICT=value).text.startswith("border;")
+    assert strict is (str(value).lower() in ("true", "1"))
 
 
 def test_the_file_of_an_obstacle_layer_is_never_the_output(refused, tmp_path):

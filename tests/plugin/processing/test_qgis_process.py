@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import re
+import signal
+import subprocess
 
 import numpy as np
 import pyogrio
@@ -238,3 +241,37 @@ def is_broken(shape):
 
 def outline_of(shape):
     return shape.boundary if shape.geom_type.endswith("Polygon") else shape
+
+
+def test_an_export_that_is_interrupted_ends_with_an_error_and_leaves_the_older_map(
+    qgis_process_place, helsinki, tmp_path
+):
+    """A script must not go on with the map of yesterday."""
+    program, environment = qgis_process_place
+    target = tmp_path / "map.txt"
+    target.write_text("an older map")
+    words = (
+        f"OBSTACLES={helsinki}|layername=buildings",
+        "CENTER=385900,6671700",
+        "WIDTH=4000",
+        "HEIGHT=4000",
+    )
+    # Each height takes a moment: all of them would take minutes.
+    slow = "HEIGHT_EXPRESSION=array_length(generate_series(1, 400000 + $id)) / 1e6"
+    process = subprocess.Popen(
+        [program, "run", "fleet:exportrobotmap", "--", *words, slow, f"OUTPUT={target}"],
+        env=environment,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+    )
+    with process, process.stdout as output:
+        said = b""
+        while b"0..." not in said:
+            some = os.read(output.fileno(), 4096)
+            assert some, said.decode()
+            said += some
+        process.send_signal(signal.SIGINT)
+        said += output.read()
+    assert b"ERROR:\tIt was cancelled before its end." in said
+    assert process.returncode == 1
+    assert {file.name: file.read_text() for file in tmp_path.iterdir()} == {"map.txt": "an older map"}

@@ -7,7 +7,8 @@ from fleet_supervisor.plugin.sites.errors import SiteCrsError
 from fleet_supervisor.plugin.sites.site_crs import check_site_crs, is_engineering, site_crs_for, stated_crs
 from fleet_supervisor.robot_bridge.sites.errors import CrsError
 from fleet_supervisor.robot_bridge.sites.frame import check_site_crs as check_in_bridge
-from qgis.core import QgsCoordinateReferenceSystem
+from osgeo import ogr
+from qgis.core import QgsCoordinateReferenceSystem, QgsVectorLayer
 
 WKT = (
     'ENGCRS["yard",EDATUM["gate"],CS[Cartesian,2],AXIS["x",east],AXIS["y",north],'
@@ -56,8 +57,6 @@ def test_an_engineering_crs_in_metres_carries_a_site_and_one_in_feet_does_not(qg
 
 
 def test_the_campus_file_is_in_an_engineering_crs(qgis_app, data):
-    from qgis.core import QgsVectorLayer
-
     file = data / "upc_campus_nord" / "upc_campus_nord_local.gpkg"
     crs = QgsVectorLayer(f"{file}|layername=walls", "walls", "ogr").crs()
     assert crs.isValid() and is_engineering(crs)
@@ -69,8 +68,19 @@ def test_the_chosen_crs_wins_over_the_project_and_the_project_over_the_layers(qg
     assert site_crs_for(utm33, utm35, [utm35]) == utm33
     assert site_crs_for(none, utm33, [utm35]) == utm33
     assert site_crs_for(none, none, [utm35, none]) == utm35
-    assert not site_crs_for(none, none, [utm35, utm33]).isValid()
     assert not site_crs_for(none, none, []).isValid()
+
+
+def test_layers_in_different_crss_need_one_to_be_chosen(qgis_app):
+    """Nothing transforms into a CRS that is not known: their coordinates would be mixed as they are."""
+    none, utm33, utm35 = crs_of(""), crs_of("EPSG:32633"), crs_of("EPSG:32635")
+    with pytest.raises(SiteCrsError, match=r"EPSG:32635.*, EPSG:32633.*: give SITE_CRS"):
+        site_crs_for(none, none, [utm35, utm33, utm35])
+    assert site_crs_for(none, utm33, [utm35, utm33]) == utm33
+    assert site_crs_for(utm35, none, [utm35, utm33]) == utm35
+    with pytest.raises(SiteCrsError, match=r"yard, EPSG:32635"):
+        site_crs_for(none, none, [engineering(), utm35])
+    assert not site_crs_for(none, none, [engineering(), engineering(name="other")]).isValid()
 
 
 def test_layers_in_one_engineering_crs_do_not_need_the_project_to_be_in_it(qgis_app):
@@ -84,4 +94,17 @@ def test_layers_in_one_engineering_crs_do_not_need_the_project_to_be_in_it(qgis_
 def test_a_crs_that_says_it_is_undefined_is_none(qgis_app, name):
     assert not stated_crs(engineering(name=name)).isValid()
     assert stated_crs(engineering()) == engineering()
+
+
+def test_a_geopackage_without_a_crs_says_none(qgis_app, tmp_path):
+    """Its layer comes in degrees of an "Undefined geographic SRS"."""
+    file = str(tmp_path / "plan.gpkg")
+    source = ogr.GetDriverByName("GPKG").CreateDataSource(file)
+    source.CreateLayer("walls", None, ogr.wkbLineString)
+    source = None
+    assert not stated_crs(QgsVectorLayer(f"{file}|layername=walls", "walls", "ogr").crs()).isValid()
+    assert stated_crs(crs_of("EPSG:4326")) == crs_of("EPSG:4326")
+
+
+def test_a_crs_with_a_code_is_stated(qgis_app):
     assert stated_crs(crs_of("EPSG:32633")) == crs_of("EPSG:32633")
