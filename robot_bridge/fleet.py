@@ -140,6 +140,7 @@ class Fleet:
         self.tally = Tally()
         self._database_id = ""
         self._outboxes: dict[str, asyncio.Event] = {}
+        self._greeting: dict[str, asyncio.Lock] = {}
         self._listeners: set[Listener] = set()
 
     @property
@@ -179,7 +180,8 @@ class Fleet:
         now = self._clock()
         self.tally.requests[link, type(request).__name__] += 1
         if isinstance(request, Ready):
-            return await self._receive_ready(robot, link, request, id)
+            async with self._greeting.setdefault(robot, asyncio.Lock()):
+                return await self._receive_ready(robot, link, request, id)
         if isinstance(request, SendGPS):
             request = self._pose_of(robot, request, now)
         if isinstance(request, SendPos):
@@ -346,12 +348,13 @@ class Fleet:
         if reason is not None:
             log.warning("link %s: a second robot said Ready: %s", link, reason)
             return Outcome(robot, OpAck(id=id, ok=False, reason=reason, magic=request.magic))
-        started = self.robots.ready(robot, request.magic, link, self._clock())
-        await self._saving.save(robot)
-        if started:
-            await self.delivered_by_deletion(link)
+        if self.robots.starts_anew(robot, request.magic):
+            # Before it is known by its new number: after a failure it must be seen to start anew once more.
+            await self.delivered_by_deletion(self.robots.get(robot).link)
             reason = f"robot {robot} started anew; sent once more"
             await self._book.deliver_again(robot, reason, self.site.settings.commands.expire_after_s)
+        self.robots.ready(robot, request.magic, link, self._clock())
+        await self._saving.save(robot)
         await self.emergency.ready(robot)
         content = await asyncio.to_thread(self.site.whole_map)
         ack = OpAck(id=id, magic=request.magic, robot=robot, database=self._database_id)

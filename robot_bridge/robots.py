@@ -83,19 +83,21 @@ class Robots:
         robot.state = self._judge(robot, now)
         self._touch(robot)
 
-    def ready(self, name: str, magic: int, link: str, now: float) -> bool:
-        """Register a robot; return true unless it repeats the Ready (same magic) it is registered by."""
+    def starts_anew(self, name: str, magic: int) -> bool:
+        """Tell whether a Ready with ``magic`` comes from another run of a robot that is known."""
         robot = self._robots.get(name)
-        started = robot is None or robot.magic != magic
-        if robot is None:
-            robot = self._robots[name] = Robot(name, magic, link, now)
-        if started and robot.pose is not None:
+        return robot is not None and robot.magic != magic
+
+    def ready(self, name: str, magic: int, link: str, now: float) -> None:
+        """Register a robot, or this run of it."""
+        anew = self.starts_anew(name, magic)
+        robot = self._robots.setdefault(name, Robot(name, magic, link, now))
+        if anew and robot.pose is not None:
             # A robot that started anew may have a clock that did so too.
             robot.pose = replace(robot.pose, t=None)
             robot.order.restarted()
         robot.magic, robot.link, robot.located = magic, link, False
         self.heard(name, link, now)
-        return started
 
     def heard(self, name: str, link: str, now: float, *, stopped: bool = False) -> Robot:
         """Note that a message of the robot came in; ``stopped`` when it said Stopped."""

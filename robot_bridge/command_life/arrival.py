@@ -56,8 +56,9 @@ class PathArrival:
     may be anywhere on what is left, since it may have driven on unseen; where that passes a place twice, the
     sooner place counts: a robot that stands blocked at the beginning of a loop has not come to its end. Where
     it is not known how far the robot came (``driven`` is None), the later counts. After poses were missed the
-    robot is looked for on all of the path that is left. So is one that has moved since it was ``handed`` the
-    path: where its link broke, its acknowledgement may come long after.
+    robot is looked for on all of the path that is left. So is one that is beyond the beginning and
+    far from where it was when the path was given to it (``handed``): it may acknowledge it long after it set
+    off, where its link broke.
     """
 
     def __init__(
@@ -98,7 +99,8 @@ class PathArrival:
     def _follow(self, pose: SendPos) -> None:
         station, off = self.line.feet(pose.x, pose.y)
         if self._handed is not None:
-            self._seek = self._seek or _apart(pose, self._handed) > LOOK_AHEAD
+            at_beginning = ((off <= CORRIDOR) & (station <= LOOK_AHEAD)).any()
+            self._seek |= _apart(pose, self._handed) > LOOK_AHEAD and not at_beginning
             self._handed = None
         if self._seek and (off <= CORRIDOR).any():
             self._seek, self._last = False, pose
@@ -159,7 +161,7 @@ def judge(
     """Return the judge of a command; ``tolerance`` is metres, ``under_way`` if the robot may be driving.
 
     ``driven`` is metres of a path that it is known to have driven, None if that is not known; ``handed`` is
-    where it was when it was handed the command.
+    where it was when the command was given to it.
     """
     if isinstance(command, SetPosEnd):
         return TargetArrival(command, tolerance)

@@ -49,7 +49,7 @@ class Order:
 class OpenCommand:
     """A command with a step to come; ``sa_id`` is its message's row in SA, written at ``written_at``.
 
-    ``handed`` is where the robot was, as far as it is known, when it was handed the message at the earliest.
+    ``handed`` is where the robot was, as far as it is known, before it can have read that.
     """
 
     report: CommandReport

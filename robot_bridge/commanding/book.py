@@ -244,8 +244,7 @@ class CommandBook:
         async with self._holding(robots):
             queued = [self._open.queued[id] for id in sa_ids if id in self._open.queued]
             now = self._clock()
-            handed = [dataclasses.replace(c, handed=self.seen(c.report.robot)) for c in queued]
-            await self._save([command.step(CommandState.DELIVERED, now, GATEWAY) for command in handed])
+            await self._save([command.step(CommandState.DELIVERED, now, GATEWAY) for command in queued])
 
     async def _acknowledged(self, robot: str, ack: OpAck) -> float | None:
         async with self._holding([robot]):

@@ -39,9 +39,12 @@ def test_a_robot_without_a_pose_is_reported_without_one(robots):
 
 
 def test_the_same_magic_is_the_same_run_of_the_robot(robots):
-    assert robots.ready("r1", 7, "websocket", 101.0) is False
-    assert robots.ready("r1", 8, "websocket", 101.0) is True
-    assert robots.ready("r2", 8, "sql", 101.0) is True
+    assert not robots.starts_anew("r1", 7)
+    assert robots.starts_anew("r1", 8)
+    assert not robots.starts_anew("r2", 8)
+    robots.ready("r1", 8, "websocket", 101.0)
+    assert not robots.starts_anew("r1", 8)
+    assert robots.starts_anew("r1", 7)
 
 
 def test_a_late_pose_never_moves_a_robot_back(robots):

@@ -91,6 +91,11 @@ def test_a_loop_is_not_reached_by_a_robot_that_came_to_its_beginning_before_it_a
     assert arrival.deviation(pose(0.05, 0.0)) is None
 
 
+def test_a_path_that_ends_beside_its_beginning_is_not_reached_by_a_robot_that_came_there_beforehand():
+    arrival = judge(SetPath([*LOOP[:-1], (0.0, 1.0)]), TOLERANCE, handed=pose(-8.0, 0.0))
+    assert arrival.deviation(pose(0.0, 1.0)) is None
+
+
 def test_a_path_that_ends_where_it_began_is_reached_once_driven():
     told, at_the_end = walk(PathArrival(SetPath(LOOP), TOLERANCE), LOOP)
     assert told is None
