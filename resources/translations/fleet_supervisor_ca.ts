@@ -2842,36 +2842,36 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/robots_form.py" />
-            <source>Aboard</source>
-            <translation>A bord</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/robots_form.py" />
             <source>Aboard: cones on the robot now. Range: metres of battery, 0 if it does not matter</source>
             <translation>A bord: cons al robot ara. Abast: metres de bateria, 0 si no importa</translation>
         </message>
         <message>
-            <location filename="../../plugin/desk/plans/robots_form.py" />
+            <location filename="../../plugin/desk/plans/robots_model.py" />
+            <source>Aboard</source>
+            <translation>A bord</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/robots_model.py" />
             <source>Carries</source>
             <translation>Porta</translation>
         </message>
         <message>
-            <location filename="../../plugin/desk/plans/robots_form.py" />
+            <location filename="../../plugin/desk/plans/robots_model.py" />
             <source>Range</source>
             <translation>Abast</translation>
         </message>
         <message>
-            <location filename="../../plugin/desk/plans/robots_form.py" />
+            <location filename="../../plugin/desk/plans/robots_model.py" />
             <source>m/s</source>
             <translation>m/s</translation>
         </message>
         <message>
-            <location filename="../../plugin/desk/plans/robots_form.py" />
+            <location filename="../../plugin/desk/plans/robots_model.py" />
             <source>{heads} of {rows} is {text!r}: give {least:g} or more.</source>
             <translation>{heads} de {rows} és {text!r}: doneu {least:g} o més.</translation>
         </message>
         <message>
-            <location filename="../../plugin/desk/plans/robots_form.py" />
+            <location filename="../../plugin/desk/plans/robots_model.py" />
             <source>{name} is away: it takes no part</source>
             <translation>{name} no hi és: no hi participa</translation>
         </message>
@@ -5351,6 +5351,11 @@
             <translation>{how}: doneu el lloc de la disposició, o una línia per on s'estengui.</translation>
         </message>
         <message>
+            <location filename="../../plugin/processing/errors.py" />
+            <source>It was cancelled before its end.</source>
+            <translation>S'ha cancel·lat abans d'acabar.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/processing/export_help.py" />
             <source>&lt;p&gt;Writes the obstacles in a window of the site as a map that robots read: oriented segments with free space to their right, grouped by kind. Robots get metres in the &lt;b&gt;site frame&lt;/b&gt;: a projected CRS, an origin in it and a rotation.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Obstacle layers&lt;/b&gt;: lines and polygons, several at once, in any CRS. Curves become chords (2 cm). What the window cuts becomes open chains; no wall is invented on the border.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Window&lt;/b&gt;: a centre with width and height in metres, or an extent. Positions may name their CRS, as in &lt;i&gt;12.5,48.1 [EPSG:4326]&lt;/i&gt;; without one they are in the site CRS.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Site CRS&lt;/b&gt;: in metres, such as the local UTM zone. EPSG:3857 is refused, because its metres are not metres. Default: the project's CRS; without a project the layers' own. A local engineering CRS is used as it is.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Height, foot, label, outdoors&lt;/b&gt;: QGIS expressions; the foot is where a feature begins above the ground, and its height counts from there. What a layer keeps (menu Fleet Supervisor, Layer roles) wins over these. There its role makes flights of risers of a layer (stairs) or surfaces without height (ramp), its filter says which features count, and points of furniture get a shape. Default: the field &lt;i&gt;height&lt;/i&gt; or &lt;i&gt;height_m&lt;/i&gt;, on the ground, the layer's name, true. Where no height is known, the default height is used, said in a warning and marked &lt;i&gt;h=est&lt;/i&gt; in the map.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Map profile&lt;/b&gt;: a file that says by layer name what layers are: &lt;i&gt;openstreetmap&lt;/i&gt;, &lt;i&gt;upc_campus_nord&lt;/i&gt; or the path of one's own. It wins over what the layers keep.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Smaller maps&lt;/b&gt; (advanced, each off unless asked for): only what the robot's plane meets, without walls between or inside buildings, lines joined, fewer corners, no short segments, heights in steps. The log says how many obstacles and segments there were before and after. Walls between buildings, corners and short segments need the Python package shapely 2.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Format&lt;/b&gt;: text; binary (the text compressed, with a check sum), which needs the Python package zstandard; compact (about a third of binary, whole centimetres), which needs cbor2 instead. The file &lt;i&gt;docs/robot-map.md&lt;/i&gt; of the project describes them, and exports from a script.&lt;/p&gt; &lt;p&gt;Broken geometry is repaired where that is safe and left out where it is not. Each time a warning names the layer and the feature; the export goes on.&lt;/p&gt;</source>
             <translation>&lt;p&gt;Escriu els obstacles d'una finestra del recinte com un mapa que llegeixen els robots: segments orientats amb espai lliure a la dreta, agrupats per tipus. Els robots reben metres al &lt;b&gt;marc del recinte&lt;/b&gt;: un SRC projectat, un origen i una rotació.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Capes d'obstacles&lt;/b&gt;: línies i polígons, diverses alhora, en qualsevol SRC. Les corbes esdevenen cordes (2 cm). El que talla la finestra esdevé cadenes obertes; no s'inventa cap paret a la vora.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Finestra&lt;/b&gt;: un centre amb amplada i alçada en metres, o una extensió. Les posicions poden dir el seu SRC, com a &lt;i&gt;12.5,48.1 [EPSG:4326]&lt;/i&gt;; sense, són al SRC del recinte.&lt;/p&gt; &lt;p&gt;&lt;b&gt;SRC del recinte&lt;/b&gt;: en metres, com ara la zona UTM local. EPSG:3857 es refusa, perquè els seus metres no són metres. Per defecte: el SRC del projecte; sense projecte, el de les capes. Un SRC local d'enginyeria es fa servir tal com és.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Alçada, peu, etiqueta, exterior&lt;/b&gt;: expressions del QGIS; el peu és on comença una entitat sobre el terra, i l'alçada compta des d'allà. El que guarda una capa (menú Fleet Supervisor, Papers de les capes) passa per davant. Allà el seu paper fa d'una capa trams d'escala (stairs) o superfícies sense alçada (ramp), el seu filtre diu quines entitats compten, i els punts de mobiliari reben una forma. Per defecte: el camp &lt;i&gt;height&lt;/i&gt; o &lt;i&gt;height_m&lt;/i&gt;, a terra, el nom de la capa, cert. On no se sap l'alçada es fa servir l'alçada per defecte, amb un avís i la marca &lt;i&gt;h=est&lt;/i&gt; al mapa.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Perfil de mapa&lt;/b&gt;: un fitxer que diu pel nom què són les capes: &lt;i&gt;openstreetmap&lt;/i&gt;, &lt;i&gt;upc_campus_nord&lt;/i&gt; o el camí d'un de propi. Passa per davant del que guarden les capes.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Mapes més petits&lt;/b&gt; (avançat, cadascun desactivat si no es demana): només el que talla el pla del robot, sense parets entre edificis ni a dins, línies unides, menys cantonades, sense segments curts, alçades en esglaons. El registre diu quants obstacles i segments hi havia abans i després. Les parets entre edificis, les cantonades i els segments curts necessiten el paquet de Python shapely 2.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Format&lt;/b&gt;: text; binari (el text comprimit, amb una suma de control), que necessita el paquet de Python zstandard; compacte (un terç del binari, centímetres sencers), que necessita cbor2. El fitxer &lt;i&gt;docs/robot-map.md&lt;/i&gt; del projecte els descriu, i també les exportacions des d'un script.&lt;/p&gt; &lt;p&gt;La geometria trencada es repara on és segur i queda fora on no ho és. Cada vegada un avís anomena la capa i l'entitat; l'exportació continua.&lt;/p&gt;</translation>
@@ -5502,8 +5507,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/export_plan.py" />
-            <source>The obstacle layer {layer} cannot be opened: check the file, and the layer's name after '|layername='.</source>
-            <translation>La capa d'obstacles {layer} no es pot obrir: comproveu el fitxer i el nom de la capa després de '|layername='.</translation>
+            <source>The robot map</source>
+            <translation>El mapa de robots</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/export_robot_map.py" />
@@ -5804,6 +5809,16 @@
             <location filename="../../plugin/processing/geopackage_by_qgis.py" />
             <source>The layer {name} of the GeoPackage cannot be written: {error}.</source>
             <translation>La capa {name} del GeoPackage no es pot escriure: {error}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/given_layers.py" />
+            <source>{name}: the file {file} holds {count} layers ({layers}): say which, as in {file}|layername={first}.</source>
+            <translation>{name}: el fitxer {file} conté {count} capes ({layers}): digueu quina, com a {file}|layername={first}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/given_layers.py" />
+            <source>{name}: the layer {layer} cannot be opened: check the file, and the layer's name after '|layername='.</source>
+            <translation>{name}: la capa {layer} no es pot obrir: comproveu el fitxer i el nom de la capa després de '|layername='.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/histogram_svg.py" />
@@ -6502,11 +6517,6 @@
         </message>
         <message>
             <location filename="../../plugin/processing/publish_plan.py" />
-            <source>{name}: the layer {layer} cannot be opened: check the file, and the layer's name after '|layername='.</source>
-            <translation>{name}: la capa {layer} no es pot obrir: comproveu el fitxer i el nom de la capa després de '|layername='.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/publish_plan.py" />
             <source>{place} = {text} is no number: correct it there.</source>
             <translation>{place} = {text} no és un nombre: corregiu-lo allà.</translation>
         </message>
@@ -6981,14 +6991,54 @@
             <translation>{odd} entitats no tenen lloc, robot o temps; queden fora.</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/whole_file.py" />
-            <source>The robot map</source>
-            <translation>El mapa de robots</translation>
+            <location filename="../../plugin/processing/value_spelling.py" />
+            <source>'x,y', or 'x,y [EPSG:4326]' in another CRS</source>
+            <translation>'x,y', o 'x,y [EPSG:4326]' en un altre SRC</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/value_spelling.py" />
+            <source>'xmin,xmax,ymin,ymax'</source>
+            <translation>'xmin,xmax,ymin,ymax'</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/value_spelling.py" />
+            <source>There is no parameter {name}: correct it or leave it out. There are: {names}.</source>
+            <translation>No hi ha cap paràmetre {name}: corregiu-lo o ometeu-lo. N'hi ha: {names}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/value_spelling.py" />
+            <source>one of {options}</source>
+            <translation>un d'aquests: {options}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/value_spelling.py" />
+            <source>true or false</source>
+            <translation>true o false</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/value_spelling.py" />
+            <source>{name} is {value}: give {wanted}.</source>
+            <translation>{name} és {value}: doneu {wanted}.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/whole_file.py" />
-            <source>{what} cannot be written to {target}: {reason}. Choose a file in a folder that exists and may be written to.</source>
-            <translation>{what} no es pot escriure a {target}: {reason}. Trieu un fitxer en una carpeta que existeixi i on es pugui escriure.</translation>
+            <source>it is there and is no file</source>
+            <translation>ja existeix i no és un fitxer</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/whole_file.py" />
+            <source>the folder {folder} may not be written to</source>
+            <translation>no es pot escriure a la carpeta {folder}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/whole_file.py" />
+            <source>there is no folder {folder}</source>
+            <translation>no hi ha cap carpeta {folder}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/whole_file.py" />
+            <source>{what} cannot be written to {target}: {reason}. Choose a file in a folder that exists, may be written to, and has space.</source>
+            <translation>{what} no es pot escriure a {target}: {reason}. Trieu un fitxer en una carpeta que existeixi, on es pugui escriure i que tingui espai.</translation>
         </message>
         <message>
             <location filename="../../plugin/roles/live_preview.py" />
@@ -7792,6 +7842,11 @@
             <location filename="../../plugin/sites/site_crs.py" />
             <source>The CRS {crs} cannot carry a site</source>
             <translation>El SRC {crs} no pot portar un recinte</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/site_crs.py" />
+            <source>The layers are in different CRSs ({names}), and nothing says which is the site's: give SITE_CRS, or set the project's CRS.</source>
+            <translation>Les capes són en SRC diferents ({names}), i res no diu quin és el del recinte: doneu SITE_CRS, o definiu el SRC del projecte.</translation>
         </message>
         <message>
             <location filename="../../plugin/sites/site_crs.py" />

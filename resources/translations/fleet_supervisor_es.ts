@@ -2842,36 +2842,36 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/robots_form.py" />
-            <source>Aboard</source>
-            <translation>A bordo</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/robots_form.py" />
             <source>Aboard: cones on the robot now. Range: metres of battery, 0 if it does not matter</source>
             <translation>A bordo: conos en el robot ahora. Alcance: metros de batería, 0 si no importa</translation>
         </message>
         <message>
-            <location filename="../../plugin/desk/plans/robots_form.py" />
+            <location filename="../../plugin/desk/plans/robots_model.py" />
+            <source>Aboard</source>
+            <translation>A bordo</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/robots_model.py" />
             <source>Carries</source>
             <translation>Lleva</translation>
         </message>
         <message>
-            <location filename="../../plugin/desk/plans/robots_form.py" />
+            <location filename="../../plugin/desk/plans/robots_model.py" />
             <source>Range</source>
             <translation>Alcance</translation>
         </message>
         <message>
-            <location filename="../../plugin/desk/plans/robots_form.py" />
+            <location filename="../../plugin/desk/plans/robots_model.py" />
             <source>m/s</source>
             <translation>m/s</translation>
         </message>
         <message>
-            <location filename="../../plugin/desk/plans/robots_form.py" />
+            <location filename="../../plugin/desk/plans/robots_model.py" />
             <source>{heads} of {rows} is {text!r}: give {least:g} or more.</source>
             <translation>{heads} de {rows} es {text!r}: dé {least:g} o más.</translation>
         </message>
         <message>
-            <location filename="../../plugin/desk/plans/robots_form.py" />
+            <location filename="../../plugin/desk/plans/robots_model.py" />
             <source>{name} is away: it takes no part</source>
             <translation>{name} no está: no participa</translation>
         </message>
@@ -5351,6 +5351,11 @@
             <translation>{how}: dé el lugar de la disposición, o una línea por la que se extienda.</translation>
         </message>
         <message>
+            <location filename="../../plugin/processing/errors.py" />
+            <source>It was cancelled before its end.</source>
+            <translation>Se canceló antes de acabar.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/processing/export_help.py" />
             <source>&lt;p&gt;Writes the obstacles in a window of the site as a map that robots read: oriented segments with free space to their right, grouped by kind. Robots get metres in the &lt;b&gt;site frame&lt;/b&gt;: a projected CRS, an origin in it and a rotation.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Obstacle layers&lt;/b&gt;: lines and polygons, several at once, in any CRS. Curves become chords (2 cm). What the window cuts becomes open chains; no wall is invented on the border.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Window&lt;/b&gt;: a centre with width and height in metres, or an extent. Positions may name their CRS, as in &lt;i&gt;12.5,48.1 [EPSG:4326]&lt;/i&gt;; without one they are in the site CRS.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Site CRS&lt;/b&gt;: in metres, such as the local UTM zone. EPSG:3857 is refused, because its metres are not metres. Default: the project's CRS; without a project the layers' own. A local engineering CRS is used as it is.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Height, foot, label, outdoors&lt;/b&gt;: QGIS expressions; the foot is where a feature begins above the ground, and its height counts from there. What a layer keeps (menu Fleet Supervisor, Layer roles) wins over these. There its role makes flights of risers of a layer (stairs) or surfaces without height (ramp), its filter says which features count, and points of furniture get a shape. Default: the field &lt;i&gt;height&lt;/i&gt; or &lt;i&gt;height_m&lt;/i&gt;, on the ground, the layer's name, true. Where no height is known, the default height is used, said in a warning and marked &lt;i&gt;h=est&lt;/i&gt; in the map.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Map profile&lt;/b&gt;: a file that says by layer name what layers are: &lt;i&gt;openstreetmap&lt;/i&gt;, &lt;i&gt;upc_campus_nord&lt;/i&gt; or the path of one's own. It wins over what the layers keep.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Smaller maps&lt;/b&gt; (advanced, each off unless asked for): only what the robot's plane meets, without walls between or inside buildings, lines joined, fewer corners, no short segments, heights in steps. The log says how many obstacles and segments there were before and after. Walls between buildings, corners and short segments need the Python package shapely 2.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Format&lt;/b&gt;: text; binary (the text compressed, with a check sum), which needs the Python package zstandard; compact (about a third of binary, whole centimetres), which needs cbor2 instead. The file &lt;i&gt;docs/robot-map.md&lt;/i&gt; of the project describes them, and exports from a script.&lt;/p&gt; &lt;p&gt;Broken geometry is repaired where that is safe and left out where it is not. Each time a warning names the layer and the feature; the export goes on.&lt;/p&gt;</source>
             <translation>&lt;p&gt;Escribe los obstáculos de una ventana del recinto como un mapa que leen los robots: segmentos orientados con espacio libre a su derecha, agrupados por tipo. Los robots reciben metros en el &lt;b&gt;marco del recinto&lt;/b&gt;: un SRC proyectado, un origen y una rotación.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Capas de obstáculos&lt;/b&gt;: líneas y polígonos, varias a la vez, en cualquier SRC. Las curvas se convierten en cuerdas (2 cm). Lo que corta la ventana se convierte en cadenas abiertas; no se inventa ninguna pared en el borde.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Ventana&lt;/b&gt;: un centro con anchura y altura en metros, o una extensión. Las posiciones pueden decir su SRC, como en &lt;i&gt;12.5,48.1 [EPSG:4326]&lt;/i&gt;; sin él, están en el SRC del recinto.&lt;/p&gt; &lt;p&gt;&lt;b&gt;SRC del recinto&lt;/b&gt;: en metros, como la zona UTM local. EPSG:3857 se rechaza, porque sus metros no son metros. Por defecto: el SRC del proyecto; sin proyecto, el de las capas. Un SRC local de ingeniería se usa tal como es.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Altura, pie, etiqueta, exterior&lt;/b&gt;: expresiones de QGIS; el pie es donde empieza un objeto espacial sobre el suelo, y su altura cuenta desde allí. Lo que guarda una capa (menú Fleet Supervisor, Papeles de las capas) prevalece. Allí su papel hace de una capa tramos de escalera (stairs) o superficies sin altura (ramp), su filtro dice qué objetos espaciales cuentan, y los puntos de mobiliario reciben una forma. Por defecto: el campo &lt;i&gt;height&lt;/i&gt; o &lt;i&gt;height_m&lt;/i&gt;, en el suelo, el nombre de la capa, verdadero. Donde no se sabe la altura se usa la altura por defecto, con un aviso y la marca &lt;i&gt;h=est&lt;/i&gt; en el mapa.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Perfil de mapa&lt;/b&gt;: un archivo que dice por el nombre qué son las capas: &lt;i&gt;openstreetmap&lt;/i&gt;, &lt;i&gt;upc_campus_nord&lt;/i&gt; o la ruta de uno propio. Prevalece sobre lo que guardan las capas.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Mapas más pequeños&lt;/b&gt; (avanzado, cada uno desactivado si no se pide): solo lo que corta el plano del robot, sin paredes entre edificios ni dentro, líneas unidas, menos esquinas, sin segmentos cortos, alturas en escalones. El registro dice cuántos obstáculos y segmentos había antes y después. Las paredes entre edificios, las esquinas y los segmentos cortos necesitan el paquete de Python shapely 2.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Formato&lt;/b&gt;: texto; binario (el texto comprimido, con una suma de control), que necesita el paquete de Python zstandard; compacto (un tercio del binario, centímetros enteros), que necesita cbor2. El archivo &lt;i&gt;docs/robot-map.md&lt;/i&gt; del proyecto los describe, y también las exportaciones desde un script.&lt;/p&gt; &lt;p&gt;La geometría rota se repara donde es seguro y queda fuera donde no lo es. Cada vez un aviso nombra la capa y el objeto espacial; la exportación continúa.&lt;/p&gt;</translation>
@@ -5502,8 +5507,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/export_plan.py" />
-            <source>The obstacle layer {layer} cannot be opened: check the file, and the layer's name after '|layername='.</source>
-            <translation>La capa de obstáculos {layer} no se puede abrir: compruebe el archivo y el nombre de la capa después de '|layername='.</translation>
+            <source>The robot map</source>
+            <translation>El mapa de robots</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/export_robot_map.py" />
@@ -5804,6 +5809,16 @@
             <location filename="../../plugin/processing/geopackage_by_qgis.py" />
             <source>The layer {name} of the GeoPackage cannot be written: {error}.</source>
             <translation>La capa {name} del GeoPackage no se puede escribir: {error}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/given_layers.py" />
+            <source>{name}: the file {file} holds {count} layers ({layers}): say which, as in {file}|layername={first}.</source>
+            <translation>{name}: el archivo {file} contiene {count} capas ({layers}): indique cuál, como en {file}|layername={first}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/given_layers.py" />
+            <source>{name}: the layer {layer} cannot be opened: check the file, and the layer's name after '|layername='.</source>
+            <translation>{name}: la capa {layer} no se puede abrir: compruebe el archivo y el nombre de la capa después de '|layername='.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/histogram_svg.py" />
@@ -6502,11 +6517,6 @@
         </message>
         <message>
             <location filename="../../plugin/processing/publish_plan.py" />
-            <source>{name}: the layer {layer} cannot be opened: check the file, and the layer's name after '|layername='.</source>
-            <translation>{name}: la capa {layer} no se puede abrir: compruebe el archivo y el nombre de la capa después de '|layername='.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/publish_plan.py" />
             <source>{place} = {text} is no number: correct it there.</source>
             <translation>{place} = {text} no es un número: corríjalo allí.</translation>
         </message>
@@ -6981,14 +6991,54 @@
             <translation>{odd} objetos espaciales no tienen lugar, robot o tiempo; quedan fuera.</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/whole_file.py" />
-            <source>The robot map</source>
-            <translation>El mapa de robots</translation>
+            <location filename="../../plugin/processing/value_spelling.py" />
+            <source>'x,y', or 'x,y [EPSG:4326]' in another CRS</source>
+            <translation>'x,y', o 'x,y [EPSG:4326]' en otro SRC</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/value_spelling.py" />
+            <source>'xmin,xmax,ymin,ymax'</source>
+            <translation>'xmin,xmax,ymin,ymax'</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/value_spelling.py" />
+            <source>There is no parameter {name}: correct it or leave it out. There are: {names}.</source>
+            <translation>No hay ningún parámetro {name}: corríjalo u omítalo. Los que hay: {names}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/value_spelling.py" />
+            <source>one of {options}</source>
+            <translation>uno de estos: {options}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/value_spelling.py" />
+            <source>true or false</source>
+            <translation>true o false</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/value_spelling.py" />
+            <source>{name} is {value}: give {wanted}.</source>
+            <translation>{name} es {value}: indique {wanted}.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/whole_file.py" />
-            <source>{what} cannot be written to {target}: {reason}. Choose a file in a folder that exists and may be written to.</source>
-            <translation>{what} no se puede escribir en {target}: {reason}. Elija un archivo en una carpeta que exista y donde se pueda escribir.</translation>
+            <source>it is there and is no file</source>
+            <translation>ya existe y no es un archivo</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/whole_file.py" />
+            <source>the folder {folder} may not be written to</source>
+            <translation>no se puede escribir en la carpeta {folder}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/whole_file.py" />
+            <source>there is no folder {folder}</source>
+            <translation>no existe la carpeta {folder}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/whole_file.py" />
+            <source>{what} cannot be written to {target}: {reason}. Choose a file in a folder that exists, may be written to, and has space.</source>
+            <translation>{what} no se puede escribir en {target}: {reason}. Elija un archivo en una carpeta que exista, donde se pueda escribir y que tenga espacio.</translation>
         </message>
         <message>
             <location filename="../../plugin/roles/live_preview.py" />
@@ -7792,6 +7842,11 @@
             <location filename="../../plugin/sites/site_crs.py" />
             <source>The CRS {crs} cannot carry a site</source>
             <translation>El SRC {crs} no puede llevar un recinto</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/site_crs.py" />
+            <source>The layers are in different CRSs ({names}), and nothing says which is the site's: give SITE_CRS, or set the project's CRS.</source>
+            <translation>Las capas están en SRC distintos ({names}), y nada dice cuál es el del recinto: indique SITE_CRS, o defina el SRC del proyecto.</translation>
         </message>
         <message>
             <location filename="../../plugin/sites/site_crs.py" />

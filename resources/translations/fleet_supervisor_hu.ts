@@ -2840,36 +2840,36 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/robots_form.py" />
-            <source>Aboard</source>
-            <translation>Rajta</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/robots_form.py" />
             <source>Aboard: cones on the robot now. Range: metres of battery, 0 if it does not matter</source>
             <translation>Rajta: a roboton most lévő bóják. Hatótáv: az akkumulátor méterei, 0, ha nem számít</translation>
         </message>
         <message>
-            <location filename="../../plugin/desk/plans/robots_form.py" />
+            <location filename="../../plugin/desk/plans/robots_model.py" />
+            <source>Aboard</source>
+            <translation>Rajta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/robots_model.py" />
             <source>Carries</source>
             <translation>Elvisz</translation>
         </message>
         <message>
-            <location filename="../../plugin/desk/plans/robots_form.py" />
+            <location filename="../../plugin/desk/plans/robots_model.py" />
             <source>Range</source>
             <translation>Hatótáv</translation>
         </message>
         <message>
-            <location filename="../../plugin/desk/plans/robots_form.py" />
+            <location filename="../../plugin/desk/plans/robots_model.py" />
             <source>m/s</source>
             <translation>m/s</translation>
         </message>
         <message>
-            <location filename="../../plugin/desk/plans/robots_form.py" />
+            <location filename="../../plugin/desk/plans/robots_model.py" />
             <source>{heads} of {rows} is {text!r}: give {least:g} or more.</source>
             <translation>{rows} {heads} értéke {text!r}: adjon meg legalább {least:g} értéket.</translation>
         </message>
         <message>
-            <location filename="../../plugin/desk/plans/robots_form.py" />
+            <location filename="../../plugin/desk/plans/robots_model.py" />
             <source>{name} is away: it takes no part</source>
             <translation>{name} nincs jelen: nem vesz részt</translation>
         </message>
@@ -5347,6 +5347,11 @@
             <translation>{how}: adja meg az elrendezés helyét, vagy egy vonalat, amely mentén fekszik.</translation>
         </message>
         <message>
+            <location filename="../../plugin/processing/errors.py" />
+            <source>It was cancelled before its end.</source>
+            <translation>Befejezés előtt megszakították.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/processing/export_help.py" />
             <source>&lt;p&gt;Writes the obstacles in a window of the site as a map that robots read: oriented segments with free space to their right, grouped by kind. Robots get metres in the &lt;b&gt;site frame&lt;/b&gt;: a projected CRS, an origin in it and a rotation.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Obstacle layers&lt;/b&gt;: lines and polygons, several at once, in any CRS. Curves become chords (2 cm). What the window cuts becomes open chains; no wall is invented on the border.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Window&lt;/b&gt;: a centre with width and height in metres, or an extent. Positions may name their CRS, as in &lt;i&gt;12.5,48.1 [EPSG:4326]&lt;/i&gt;; without one they are in the site CRS.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Site CRS&lt;/b&gt;: in metres, such as the local UTM zone. EPSG:3857 is refused, because its metres are not metres. Default: the project's CRS; without a project the layers' own. A local engineering CRS is used as it is.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Height, foot, label, outdoors&lt;/b&gt;: QGIS expressions; the foot is where a feature begins above the ground, and its height counts from there. What a layer keeps (menu Fleet Supervisor, Layer roles) wins over these. There its role makes flights of risers of a layer (stairs) or surfaces without height (ramp), its filter says which features count, and points of furniture get a shape. Default: the field &lt;i&gt;height&lt;/i&gt; or &lt;i&gt;height_m&lt;/i&gt;, on the ground, the layer's name, true. Where no height is known, the default height is used, said in a warning and marked &lt;i&gt;h=est&lt;/i&gt; in the map.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Map profile&lt;/b&gt;: a file that says by layer name what layers are: &lt;i&gt;openstreetmap&lt;/i&gt;, &lt;i&gt;upc_campus_nord&lt;/i&gt; or the path of one's own. It wins over what the layers keep.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Smaller maps&lt;/b&gt; (advanced, each off unless asked for): only what the robot's plane meets, without walls between or inside buildings, lines joined, fewer corners, no short segments, heights in steps. The log says how many obstacles and segments there were before and after. Walls between buildings, corners and short segments need the Python package shapely 2.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Format&lt;/b&gt;: text; binary (the text compressed, with a check sum), which needs the Python package zstandard; compact (about a third of binary, whole centimetres), which needs cbor2 instead. The file &lt;i&gt;docs/robot-map.md&lt;/i&gt; of the project describes them, and exports from a script.&lt;/p&gt; &lt;p&gt;Broken geometry is repaired where that is safe and left out where it is not. Each time a warning names the layer and the feature; the export goes on.&lt;/p&gt;</source>
             <translation>&lt;p&gt;A telephely egy ablakának akadályait olyan térképként írja ki, amelyet robotok olvasnak: irányított szakaszok, jobbjukon szabad területtel, fajták szerint csoportosítva. A robotok métereket kapnak a &lt;b&gt;telephelyi keretben&lt;/b&gt;: egy vetület, abban egy kezdőpont és egy elforgatás.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Akadályrétegek&lt;/b&gt;: vonalak és poligonok, egyszerre több is, bármilyen vetületben. Az ívekből húrok lesznek (2 cm). Amit az ablak elvág, nyílt lánc lesz; a kereten nem keletkezik fal.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Ablak&lt;/b&gt;: egy középpont szélességgel és magassággal méterben, vagy egy terjedelem. A helyek megnevezhetik vetületüket, mint &lt;i&gt;12.5,48.1 [EPSG:4326]&lt;/i&gt;; enélkül a telephely vetületében vannak.&lt;/p&gt; &lt;p&gt;&lt;b&gt;A telephely vetülete&lt;/b&gt;: méterben, például a helyi UTM-zóna. Az EPSG:3857 nem fogadható el, mert méterei nem méterek. Alapértelmezés: a projekt vetülete; projekt nélkül a rétegeké. A helyi mérnöki vetület úgy használatos, ahogy van.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Magasság, alj, címke, kültér&lt;/b&gt;: QGIS-kifejezések; az alj az, ahol egy elem a talaj felett kezdődik, és magassága onnan számít. Amit egy réteg őriz (Fleet Supervisor menü, Rétegszerepek), az előbbre való. Ott a szerepe lépcsőt (stairs) vagy magasság nélküli felületet (ramp) csinál egy rétegből, a szűrője megmondja, mely elemek számítanak, és a pontszerű berendezések alakot kapnak. Alapértelmezés: a &lt;i&gt;height&lt;/i&gt; vagy &lt;i&gt;height_m&lt;/i&gt; mező, a talajon, a réteg neve, igaz. Ahol a magasság nem ismert, az alapértelmezett magasság érvényes, figyelmeztetéssel és &lt;i&gt;h=est&lt;/i&gt; jelöléssel a térképen.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Térképprofil&lt;/b&gt;: fájl, amely rétegnév szerint megmondja, mi egy réteg: &lt;i&gt;openstreetmap&lt;/i&gt;, &lt;i&gt;upc_campus_nord&lt;/i&gt; vagy egy saját fájl útvonala. Előbbre való annál, amit a rétegek őriznek.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Kisebb térképek&lt;/b&gt; (haladó, mind ki van kapcsolva, amíg nem kérik): csak amit a robot síkja metsz, épületek közti és belső falak nélkül, összefűzött vonalakkal, kevesebb sarokkal, rövid szakaszok nélkül, lépcsőzött magasságokkal. A napló megmondja, hány akadály és szakasz volt előtte és utána. Az épületek közti falakhoz, sarkokhoz és rövid szakaszokhoz a shapely 2 Python-csomag kell.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Formátum&lt;/b&gt;: szöveg; bináris (a tömörített szöveg, ellenőrző összeggel), amelyhez a zstandard Python-csomag kell; kompakt (a bináris mintegy harmada, egész centiméterek), amelyhez ehelyett a cbor2. A projekt &lt;i&gt;docs/robot-map.md&lt;/i&gt; fájlja leírja őket és a szkriptből való exportálást.&lt;/p&gt; &lt;p&gt;A hibás geometria ki lesz javítva, ahol ez biztonságos, és kimarad, ahol nem az. Minden esetben figyelmeztetés nevezi meg a réteget és az elemet; az exportálás folytatódik.&lt;/p&gt;</translation>
@@ -5498,8 +5503,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/export_plan.py" />
-            <source>The obstacle layer {layer} cannot be opened: check the file, and the layer's name after '|layername='.</source>
-            <translation>A(z) {layer} akadályréteg nem nyitható meg: ellenőrizze a fájlt és a réteg nevét a '|layername=' után.</translation>
+            <source>The robot map</source>
+            <translation>A robottérkép</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/export_robot_map.py" />
@@ -5800,6 +5805,16 @@
             <location filename="../../plugin/processing/geopackage_by_qgis.py" />
             <source>The layer {name} of the GeoPackage cannot be written: {error}.</source>
             <translation>A GeoPackage {name} rétege nem írható: {error}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/given_layers.py" />
+            <source>{name}: the file {file} holds {count} layers ({layers}): say which, as in {file}|layername={first}.</source>
+            <translation>{name}: a(z) {file} fájlban {count} réteg van ({layers}): adja meg, melyik kell, így: {file}|layername={first}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/given_layers.py" />
+            <source>{name}: the layer {layer} cannot be opened: check the file, and the layer's name after '|layername='.</source>
+            <translation>{name}: a(z) {layer} réteg nem nyitható meg: ellenőrizze a fájlt és a réteg nevét a '|layername=' után.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/histogram_svg.py" />
@@ -6498,11 +6513,6 @@
         </message>
         <message>
             <location filename="../../plugin/processing/publish_plan.py" />
-            <source>{name}: the layer {layer} cannot be opened: check the file, and the layer's name after '|layername='.</source>
-            <translation>{name}: a(z) {layer} réteg nem nyitható meg: ellenőrizze a fájlt és a réteg nevét a '|layername=' után.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/publish_plan.py" />
             <source>{place} = {text} is no number: correct it there.</source>
             <translation>{place} = {text} nem szám: javítsa ki ott.</translation>
         </message>
@@ -6977,14 +6987,54 @@
             <translation>{odd} elemnek nincs helye, robotja vagy ideje; ezek kimaradnak.</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/whole_file.py" />
-            <source>The robot map</source>
-            <translation>A robottérkép</translation>
+            <location filename="../../plugin/processing/value_spelling.py" />
+            <source>'x,y', or 'x,y [EPSG:4326]' in another CRS</source>
+            <translation>„x,y”, vagy más vetületben „x,y [EPSG:4326]”</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/value_spelling.py" />
+            <source>'xmin,xmax,ymin,ymax'</source>
+            <translation>„xmin,xmax,ymin,ymax”</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/value_spelling.py" />
+            <source>There is no parameter {name}: correct it or leave it out. There are: {names}.</source>
+            <translation>Nincs {name} nevű paraméter: javítsa ki vagy hagyja el. Ezek vannak: {names}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/value_spelling.py" />
+            <source>one of {options}</source>
+            <translation>a következők egyike: {options}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/value_spelling.py" />
+            <source>true or false</source>
+            <translation>true vagy false</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/value_spelling.py" />
+            <source>{name} is {value}: give {wanted}.</source>
+            <translation>{name} értéke {value}: adja meg így: {wanted}.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/whole_file.py" />
-            <source>{what} cannot be written to {target}: {reason}. Choose a file in a folder that exists and may be written to.</source>
-            <translation>{what} nem írható ide: {target}: {reason}. Válasszon fájlt egy létező, írható mappában.</translation>
+            <source>it is there and is no file</source>
+            <translation>már létezik, és nem fájl</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/whole_file.py" />
+            <source>the folder {folder} may not be written to</source>
+            <translation>a(z) {folder} mappába nem szabad írni</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/whole_file.py" />
+            <source>there is no folder {folder}</source>
+            <translation>nincs {folder} mappa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/whole_file.py" />
+            <source>{what} cannot be written to {target}: {reason}. Choose a file in a folder that exists, may be written to, and has space.</source>
+            <translation>{what} nem írható ide: {target}: {reason}. Válasszon fájlt olyan mappában, amely létezik, írható, és van benne hely.</translation>
         </message>
         <message>
             <location filename="../../plugin/roles/live_preview.py" />
@@ -7787,6 +7837,11 @@
             <location filename="../../plugin/sites/site_crs.py" />
             <source>The CRS {crs} cannot carry a site</source>
             <translation>A(z) {crs} vetület nem hordozhat telephelyet</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/site_crs.py" />
+            <source>The layers are in different CRSs ({names}), and nothing says which is the site's: give SITE_CRS, or set the project's CRS.</source>
+            <translation>A rétegek vetülete különböző ({names}), és semmi nem mondja meg, melyik a telephelyé: adja meg a SITE_CRS-t, vagy állítsa be a projekt vetületét.</translation>
         </message>
         <message>
             <location filename="../../plugin/sites/site_crs.py" />
