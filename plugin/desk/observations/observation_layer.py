@@ -20,7 +20,7 @@ from ....robot_bridge.messages import ObservationReport, SiteReport
 from ...language import tr
 from ..observation_book import ObservationBook
 from ..road_board import time_of_day
-from ..road_layers import LiveLayer
+from ..row_layer import RowLayer
 from .thumbnails import Thumbnails
 
 FIELDS = (
@@ -43,7 +43,7 @@ class ObservationLayer:
 
     def __init__(self, project: QgsProject, thumbnails: Thumbnails):
         self._thumbnails = thumbnails
-        self._live = LiveLayer(project, "observations", tr("Observations"), "Point", FIELDS, style)
+        self._live = RowLayer(project, "observations", tr("Observations"), "Point", FIELDS, style)
 
     @property
     def layer(self) -> QgsVectorLayer | None:

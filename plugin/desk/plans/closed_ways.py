@@ -70,8 +70,9 @@ class _Road:
 
     def is_along(self, path: Floats) -> bool:
         """Tell whether ``path``, (n, 2) in the site frame, runs along the road."""
-        near = (path.min(axis=0) <= self._high).all() and (path.max(axis=0) >= self._low).all()
-        if not near or len(path) < 2:
+        low, high = np.minimum(path[:-1], path[1:]), np.maximum(path[:-1], path[1:])
+        legs = np.flatnonzero(((low <= self._high) & (high >= self._low)).all(axis=1))
+        if len(legs) == 0:
             return False
-        # Asked for certain edges it passes over what is far from them, which is most of a long way.
-        return len(edges_along(self._nearest, path, self._all)) > 0
+        # Most of a long way is far from the road, and need not be looked at.
+        return len(edges_along(self._nearest, path[legs[0] : legs[-1] + 2], self._all)) > 0

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import uuid
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from qgis.core import QgsApplication
@@ -15,15 +14,14 @@ from ....robot_bridge.assignment.errors import AssignmentError
 from ....robot_bridge.assignment.job import COLLECT, Job, Robot, Target
 from ....robot_bridge.assignment.plan import Plan
 from ....robot_bridge.assignment.solving import AUTOMATIC, PREVIEW, Wanted, assign
-from ....robot_bridge.messages import QueueTask
+from ....robot_bridge.messages import ClosureReport, QueueTask
 from ....robot_bridge.sites.frame import SiteFrame
 from ...errors import FleetError, PlacementError
 from ...language import tr
 from ..desk import Desk
 from .available_robots import has_place, taking_part
-from .closed_ways import ClosedWay, closed_ways
 from .cone_source import ConeFacts, read_cones, read_stores
-from .near_meetings import Meeting, meetings
+from .draft import Draft
 from .plan_task import PlanTask
 from .plan_ways import PlanWays
 from .wanted_job import PlanSettings, settings_in
@@ -31,19 +29,6 @@ from .wanted_job import PlanSettings, settings_in
 
 class PlanningError(FleetError):
     """What cannot be planned as things are: names what is missing, and what to do."""
-
-
-@dataclass(frozen=True)
-class Draft:
-    """A plan with the ground that it is planned on. Its tasks and cones are written down with ``name``."""
-
-    plan: Plan
-    ways: PlanWays
-    facts: Mapping[str, ConeFacts]
-    name: str
-    meetings: tuple[Meeting, ...] = field(default=())
-    closed: tuple[ClosedWay, ...] = field(default=())
-    """Ways along roads that are closed at the gateway, which would not take them."""
 
 
 class DraftPlan(QObject):
@@ -99,12 +84,15 @@ class DraftPlan(QObject):
         self.draft = draft
         self.changed.emit()
 
-    def run(self, title: str, work: Callable[[PlanTask], Plan], then: Callable[[Plan], None]) -> None:
-        """Make a plan beside the window's thread; ``then`` gets it."""
+    def run(
+        self, title: str, ground: Draft, work: Callable[[PlanTask], Plan], then: Callable[[Draft], None]
+    ) -> None:
+        """Make a plan on the ground of another, beside the window's thread; ``then`` gets it."""
         if self.task is not None:
             raise PlanningError(tr("A plan is being made. Wait for it, or press Cancel."))
-        task = PlanTask(title, work)
-        task.made.connect(lambda plan: self._made(task, plan, then))
+        apart_m, closures = self.settings.apart_m, self._desk.roads.closures
+        task = PlanTask(title, lambda task: ground.with_plan(work(task), apart_m, closures))
+        task.made.connect(lambda draft: self._made(task, draft, closures, then))
         task.refused.connect(lambda why: self._refused(task, why))
         task.taskTerminated.connect(lambda: self._ended(task))
         self.task = task
@@ -125,18 +113,11 @@ class DraftPlan(QObject):
         if task is not None and task.isActive():
             task.left.wait(10.0)
 
-    def judged(self, plan: Plan, of: Draft) -> Draft:
-        """Return ``plan`` on the ground of ``of``, with where robots come too near each other, and what of it
-        leads along closed roads."""
-        near = tuple(meetings(plan, self.settings.apart_m, of.ways.standing, of.ways.settings.off_standing_m))
-        return Draft(plan, of.ways, of.facts, of.name, near, closed_ways(plan, self._desk.roads.closures))
-
     def look_at_closures(self) -> None:
         """Find out anew what of the plan leads along closed roads."""
         if self.draft is not None:
-            closed = closed_ways(self.draft.plan, self._desk.roads.closures)
-            if closed != self.draft.closed:
-                self.draft = replace(self.draft, closed=closed)
+            before, self.draft = self.draft, self.draft.with_closures(self._desk.roads.closures)
+            if self.draft is not before:
                 self.changed.emit()
 
     def _make(
@@ -155,8 +136,9 @@ class DraftPlan(QObject):
         ways.closures = self._desk.roads.closures
         self.run(
             tr("Preview of the cone plan") if preview else tr("Cone plan"),
+            blank,
             lambda task: assign(job, ways.travel_of(job, task.goes_on), wanted, task.told),
-            lambda plan: self._put(plan, blank),
+            self._put,
         )
 
     def _edit(self, change: Callable[[Plan, editing.TravelOf], Plan]) -> None:
@@ -166,18 +148,27 @@ class DraftPlan(QObject):
             draft.ways.closures = self._desk.roads.closures
             self.run(
                 title,
+                draft,
                 lambda task: change(draft.plan, lambda job: draft.ways.travel_of(job, task.goes_on)),
-                lambda plan: self._put(plan, draft),
+                self._put,
             )
 
-    def _put(self, plan: Plan, of: Draft) -> None:
-        self.draft = self.judged(plan, of)
+    def _put(self, draft: Draft) -> None:
+        self.draft = draft
 
-    def _made(self, task: PlanTask, plan: Plan, then: Callable[[Plan], None]) -> None:
-        if task is self.task:
-            self.task = None
-            then(plan)
-            self.changed.emit()
+    def _made(
+        self,
+        task: PlanTask,
+        draft: Draft,
+        closures: Sequence[ClosureReport],
+        then: Callable[[Draft], None],
+    ) -> None:
+        if task is not self.task:
+            return
+        self.task = None
+        now = self._desk.roads.closures
+        then(draft if now == closures else draft.with_closures(now))
+        self.changed.emit()
 
     def _refused(self, task: PlanTask, why: str) -> None:
         if task is self.task:

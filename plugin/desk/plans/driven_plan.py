@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
 
 import numpy as np
 from qgis.PyQt.QtCore import QObject, pyqtSignal
@@ -18,8 +17,8 @@ from ...language import tr
 from ..desk import Desk
 from ..placement_book import MOST_ASKED
 from .available_robots import has_place
-from .closed_ways import closed_ways
-from .draft_plan import Draft, DraftPlan, PlanningError
+from .draft import Draft
+from .draft_plan import DraftPlan, PlanningError
 from .progress import Progress, Trouble, behind, cones_under_way, situation_of, trouble_of, under_way
 from .sending import (
     Sending,
@@ -183,10 +182,11 @@ class DrivenPlan(QObject):
         wanted = Wanted(driven.plan.objective, time_limit_s=min(self._drafts.settings.seconds, _REPLANNING_S))
         self._drafts.run(
             tr("Plan of what is left"),
+            driven,
             lambda task: replan(
                 driven.plan, lambda job: driven.ways.travel_of(job, task.goes_on), now, wanted, task.told
             ),
-            lambda plan: self._offer(self._drafts.judged(plan, driven)),
+            self._offer,
         )
 
     def _offer(self, offer: Draft) -> None:
@@ -230,16 +230,16 @@ class DrivenPlan(QObject):
         if self.progress is None or self.driven is None:
             return
         closures = self._desk.roads.closures
-        self.driven = replace(self.driven, closed=closed_ways(self.driven.plan, closures))
+        self.driven = self.driven.with_closures(closures)
         if self.offer is not None:
-            self.offer = replace(self.offer, closed=closed_ways(self.offer.plan, closures))
+            self.offer = self.offer.with_closures(closures)
         self._look()
 
     def _look(self) -> None:
         """Find out what is wrong, and tell of what was not wrong before."""
         plan, queues = self.driven.plan, {one.robot: one for one in self._desk.queues}
-        made = behind(self.progress)
-        closed = tuple(one for one in self.driven.closed if not any(one.at is stop for stop in made))
+        made = {id(stop) for stop in behind(self.progress)}
+        closed = tuple(one for one in self.driven.closed if id(one.at) not in made)
         before, self.trouble = self.trouble, trouble_of(plan, self.progress, queues, closed)
         self.changed.emit()
         if not self.trouble:

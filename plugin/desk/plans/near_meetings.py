@@ -14,6 +14,8 @@ from ...language import tr
 
 Floats = npt.NDArray[np.float64]
 STEP_S = 0.5
+_RUN = 64
+"""Points of a way that are in one box."""
 _SAMPLED = 0.05
 """Metres by which a way that is led round something may seem nearer, looked at every step."""
 
@@ -68,12 +70,7 @@ def meetings(
             for (robot, here), (other, there) in combinations(places.items(), 2)
             for meeting in _first(robot, other, here, there, times, least)
         ),
-        *(
-            meeting
-            for robot, here in places.items()
-            for other, place in (standing or {}).items()
-            for meeting in _first(robot, other, here, np.array([place]), times, off_standing - _SAMPLED)
-        ),
+        *_with_standing(places, standing or {}, times, off_standing - _SAMPLED),
     ]
     return sorted(found, key=lambda one: one.at_s)
 
@@ -91,6 +88,26 @@ def positions(one: RobotPlan, times: Floats) -> Floats:
         clock.append(stop.end_s)
     at, where = np.concatenate(knots), np.concatenate(places)
     return np.column_stack([np.interp(times, at, where[:, axis]) for axis in (0, 1)])
+
+
+def _with_standing(
+    driving: Mapping[str, Floats], standing: Mapping[str, tuple[float, float]], times: Floats, least: float
+) -> Iterator[Meeting]:
+    names, places = list(standing), np.array(list(standing.values()), dtype=float).reshape(-1, 2)
+    for robot, here in driving.items():
+        for k in _beside(here, places, least):
+            yield from _first(robot, names[k], here, places[k : k + 1], times, least)
+
+
+def _beside(way: Floats, places: Floats, reach: float) -> list[int]:
+    """Return which of (m, 2) ``places`` may be within ``reach`` of the (n, 2) points of a way.
+
+    Most of a thousand robots stand far from it; to measure from every point to each would take seconds.
+    """
+    begins = np.arange(0, len(way), _RUN)
+    low, high = (reduce.reduceat(way, begins, axis=0) for reduce in (np.minimum, np.maximum))
+    is_in = (places[:, None] >= low - reach) & (places[:, None] <= high + reach)
+    return np.flatnonzero(is_in.all(axis=2).any(axis=1)).tolist()
 
 
 def _first(

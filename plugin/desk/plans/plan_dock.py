@@ -31,6 +31,7 @@ from .draft_plan import DraftPlan
 from .driven_plan import DrivenPlan
 from .driving_bar import DrivingBar
 from .plan_layers import PlanLayers
+from .plan_rows import rows_of
 from .plan_tree import PlanTree
 from .robots_form import RobotsForm
 from .sending_check import before_sending
@@ -113,8 +114,10 @@ class PlanDock(ActionDock):
         driven = self.driven
         shown = driven.offer or driven.driven or self.drafts.draft
         progress = driven.progress if driven.driven is not None else None
-        self.tree.show_plan(shown, progress, editable=driven.driven is None and not driven.busy)
-        self.layers.show(shown, progress)
+        rows = {} if shown is None else rows_of(shown, progress)
+        began_at = None if progress is None else progress.began_at
+        self.tree.show_plan(shown, rows, began_at, editable=driven.driven is None and not driven.busy)
+        self.layers.show(shown, rows)
         self.bar.refresh()
         expected = len(driven.driven.plan.targets) if driven.driven is not None else None
         self.placed.show_plan(progress.name if progress is not None else None, expected)

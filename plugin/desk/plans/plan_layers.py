@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from qgis.core import (
@@ -14,18 +15,15 @@ from qgis.core import (
     QgsSingleSymbolRenderer,
     QgsSymbolLayer,
     QgsVectorLayer,
-    QgsVectorLayerSimpleLabeling,
 )
-from qgis.PyQt.QtGui import QColor
 
 from ....robot_bridge.messages import PlacementReport
 from ...language import tr
 from ..desk import Desk
 from ..road_board import time_of_day
-from ..road_layers import LiveLayer
-from .draft_plan import Draft
-from .plan_rows import colour_of, rows_of
-from .progress import Progress
+from ..row_layer import RowLayer, label
+from .draft import Draft
+from .plan_rows import StopRow, colour_of
 
 STOP_FIELDS = (
     "robot:string,number:integer,trip:integer,kind:string,id:string,arrives:string,state:string,colour:string"
@@ -43,34 +41,30 @@ class PlanLayers:
     def __init__(self, desk: Desk):
         self._desk = desk
         project = desk.project
-        self.ways = LiveLayer(
+        self.ways = RowLayer(
             project, "cone_plan_ways", tr("Cone plan, ways"), "LineString", WAY_FIELDS, _style_ways
         )
-        self.stops = LiveLayer(
+        self.stops = RowLayer(
             project, "cone_plan_stops", tr("Cone plan, stops"), "Point", STOP_FIELDS, _style_stops
         )
-        self.placed = LiveLayer(
+        self.placed = RowLayer(
             project, "cones_as_placed", tr("Cones as placed"), "Point", PLACED_FIELDS, _style_placed
         )
-        self._shown: tuple[Any, ...] = ()
 
-    def show(self, draft: Draft | None, progress: Progress | None) -> None:
-        """Show a plan; nothing for none."""
+    def show(self, draft: Draft | None, rows: Mapping[str, Sequence[StopRow]]) -> None:
+        """Show a plan by the rows of each robot; nothing for none."""
         stops, ways = [], []
-        for robot, rows in (rows_of(draft, progress) if draft is not None else {}).items():
+        for robot, theirs in (rows if draft is not None else {}).items():
             colour = colour_of(draft.plan, robot)
-            for row in rows:
+            for row in theirs:
                 stop = row.stop
                 values = [robot, row.number, row.trip, stop.kind, stop.id, row.arrives, row.state, colour]
                 stops.append(([(stop.x, stop.y)], values))
                 if row.state != "done":
                     values = [robot, row.number, stop.id, round(stop.metres, 2), row.arrives, colour]
-                    ways.append((list(stop.path), values))
-        shown = (tuple(tuple(values) for _, values in stops), id(draft))
-        if shown != self._shown:
-            self._shown = shown
-            self.ways.show(ways, self._desk.site)
-            self.stops.show(stops, self._desk.site)
+                    ways.append((stop.path, values))
+        self.ways.show(ways, self._desk.site)
+        self.stops.show(stops, self._desk.site)
 
     def show_placed(self, placements: list[PlacementReport]) -> None:
         """Show where cones were put down."""
@@ -80,7 +74,6 @@ class PlanLayers:
         """Take all of them out of the project."""
         for layer in (self.ways, self.stops, self.placed):
             layer.remove()
-        self._shown = ()
 
 
 def _placed_values(one: PlacementReport) -> list[Any]:
@@ -107,28 +100,10 @@ def _style_stops(layer: QgsVectorLayer) -> None:
     shape = "if(kind = 'store', 'square', if(state = 'done', 'triangle', 'circle'))"
     mark.setDataDefinedProperty(QgsSymbolLayer.Property.PropertyName, QgsProperty.fromExpression(shape))
     layer.setRenderer(QgsSingleSymbolRenderer(symbol))
-    _label(layer, "number || if(state = 'done', ' ✓', '\n' || arrives)")
+    around = QgsPalLayerSettings.Placement.OrderedPositionsAroundPoint
+    label(layer, "number || if(state = 'done', ' ✓', '\n' || arrives)", around, 1.0)
 
 
 def _style_placed(layer: QgsVectorLayer) -> None:
     mark = {"name": "cross", "color": "0,121,92,255", "outline_color": "0,121,92,255", "size": "2.6"}
     layer.setRenderer(QgsSingleSymbolRenderer(QgsMarkerSymbol.createSimple(mark)))
-
-
-def _label(layer: QgsVectorLayer, expression: str) -> None:
-    settings = QgsPalLayerSettings()
-    settings.fieldName, settings.isExpression = expression, True
-    settings.placement = QgsPalLayerSettings.Placement.OrderedPositionsAroundPoint
-    settings.dist = 1.0
-    style = settings.format()
-    style.setSize(9)
-    style.setColor(QColor("#101418"))
-    buffer = style.buffer()
-    buffer.setEnabled(True)
-    buffer.setColor(QColor("#FFFFFF"))
-    buffer.setOpacity(1.0)
-    buffer.setSize(1.0)
-    style.setBuffer(buffer)
-    settings.setFormat(style)
-    layer.setLabeling(QgsVectorLayerSimpleLabeling(settings))
-    layer.setLabelsEnabled(True)

@@ -9,7 +9,7 @@ from ....robot_bridge.assignment.editing import trips_of
 from ....robot_bridge.assignment.plan import Plan, Stop
 from ....robot_bridge.messages import TaskState
 from ...language import tr
-from .draft_plan import Draft
+from .draft import Draft
 from .progress import Progress
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#8C510A", "#6A3D9A")

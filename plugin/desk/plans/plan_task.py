@@ -10,10 +10,10 @@ from qgis.core import QgsTask
 from qgis.PyQt.QtCore import pyqtSignal
 
 from ....robot_bridge.assignment.errors import AssignmentError, CancelledError
-from ....robot_bridge.assignment.plan import Plan
 from ....robot_bridge.roads.errors import RoadsError
 from ...errors import FleetError
 from ...language import tr
+from .draft import Draft
 
 
 class PlanTask(QgsTask):
@@ -25,17 +25,17 @@ class PlanTask(QgsTask):
     made = pyqtSignal(object)
     refused = pyqtSignal(str)
 
-    def __init__(self, title: str, work: Callable[[PlanTask], Plan]):
+    def __init__(self, title: str, work: Callable[[PlanTask], Draft]):
         super().__init__(title, QgsTask.Flag.CanCancel)
         self._work = work
-        self._plan: Plan | None = None
+        self._draft: Draft | None = None
         self._why = ""
         self.left = threading.Event()
         """Set once the worker has left :meth:`run`."""
 
     def run(self) -> bool:
         try:
-            self._plan = self._work(self)
+            self._draft = self._work(self)
         except CancelledError:
             pass
         except (AssignmentError, RoadsError, FleetError) as error:
@@ -47,13 +47,13 @@ class PlanTask(QgsTask):
             )
         finally:
             self.left.set()
-        return self._plan is not None
+        return self._draft is not None
 
     def finished(self, done: bool) -> None:
         if self.isCanceled():
             return
-        if self._plan is not None:
-            self.made.emit(self._plan)
+        if self._draft is not None:
+            self.made.emit(self._draft)
         else:
             self.refused.emit(self._why)
 

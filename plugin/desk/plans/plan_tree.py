@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+
 from qgis.PyQt.QtCore import QPoint, Qt, pyqtSignal
 from qgis.PyQt.QtGui import QColor, QDropEvent, QIcon, QKeyEvent, QPixmap
 from qgis.PyQt.QtWidgets import QAbstractItemView, QMenu, QTreeWidget, QTreeWidgetItem, QWidget
@@ -10,9 +12,8 @@ from ....robot_bridge.assignment.plan import Plan
 from ...language import tr
 from ..colours import WRONG, for_letters
 from ..column_heads import fit_heads
-from .draft_plan import Draft
-from .plan_rows import NOT_DONE, StopRow, clock, colour_of, end_of, place_for, rows_of
-from .progress import Progress
+from .draft import Draft
+from .plan_rows import NOT_DONE, StopRow, clock, colour_of, end_of, place_for
 
 HEADS = (tr("Robot, stop"), tr("Arrives"), tr("State"), tr("Off [m]"))
 _NAME = Qt.ItemDataRole.UserRole
@@ -46,8 +47,15 @@ class PlanTree(QTreeWidget):
         self._plan: Plan | None = None
         self._editable = False
 
-    def show_plan(self, draft: Draft | None, progress: Progress | None, *, editable: bool) -> None:
-        """Show a plan, with how far it is when it is driven."""
+    def show_plan(
+        self,
+        draft: Draft | None,
+        rows: Mapping[str, Sequence[StopRow]],
+        began_at: float | None = None,
+        *,
+        editable: bool,
+    ) -> None:
+        """Show a plan by the rows of each robot; it was begun at ``began_at``, if it is driven."""
         self._editable = editable
         if draft is None:
             self._plan = None
@@ -55,12 +63,10 @@ class PlanTree(QTreeWidget):
             return
         if draft.plan is not self._plan:
             self._plan = draft.plan
-            self._build(draft)
-        rows = rows_of(draft, progress)
+            self._build(draft, rows)
         for k, one in enumerate(draft.plan.robots):
             top = self.topLevelItem(k)
-            began = None if progress is None else progress.began_at
-            top.setText(1, clock(one.end_s, began) if one.stops or one.done else "")
+            top.setText(1, clock(one.end_s, began_at) if one.stops or one.done else "")
             top.setText(2, _robot_in_words(rows[one.robot.id], one.lost))
             for child, row in enumerate(rows[one.robot.id]):
                 _fill(top.child(child), row)
@@ -134,7 +140,7 @@ class PlanTree(QTreeWidget):
         if place is not None:
             self.place_wanted.emit(*place)
 
-    def _build(self, draft: Draft) -> None:
+    def _build(self, draft: Draft, rows: Mapping[str, Sequence[StopRow]]) -> None:
         chosen = self._target()
         self.clear()
         for one in draft.plan.robots:
@@ -143,7 +149,7 @@ class PlanTree(QTreeWidget):
             top.setIcon(0, _swatch(colour_of(draft.plan, one.robot.id)))
             top.setFlags(top.flags() & ~Qt.ItemFlag.ItemIsDragEnabled)
             self.addTopLevelItem(top)
-            for row in rows_of(draft, None)[one.robot.id]:
+            for row in rows[one.robot.id]:
                 child = QTreeWidgetItem()
                 child.setData(0, _NAME, row.stop.id if row.stop.is_target else "")
                 child.setData(0, _NAME + 1, (row.stop.x, row.stop.y))
@@ -165,7 +171,7 @@ def _fill(item: QTreeWidgetItem, row: StopRow) -> None:
         item.setForeground(2, for_letters(WRONG))
 
 
-def _robot_in_words(rows: list[StopRow], lost: bool) -> str:
+def _robot_in_words(rows: Sequence[StopRow], lost: bool) -> str:
     cones = [row for row in rows if row.stop.is_target]
     done = sum(row.state == "done" for row in cones)
     text = (

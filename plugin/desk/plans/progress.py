@@ -33,15 +33,21 @@ class Progress:
     reports: dict[str, TaskReport] = field(default_factory=dict)
     placed: dict[str, PlacementReport] = field(default_factory=dict)
     done: set[str] = field(default_factory=set)
+    _sent_for: dict[str, list[str]] = field(default_factory=dict, init=False, repr=False)
+    """The tasks that were sent for a target, the newest last."""
 
     def sent(self, stops: Iterable[SentStop]) -> None:
         """Note stops that are in a robot's queue from now on."""
-        self.stops.update({one.task: one for one in stops})
+        for one in stops:
+            self.stops[one.task] = one
+            self._sent_for.setdefault(one.stop.id, []).append(one.task)
 
     def forget(self, tasks: Iterable[str]) -> None:
         """Pass over tasks that others took the place of."""
         for task in tasks:
-            self.stops.pop(task, None)
+            known = self.stops.pop(task, None)
+            if known is not None:
+                self._sent_for[known.stop.id].remove(task)
 
     def take_queue(self, queue: QueueReport) -> None:
         """Take in how a robot's queue stands."""
@@ -97,8 +103,8 @@ class Progress:
             self.done.add(stop.stop.id)
 
     def _newest(self, target: str) -> TaskReport | None:
-        tasks = [task for task, one in self.stops.items() if one.stop.id == target and task in self.reports]
-        return self.reports[tasks[-1]] if tasks else None
+        sent = reversed(self._sent_for.get(target, []))
+        return next((self.reports[task] for task in sent if task in self.reports), None)
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from ....robot_bridge.messages import QueueState, TaskState
 from ...language import tr
 from ..desk import Desk
 from ..state_words import ROBOT_STATES
-from .draft_plan import Draft
+from .draft import Draft
 from .plan_rows import summary
 
 MOVED = 1.0

@@ -22,7 +22,7 @@ from ....robot_bridge.messages import SiteReport
 from ....robot_bridge.sites.frame import SiteFrame
 from ...language import tr
 from ..live_layers import MARK, give_style
-from ..road_layers import GROUP
+from ..row_layer import GROUP
 from .clockwork import local
 from .history import SILENT_AFTER, History
 from .replay_map import OWN_LAYER

@@ -81,3 +81,10 @@ def test_positions_follow_the_stops_and_what_is_done_there():
     times = np.array([0.0, 5.0, 10.0, 14.0, 20.0, 25.0, 99.0])
     expected = [(0, 0), (5, 0), (10, 0), (10, 0), (10, 5), (10, 10), (10, 10)]
     assert positions(one, times) == pytest.approx(np.array(expected, dtype=float))
+
+
+def test_of_many_that_stand_those_are_met_that_a_long_way_comes_near():
+    long = plan(driving("a", (0, 0), (200, 0), (200, 200), (0, 200)))
+    standing = {f"far {k}": (20.0 + k, 100.0) for k in range(150)}
+    found = meetings(long, 2.0, {**standing, "end": (0.5, 200.0), "begin": (-0.3, 0.0)}, 1.0)
+    assert [one.other for one in found] == ["begin", "end"]

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import itertools
+import threading
 import time
 from dataclasses import replace
 
 import pytest
 from fleet_supervisor.plugin.desk.cone_store import ConeStore
+from fleet_supervisor.plugin.desk.plans import draft
 from fleet_supervisor.plugin.sites.roles import ROAD_CENTRELINE, set_role
 from fleet_supervisor.plugin.wire.outbox import Answer, Order
 from fleet_supervisor.robot_bridge.assignment import solving
@@ -107,6 +109,17 @@ def test_a_good_plan_is_made_with_progress_and_can_be_given_up(panel, wait, endl
     press(panel, "fleet_plan_cancel")
     wait(lambda: not panel.drafts.busy, 10, "the end")
     assert panel.drafts.draft is None and panel.preview.isEnabled()
+
+
+def test_what_speaks_against_a_plan_is_found_beside_the_windows_thread(panel, wait, monkeypatch):
+    threads = []
+    for name in ("meetings", "closed_ways"):
+        find = getattr(draft, name)
+        monkeypatch.setattr(
+            draft, name, lambda *args, find=find: threads.append(threading.get_ident()) or find(*args)
+        )
+    planned(panel, wait)
+    assert len(threads) == 2 and threading.get_ident() not in threads
 
 
 def test_the_plan_is_on_the_map_with_numbers_times_and_a_colour_for_each_robot(panel, wait):

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import pytest
 from fleet_supervisor.plugin.desk.plans.cone_source import ConeFacts
-from fleet_supervisor.plugin.desk.plans.draft_plan import Draft
+from fleet_supervisor.plugin.desk.plans.draft import Draft
 from fleet_supervisor.plugin.desk.plans.plan_rows import rows_of
 from fleet_supervisor.plugin.desk.plans.progress import (
     Progress,
@@ -230,3 +230,19 @@ def test_the_table_says_what_a_cone_waits_for():
     states = {row.stop.id: row.state for row in rows_of(draft, staged.progress)["r1"]}
     assert states["c3"] == "in the queue: waits for cone d1 of r2"
     assert states["c1"] == ""
+
+
+def test_of_a_cone_that_was_sent_again_the_newest_task_counts(driven):
+    driven.tell("r1", [FAILED])
+    assert driven.progress.state_of("c1") is FAILED
+    (one,) = [one for one in driven.plan.robots if one.robot.id == "r1"]
+    first = driven.tasks["r1"]
+    driven.tasks["r1"] = [replace(task, task=f"{task.task}-again") for task in first]
+    driven.progress.sent(sent_stops(one, driven.tasks["r1"]))
+    assert driven.progress.state_of("c1") is FAILED, "nothing is known of the new task yet"
+    driven.tell("r1", [CURRENT])
+    assert driven.progress.state_of("c1") is CURRENT
+    for tasks in (driven.tasks["r1"], first):
+        driven.progress.forget([task.task for task in tasks])
+        assert driven.progress.state_of("c1") is not CURRENT, "what was forgotten counts no more"
+    assert driven.progress.state_of("c1") is None
