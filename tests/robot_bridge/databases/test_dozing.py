@@ -8,6 +8,7 @@ import time
 import psycopg
 import pytest
 from sqlalchemy import delete, insert, make_url
+from stage.patience import BUSY
 
 from robot_bridge.store.database import Database
 from robot_bridge.store.schema import rr, sa
@@ -119,5 +120,9 @@ async def test_a_gateway_that_found_something_as_it_began_to_doze_is_awake_again
 async def test_what_a_gateway_was_to_be_told_is_over_with_its_connection(gateway, wakeup, robot, told):
     assert await wakeup.doze()
     await gateway.close()
+    # The server notices the end of a connection in its own time.
+    until = time.monotonic() + 10 * BUSY
     await robot.run(ask)
-    assert told() == 0
+    while told() > 0:
+        assert time.monotonic() < until
+        await robot.run(ask)
