@@ -96,7 +96,7 @@ def test_gateway_and_robot_run_as_the_readme_says(tmp_path):
 def test_the_map_is_exported_as_the_readme_says(tmp_path):
     text = (ROOT / "README.md").read_text(encoding="utf-8")
     block = re.search(r"^    export QT_QPA_PLATFORM[\s\S]*?OUTPUT=\S+$", text, re.MULTILINE).group()
-    script = block.replace("qgis_process.bin", program("qgis_process")).replace("build/", f"{tmp_path}/")
+    script = block.replace("qgis_process.bin", program("qgis_process")).replace("/tmp/", f"{tmp_path}/")
     env = {"PATH": os.environ["PATH"], "HOME": str(tmp_path), "XDG_RUNTIME_DIR": str(tmp_path)}
     done = subprocess.run(
         ["bash", "-euc", script], cwd=ROOT, env=env, capture_output=True, text=True, check=False
