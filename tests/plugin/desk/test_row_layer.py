@@ -80,7 +80,7 @@ def test_a_site_that_is_moved_takes_its_features_along_and_another_crs_is_anothe
     layer = points.layer.id()
     points.show(TWO, replace(site, origin=(E + 100, N)))
     assert {name: at for name, (at, _) in features(points).items()} == {"a": (101, 2), "b": (103, 4)}
-    assert points.layer.id() == layer
+    assert points.layer.id() == layer and points.layer.featureCount() == 2
     points.show(TWO, replace(site, crs="EPSG:32634"))
     assert points.layer.crs().authid() == "EPSG:32634" and points.layer.featureCount() == 2
 
