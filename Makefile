@@ -39,7 +39,7 @@ demo: $(READY) build/run ## run the main job once, headless, on the sample site;
 	@$(HEADLESS) $(RUN) scripts/demo.py
 
 test: $(READY) build/run ## run every test, style and import rules included, headless
-	@$(HEADLESS) $(RUN) -m pytest -q -rfE $(SIDE_BY_SIDE) --durations=5 --durations-min=1 $(ARGS)
+	@$(HEADLESS) $(RUN) -m pytest -q -rfEs $(SIDE_BY_SIDE) --durations=5 --durations-min=1 $(ARGS)
 
 test-newer: ## run every test on the newer QGIS of Debian forky, in a root folder of its own (as root)
 	@scripts/newer.sh
