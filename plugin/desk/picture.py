@@ -71,6 +71,7 @@ class RobotPicture:
         self.revision = 0
         """Counts how often something was taken in."""
         self._seen = Sightings()
+        self._names: list[str] = []
         self._by_name: list[int] = []
 
     def __len__(self) -> int:
@@ -85,7 +86,7 @@ class RobotPicture:
     def clear(self) -> None:
         """Forget every robot."""
         self._seen = Sightings()
-        self._by_name = []
+        self._names, self._by_name = [], []
         self.generation += 1
         self.revision += 1
 
@@ -111,9 +112,12 @@ class RobotPicture:
         """Return the robots in ``rows`` at ``now``; NaN is the place of one that never said where it is."""
         seen = self._seen
         state, age = self._aged(now, rows)
+        x = seen.column("x")[rows]
+        xy = np.empty((len(x), 2))
+        xy[:, 0], xy[:, 1] = x, seen.column("y")[rows]
         return RobotArrays(
-            names=seen.names[rows],
-            xy=np.column_stack([seen.column("x")[rows], seen.column("y")[rows]]),
+            names=self._all_names() if rows == slice(None) else seen.names[rows],
+            xy=xy,
             theta=seen.column("theta")[rows].copy(),
             v=seen.column("v")[rows].copy(),
             accuracy=seen.column("accuracy")[rows].copy(),
@@ -147,6 +151,12 @@ class RobotPicture:
     def by_name(self) -> list[int]:
         """Return every row, in the order of the robots' names."""
         return self._sorted()
+
+    def _all_names(self) -> list[str]:
+        """Return every name by row: the same list until there are more of them."""
+        if len(self._names) != len(self._seen):
+            self._names = list(self._seen.names)
+        return self._names
 
     def _sorted(self) -> list[int]:
         names = self._seen.names

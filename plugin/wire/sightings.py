@@ -86,10 +86,9 @@ class Sightings:
         return robot_report(self.told(row))
 
     def merge(self, newer: Sightings) -> None:
-        """Take over what is in ``newer`` unless it arrived before what is known."""
-        count, received = len(newer), AT["received"]
-        numbers = newer._numbers[:, :count].copy()
-        numbers[_TEXTS_AT] = self._as_own_words(numbers[_TEXTS_AT], newer._words)
+        """Take over what is in ``newer``, which is used up, unless it arrived before what is known."""
+        numbers, received = newer._numbers[:, : len(newer)], AT["received"]
+        self._say_in_own_words(numbers, newer._words)
         if newer.names == self.names and (numbers[received] >= self.column("received")).all():
             # Everything anew, as when all robots drive: no need to look for each one's row.
             self._numbers = numbers
@@ -100,13 +99,16 @@ class Sightings:
         if len(self._words) > SPARE_WORDS + 2 * len(self):
             self._forget_words()
 
-    def _as_own_words(self, places: Numbers, words: list[str]) -> Numbers:
-        """Return ``places`` in ``words`` as places in this table's own, which grow by those that are new."""
+    def _say_in_own_words(self, numbers: Numbers, words: list[str]) -> None:
+        """Make places in ``words`` places in this table's own, which grow by those that are new."""
         own = [self._places.setdefault(word, len(self._places)) for word in words]
         self._words += list(self._places)[len(self._words) :]
-        # What is not known points at the last one, which is none.
-        known = np.array([*own, np.nan])
-        return known[np.nan_to_num(places, nan=len(words)).astype(np.intp)]
+        # A gateway that tells of the same robots again does so in the same words.
+        if own != list(range(len(own))):
+            # What is not known points at the last one, which is none.
+            known = np.array([*own, np.nan])
+            places = np.nan_to_num(numbers[_TEXTS_AT], nan=len(words)).astype(np.intp)
+            numbers[_TEXTS_AT] = known.take(places)
 
     def _forget_words(self) -> None:
         """Keep the words that some robot says."""

@@ -10,7 +10,7 @@ from ....robot_bridge.messages import RobotState
 from ..colours import CASING, PAPER, SELECTED
 from ..glyphs import CELL, draw_arrow, draw_cone, draw_robot
 from ..pens import pen
-from .turned import Draw, drawn, in_a_row, turned
+from .turned import Draw, drawn, in_a_column, turned
 
 HEADINGS = 88
 """Directions that robots are drawn in; between them nobody sees a difference."""
@@ -30,7 +30,7 @@ def cell(pixel_ratio: float, size: float = 1.0) -> int:
 
 
 def robot_atlas(pixel_ratio: float, size: float, state: RobotState) -> QPixmap:
-    """Return a robot in ``state`` in a row of cells of :func:`cell` device pixels.
+    """Return a robot in ``state`` in a column of cells of :func:`cell` device pixels.
 
     In cell k it points k / :data:`HEADINGS` of a turn clockwise from +x; in the last one its heading is not
     known. ``size`` 1 is the drawing as it is.
@@ -39,14 +39,16 @@ def robot_atlas(pixel_ratio: float, size: float, state: RobotState) -> QPixmap:
     scale = side / CELL
     pointing = turned(lambda painter: draw_robot(painter, state, True), side, scale, HEADINGS)
     unknown = drawn(lambda painter: draw_robot(painter, state, False), side, scale)
-    return in_a_row(np.concatenate([pointing, unknown[None]]))
+    return in_a_column(np.concatenate([pointing, unknown[None]]))
 
 
 def arrow_atlas(pixel_ratio: float, state: RobotState, is_chosen: bool) -> QPixmap:
     """Return the arrow at the map's border to a robot in ``state``, turned as in :func:`robot_atlas`."""
     side = cell(pixel_ratio, ARROW_SIZE)
     rim = SELECTED if is_chosen else PAPER
-    return in_a_row(turned(lambda painter: draw_arrow(painter, state, rim), side, pixel_ratio, ARROW_TURNS))
+    return in_a_column(
+        turned(lambda painter: draw_arrow(painter, state, rim), side, pixel_ratio, ARROW_TURNS)
+    )
 
 
 def mark_atlas(pixel_ratio: float, size: float = 1.0) -> QPixmap:
@@ -54,7 +56,7 @@ def mark_atlas(pixel_ratio: float, size: float = 1.0) -> QPixmap:
     selected with it, a target, and a cone target, both with their spot in the middle."""
     side = cell(pixel_ratio, MARK_SIZE * size)
     scale = side / (CELL * MARK_SIZE)
-    return in_a_row(np.stack([drawn(_mark(mark), side, scale) for mark in range(len(_MARKS))]))
+    return in_a_column(np.stack([drawn(_mark(mark), side, scale) for mark in range(len(_MARKS))]))
 
 
 def _mark(mark: int) -> Draw:

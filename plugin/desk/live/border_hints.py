@@ -13,6 +13,7 @@ from qgis.PyQt.QtGui import QPainter, QPixmap
 
 from ..picture import STATES
 from .atlases import ARROW_SIZE, ARROW_TURNS, arrow_atlas, cell
+from .in_view import InView
 from .labels import Labels
 from .scene import PlacedScene
 from .screen import Screen
@@ -30,6 +31,7 @@ _SLOTS = 10_000
 """More than fit along any border."""
 _URGENT = np.array([1, 2, 3, 0])
 """The rank of each of STATES: an arrow for several robots has the colour of the one to worry about."""
+_BY_RANK = np.argsort(_URGENT)
 
 
 @dataclass(frozen=True)
@@ -83,16 +85,16 @@ class BorderHints:
         self._arrows: list[tuple[Sprites, Points, Rows]] = []
         self._texts: list[tuple[QPointF, QPixmap]] = []
 
-    def find(self, placed: PlacedScene, pixels: Points, seen: Rows, screen: Screen) -> None:
-        """Find the arrows for robots that are not in rows ``seen``, unless that was done just now."""
+    def find(self, placed: PlacedScene, view: InView, screen: Screen) -> None:
+        """Find the arrows for robots that are not in view, unless that was done just now."""
         now, names = placed.scene.now, placed.scene.robots.names
         is_new = self._found_for is None or self._found_for[0] != screen or self._found_for[1] != names
         if not is_new and abs(now - self._found_at) < FIND_EVERY:
             return
         self._found_for, self._found_at = (screen, names), now
-        beyond = np.isfinite(pixels[:, 0])
-        beyond[seen] = False
-        self.hints, self._chosen = hints(pixels, np.flatnonzero(beyond), screen), None
+        beyond = np.isfinite(view.pixels[:, 0])
+        beyond[view.rows] = False
+        self.hints, self._chosen = hints(view.pixels, np.flatnonzero(beyond), screen), None
 
     def paint(self, painter: QPainter, placed: PlacedScene, screen: Screen) -> None:
         """Paint each arrow in its robots' colour, with their name or number."""
@@ -101,25 +103,25 @@ class BorderHints:
             self._arrows = self._coloured(placed, screen) if self.hints else []
             self._texts = [_beside(self._labels, hint, names, screen) for hint in self.hints]
             self._chosen = placed.scene.chosen
-        for arrow, at, column in self._arrows:
-            arrow.paint(painter, at, column)
+        for arrow, at, cells in self._arrows:
+            arrow.paint(painter, at, cells)
         for place, text in self._texts:
             painter.drawPixmap(place, text)
 
     def _coloured(self, placed: PlacedScene, screen: Screen) -> list[tuple[Sprites, Points, Rows]]:
         """Return for each colour the arrow, the places where it stands, and its cells."""
-        robots = placed.scene.robots
-        chosen = {placed.scene.rows[name] for name in placed.scene.chosen if name in placed.scene.rows}
-        rank = _URGENT[robots.state]
-        states = np.array([robots.state[hint.rows[rank[hint.rows].argmax()]] for hint in self.hints])
-        is_chosen = np.array([bool(chosen) and not chosen.isdisjoint(h.rows.tolist()) for h in self.hints])
+        chosen = [placed.scene.rows[name] for name in placed.scene.chosen if name in placed.scene.rows]
+        rows = np.concatenate([hint.rows for hint in self.hints])
+        first = np.cumsum([0, *(len(hint.rows) for hint in self.hints[:-1])])
+        states = _BY_RANK[np.maximum.reduceat(_URGENT[placed.scene.robots.state[rows]], first)]
+        is_chosen = np.logical_or.reduceat(np.isin(rows, chosen), first)
         turns = np.array([hint.turn for hint in self.hints]) / (2 * np.pi)
-        column = np.round(turns * ARROW_TURNS).astype(np.intp) % ARROW_TURNS
+        cells = np.round(turns * ARROW_TURNS).astype(np.intp) % ARROW_TURNS
         at = np.array([(hint.x, hint.y) for hint in self.hints])
         found = []
         for state, to_chosen in sorted({*zip(states.tolist(), is_chosen.tolist(), strict=True)}):
             those = np.flatnonzero((states == state) & (is_chosen == to_chosen))
-            found.append((self._arrow(state, to_chosen, screen.ratio), at[those], column[those]))
+            found.append((self._arrow(state, to_chosen, screen.ratio), at[those], cells[those]))
         return found
 
     def _arrow(self, state: int, to_chosen: bool, ratio: float) -> Sprites:

@@ -13,6 +13,7 @@ from ...errors import PlacementError
 from ...language import tr
 from ..beat import PULL_EVERY_MS
 from ..desk import Desk
+from ..placement import Placement
 from .following import Whom, keep_in_view, show_places
 from .hover_card import card
 from .hovering import Hovering
@@ -43,6 +44,8 @@ class LiveView(QObject):
         self.shown: tuple[int, int] = (0, 0)
         """The generation and revision of the desk's picture that the overlay was given last."""
         self._last_frame = self._took = 0.0
+        self._placement: Placement | None = None
+        """The desk's, None when it has to be asked anew, which copies all that the canvas has set."""
         self._placer = Placer()
         self._plans = Plans()
         self._trails = Trails()
@@ -63,14 +66,14 @@ class LiveView(QObject):
         desk.commands_changed.connect(self._frame.start)
         desk.drafts.changed.connect(self._frame.start)
         desk.drafts.pointed.connect(self._frame.start)
-        desk.canvas.destinationCrsChanged.connect(self._frame.start)
+        desk.canvas.destinationCrsChanged.connect(self._crs_changed)
         desk.canvas.extentsChanged.connect(self._frame.start)
         self.layer.robots_selected.connect(self._selected_in_layer)
 
     def remove(self) -> None:
         """Take the overlay and the card off the canvas and the layer out of the project."""
         self._frame.stop()
-        self._desk.canvas.destinationCrsChanged.disconnect(self._frame.start)
+        self._desk.canvas.destinationCrsChanged.disconnect(self._crs_changed)
         self._desk.canvas.extentsChanged.disconnect(self._frame.start)
         self._hovering.remove()
         self.layer.remove()
@@ -84,7 +87,9 @@ class LiveView(QObject):
             self.overlay.show_scene(None)
             return
         try:
-            self.overlay.show_scene(self._placer.placed(self._scene(), self._desk.placement()))
+            if self._placement is None:
+                self._placement = self._desk.placement()
+            self.overlay.show_scene(self._placer.placed(self._scene(), self._placement))
         except PlacementError as error:
             self.overlay.show_scene(None)
             self._desk.complained.emit(str(error))
@@ -145,7 +150,12 @@ class LiveView(QObject):
         if self.shown[0] != self._desk.picture.generation:
             self.layer.clear()
             self._trails.clear()
+        self._placement = None
         self.show_now()
+
+    def _crs_changed(self) -> None:
+        self._placement = None
+        self._frame.start()
 
     def _selection_changed(self) -> None:
         self.layer.mark(self._desk.selection)

@@ -13,6 +13,7 @@ from ....robot_bridge.messages import RobotState
 from ...language import tr
 from ..picture import STATES, RobotArrays
 from ..state_words import ROBOT_STATES
+from .in_view import InView
 from .labels import HEIGHT, MARGIN, Labels, age_in_words
 from .room import Room
 from .scene import PlacedScene
@@ -29,7 +30,10 @@ BESIDE = (15.0, -12.0)
 """Where a text begins, its middle, as seen from the robot."""
 LETTER = 8.0
 """About what a letter is wide."""
-SPOT = np.array([36.0, 16.0])
+SPOT = (36.0, 16.0)
+"""Pixels within which one text is tried."""
+SPOTS = 10_000
+"""More than any screen has from top to bottom."""
 STATE_LETTERS = 14.0
 """Letters that a robot's state and age take at most, but for hours and days."""
 _URGENT = np.array([5, 3, 1, 5], dtype=np.int8)
@@ -45,40 +49,40 @@ class NamesPainter:
         self._named: Rows = np.empty(0, dtype=np.intp)
         self._written: list[list[str]] = []
         self._widths = np.empty(0)
-        self._pieces: list[tuple[int, float, QPixmap]] = []
-        """Of the k-th of the written: how far along which picture stands."""
+        self._pieces: list[tuple[int, float, float, QPixmap]] = []
+        """Of the k-th of the written: how far along and how far down which picture stands."""
         self._waiting: list[int] = []
         self._chosen_at = -np.inf
         self._screen: Screen | None = None
+        self._names: list[str] = []
         self._lengths = np.empty(0)
+        """Of each of the names."""
 
     def paint(
         self,
         painter: QPainter,
         placed: PlacedScene,
-        pixels: Points,
-        seen: Rows,
+        view: InView,
         screen: Screen,
         taken: Sequence[tuple[float, float, float, float]] = (),
     ) -> None:
-        """Paint names of those in rows ``seen``; ``pixels`` (n, 2) is where each robot is.
+        """Paint names of those in view.
 
         ``taken`` are left, top, right and bottom of what has texts already.
         """
         robots = placed.scene.robots
         now = placed.scene.now
         if abs(now - self._chosen_at) >= CHOOSE_EVERY or screen != self._screen or self._are_others(robots):
-            self._named = self._chosen(placed, pixels, seen, screen, taken)
+            self._named = self._chosen(placed, view, screen, taken)
             self._chosen_at, self._screen = now, screen
             self._written = [texts(robots, row) for row in self._named.tolist()]
             self._widths = np.array([_width(parts) for parts in self._written])
             self._wait_for_pictures(screen.ratio)
         self._make_pictures(screen.ratio)
-        corners = _corners(pixels[self._named], self._widths, screen).tolist()
-        for k, along, picture in self._pieces:
+        corners = _corners(view.pixels.take(self._named, axis=0), self._widths, screen).tolist()
+        for k, along, down, picture in self._pieces:
             x, y = corners[k]
-            top = y + (HEIGHT - picture.height() / screen.ratio) / 2
-            painter.drawPixmap(QPointF(x + along, top), picture)
+            painter.drawPixmap(QPointF(x + along, y + down), picture)
 
     def _wait_for_pictures(self, ratio: float) -> None:
         """Have at once what is written wherever its pictures are there already."""
@@ -102,11 +106,13 @@ class NamesPainter:
         along = 0.0
         for text in self._written[k]:
             picture = self._labels.picture(text, ratio)
-            self._pieces.append((k, along, picture))
+            self._pieces.append((k, along, (HEIGHT - picture.height() / ratio) / 2, picture))
             along += picture.width() / ratio - 2 * MARGIN + 4
 
     def _are_others(self, robots: RobotArrays) -> bool:
         """Tell whether another robot stands in the row of one that was chosen."""
+        if robots.names is self._names:
+            return False
         rows = self._named.tolist()
         if rows and max(rows) >= len(robots.names):
             return True
@@ -115,27 +121,28 @@ class NamesPainter:
     def _chosen(
         self,
         placed: PlacedScene,
-        pixels: Points,
-        seen: Rows,
+        view: InView,
         screen: Screen,
         taken: Sequence[tuple[float, float, float, float]] = (),
     ) -> Rows:
         """Return the rows whose texts do not cover another's text or robot, the most urgent first."""
-        robots, scene = placed.scene.robots, placed.scene
-        rank = _URGENT[robots.state]
+        robots, scene, seen = placed.scene.robots, placed.scene, view.rows
+        rank = _URGENT.take(robots.state)
         rank[self._named[self._named < len(rank)]] -= 1
         rank[[scene.rows[name] for name in scene.chosen if name in scene.rows]] = -1
-        rank = rank[seen]
-        if len(self._lengths) != len(robots.names) or self._are_others(robots):
+        rank = rank.take(seen)
+        if robots.names is not self._names and robots.names != self._names:
             self._lengths = np.fromiter(map(len, robots.names), np.float64, len(robots.names))
-        width = LETTER * (self._lengths[seen] + 1.0 + np.where(robots.state[seen] > 0, STATE_LETTERS, 0.0))
-        corner = _corners(pixels[seen], width, screen)
-        room = Room(screen, pixels[seen], taken)
+        self._names = robots.names
+        more = np.where(robots.state.take(seen) > 0, STATE_LETTERS + 1.0, 1.0)
+        width = LETTER * (self._lengths.take(seen) + more)
+        corner = _corners(view.there, width, screen)
+        room = Room(screen, view.there, taken)
         # Texts that urge may cover a robot; the others stand where there is none.
-        possible = np.flatnonzero((rank < 4) | room.without_robots(corner, width, HEIGHT))
+        possible = np.flatnonzero((rank < 4) | room.without_robots(corner, width))
         order = possible[np.argsort(rank[possible], kind="stable")]
-        order = order[_first_of_each_spot(corner[order])]
-        return seen[order[room.take(corner[order], width[order], HEIGHT)]]
+        order = order[_first_of_each_spot(corner.take(order, axis=0))]
+        return seen[order[room.take(corner.take(order, axis=0), width[order])]]
 
 
 def texts(robots: RobotArrays, row: int) -> list[str]:
@@ -155,18 +162,15 @@ def _width(written: list[str]) -> float:
 def _corners(pixels: Points, width: npt.NDArray[np.float64], screen: Screen) -> Points:
     """Return the left upper corners of texts beside robots at (n, 2) ``pixels``: where they are whole."""
     right = pixels[:, 0] + BESIDE[0]
-    x = np.where(right + width <= screen.width, right, pixels[:, 0] - BESIDE[0] - width)
-    y = np.clip(pixels[:, 1] + BESIDE[1] - HEIGHT / 2, 0.0, screen.height - HEIGHT)
-    return np.column_stack([x, y])
+    top = pixels[:, 1] + (BESIDE[1] - HEIGHT / 2)
+    corners = np.empty_like(pixels)
+    corners[:, 0] = np.where(right + width <= screen.width, right, pixels[:, 0] - BESIDE[0] - width)
+    corners[:, 1] = np.minimum(np.maximum(top, 0.0), screen.height - HEIGHT)
+    return corners
 
 
 def _first_of_each_spot(corner: Points) -> Rows:
     """Return the indices of texts that begin where none before them does, to try no spot twice."""
-    if len(corner) == 0:
-        return np.empty(0, dtype=np.intp)
-    across, down = np.floor(corner / SPOT).astype(np.intp).T
-    spot = (across - across.min()) * (np.ptp(down) + 1) + down - down.min()
-    first = np.full(spot.max() + 1, -1)
-    # Of several values for one place numpy keeps the last, so they go there backwards.
-    first[spot[::-1]] = np.arange(len(spot))[::-1]
-    return np.sort(first[first >= 0])
+    across, down = np.floor(corner[:, 0] * (1.0 / SPOT[0])), np.floor(corner[:, 1] * (1.0 / SPOT[1]))
+    _, first = np.unique(across * SPOTS + down, return_index=True)
+    return np.sort(first)

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import numpy as np
-import numpy.typing as npt
 from qgis.PyQt.QtGui import QPainter
 
 from .border_hints import BorderHints, Hint
 from .draft_painting import DraftPainter
+from .in_view import InView, in_view
 from .labels import Labels
 from .names_painting import NamesPainter
 from .plans_painting import PlansPainter
@@ -16,11 +15,6 @@ from .scene import PlacedScene
 from .screen import Screen
 from .trail_image import TrailImage
 from .trails import Trails
-
-Points = npt.NDArray[np.float64]
-
-BESIDE = 12.0
-"""Pixels beyond the border at which a robot still reaches in."""
 
 
 class ScenePainter:
@@ -35,7 +29,7 @@ class ScenePainter:
         self._names = NamesPainter(self._labels)
         self._borders = BorderHints(self._labels)
         self._circles: list = []
-        self._placed: tuple | None = None
+        self._viewed: tuple[PlacedScene, Screen, InView] | None = None
 
     @property
     def hints(self) -> list[Hint]:
@@ -46,31 +40,27 @@ class ScenePainter:
         """Take in a new scene: what is drawn once for each and not for each time it is painted."""
         if placed is None:
             self._trails.forget()
-            self._placed = None
+            self._viewed = None
             return
         self._trails.extend(placed.robots, screen, placed.to_map, placed.scene.now)
-        _, seen, metre = self._place(placed, screen)
-        self._circles = circles(placed, seen, metre)
+        self._circles = circles(placed, self._view(placed, screen))
 
     def paint(self, painter: QPainter, placed: PlacedScene, screen: Screen) -> None:
         """Paint the scene that was prepared last."""
-        pixels, seen, metre = self._place(placed, screen)
+        view = self._view(placed, screen)
         self._trails.paint(painter, screen)
         paint_circles(painter, self._circles, placed, screen)
-        self._plans.paint(painter, placed, pixels, screen, self.robots.marks)
-        self._draft.paint(painter, placed, pixels, screen, self.robots.marks)
-        self.robots.paint(painter, placed, pixels, seen, metre, screen)
-        self._borders.find(placed, pixels, seen, screen)
+        self._plans.paint(painter, placed, view.pixels, screen, self.robots.marks)
+        self._draft.paint(painter, placed, view.pixels, screen, self.robots.marks)
+        self.robots.paint(painter, placed, view, screen)
+        self._borders.find(placed, view, screen)
         taken = [(x - 24.0, y, x + 24.0, y + 26.0) for x, y in self._plans.distances]
         taken += [hint.area for hint in self.hints]
-        self._names.paint(painter, placed, pixels, seen, screen, taken)
+        self._names.paint(painter, placed, view, screen, taken)
         self._borders.paint(painter, placed, screen)
 
-    def _place(self, placed: PlacedScene, screen: Screen) -> tuple[Points, npt.NDArray[np.intp], Points]:
-        """Return each robot's place in pixels, the rows of those seen, and the ways of these to 1 m ahead."""
-        if self._placed is None or self._placed[0] is not placed or self._placed[1] != screen:
-            pixels = screen.pixels(placed.robots)
-            seen = np.flatnonzero(screen.seen(pixels, BESIDE))
-            metre = screen.pixels(placed.ahead[seen]) - pixels[seen]
-            self._placed = placed, screen, pixels, seen, metre
-        return self._placed[2:]
+    def _view(self, placed: PlacedScene, screen: Screen) -> InView:
+        """Return what of the robots is on ``screen``, reckoned once for each scene and screen."""
+        if self._viewed is None or self._viewed[0] is not placed or self._viewed[1] != screen:
+            self._viewed = placed, screen, in_view(placed, screen)
+        return self._viewed[2]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
-from itertools import chain
+from itertools import accumulate, chain
 
 import numpy as np
 import numpy.typing as npt
@@ -77,19 +77,16 @@ class Placer:
         is_known = outline is self._outline
         robots = scene.robots
         there = np.flatnonzero(np.isfinite(robots.xy[:, 0]) & np.isfinite(robots.xy[:, 1]))
-        known_places = robots.xy[there]
-        # Floats of half the size are exact enough for a heading; numpy is ten times as fast with them.
-        theta = np.nan_to_num(robots.theta[there]).astype(np.float32)
-        ahead = known_places + AHEAD * np.column_stack([np.cos(theta), np.sin(theta)])
+        # To take rows with [] instead takes numpy ten times as long.
+        known_places = robots.xy.take(there, axis=0)
         parts = [
             known_places,
-            ahead,
+            _ahead(known_places, robots.theta.take(there)),
             _points(() if is_known else outline),
             _points([scene.cursor] if scene.cursor else ()),
             *[plan.points for plan in new],
         ]
-        ends = np.cumsum([len(part) for part in parts])[:-1]
-        at, before, draft, cursor, *ways = np.split(placement.to_map(np.concatenate(parts)), ends)
+        at, before, draft, cursor, *ways = _parted(placement.to_map(np.concatenate(parts)), parts)
         known.update(zip(new, ways, strict=True))
         if not is_known:
             self._outline, self._draft = outline, draft
@@ -103,6 +100,23 @@ class Placer:
             cursor,
             placement.to_map,
         )
+
+
+def _ahead(xy: Points, theta: npt.NDArray[np.float64]) -> Points:
+    """Return what is :data:`AHEAD` of each place, along x where the heading is not known."""
+    # Floats of half the size are exact enough for a heading; numpy is ten times as fast with them.
+    turn = theta.astype(np.float32)
+    turn[np.isnan(turn)] = 0.0
+    ahead = np.empty_like(xy)
+    ahead[:, 0] = xy[:, 0] + AHEAD * np.cos(turn)
+    ahead[:, 1] = xy[:, 1] + AHEAD * np.sin(turn)
+    return ahead
+
+
+def _parted(whole: Points, parts: list[Points]) -> list[Points]:
+    """Return ``whole`` in pieces that are as long as ``parts``."""
+    ends = accumulate(len(part) for part in parts)
+    return [whole[end - len(part) : end] for end, part in zip(ends, parts, strict=True)]
 
 
 def _spread(values: Points, rows: npt.NDArray[np.intp], count: int) -> Points:

@@ -12,7 +12,7 @@ FIELDS = 10
 
 
 class Sprites:
-    """A row of cells, ``side`` device pixels wide and high, ``ratio`` device pixels a logical one."""
+    """A column of cells, ``side`` device pixels wide and high, ``ratio`` device pixels a logical one."""
 
     def __init__(self, atlas: QPixmap, side: int, ratio: float) -> None:
         self._atlas = atlas
@@ -26,17 +26,18 @@ class Sprites:
         self,
         painter: QPainter,
         centre: npt.NDArray[np.float64],
-        column: npt.NDArray[np.intp] | int,
+        cell: npt.NDArray[np.intp] | int,
     ) -> None:
-        """Paint cell ``column`` around each ``centre``, (n, 2) logical pixels."""
+        """Paint ``cell`` around each ``centre``, (n, 2) logical pixels."""
         count = len(centre)
         if count == 0:
             return
         self._provide(count)
         table, side = self._table, self._side
         # A whole device pixel keeps the drawing sharp.
-        table[:count, 0:2] = (np.round(centre * self._ratio - side / 2) + side / 2) / self._ratio
-        table[:count, 2] = column * side
+        corner = np.round(centre * self._ratio - side / 2)
+        table[:count, 0:2] = (corner + side / 2) / self._ratio
+        table[:count, 3] = cell * side
         # What was painted before and is no more must not show: a size of nothing hides it.
         table[count : self._painted, 4:6] = 0.0
         table[self._painted : count, 4:6] = side

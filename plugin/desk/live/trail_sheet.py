@@ -63,9 +63,7 @@ class TrailSheet:
         if self._here is None:
             self._later = here[: len(self._taken)], np.full(len(self._taken), now)
         else:
-            known = len(self._here)
-            x, y = self._stamp(self._here, here[:known], np.full(known, now))
-            self._colour(x, y)
+            self._go_on(self._here, here[: len(self._here)], now)
         self._here = here
         # What is filled in this frame is to be seen in this frame.
         bands = 1 if self.filled else BANDS
@@ -83,7 +81,8 @@ class TrailSheet:
                 self.filled = True
                 return
             earlier = np.full((len(sample), 2), np.nan)
-            earlier[there] = self.screen.pixels(self._to_map(sample[there, :2])) * self.screen.ratio
+            places = sample.take(there, axis=0)[:, :2]
+            earlier[there] = self.screen.pixels(self._to_map(places)) * self.screen.ratio
             later, times = self._later
             self._stamp(earlier, later, times)
             self._later = earlier, sample[:, 2]
@@ -91,19 +90,28 @@ class TrailSheet:
             if time.perf_counter() > until:
                 return
 
-    def _stamp(self, start: Points, end: Points, times: Points) -> tuple[Pixels, Pixels]:
-        """Note ``times`` in the pixels on the lines from ``start`` to ``end``, (n, 2) device pixels."""
-        x, y, times = _on_lines(start, end, times - self._epoch, self._times.shape)
-        newer = np.flatnonzero(times > self._times[y, x])
-        # Of several robots on one pixel the last one written stays: the newest.
-        newer = newer[np.argsort(times[newer], kind="stable")]
-        x, y = x[newer], y[newer]
-        self._times[y, x] = times[newer]
-        return x, y
+    def _go_on(self, start: Points, end: Points, now: float) -> None:
+        """Draw the lines from ``start`` to ``end``, (n, 2) device pixels: nothing is newer."""
+        pixels, _ = _on_lines(start, end, self._times.shape)
+        self._times.reshape(-1)[pixels] = now - self._epoch
+        self._colour(pixels)
 
-    def _colour(self, x: Pixels, y: Pixels) -> None:
+    def _stamp(self, start: Points, end: Points, times: Points) -> None:
+        """Note ``times`` in the pixels on the lines from ``start`` to ``end``, unless they are newer."""
+        pixels, lines = _on_lines(start, end, self._times.shape)
+        noted, told = self._times.reshape(-1), (times - self._epoch)[lines]
+        newer = np.flatnonzero(told > noted[pixels])
+        # Of several robots on one pixel the last one written stays: the newest.
+        newer = newer[np.argsort(told[newer], kind="stable")]
+        noted[pixels[newer]] = told[newer]
+
+    def _colour(self, pixels: Pixels) -> None:
         """Colour new pixels without waiting for their band's turn."""
+        if self._reach == 0:
+            self._argb.reshape(-1)[pixels] = self._core[0]
+            return
         height, width = self._argb.shape
+        y, x = np.divmod(pixels, width)
         reach = range(-self._reach, self._reach + 1)
         for dx, dy in ((dx, dy) for dx in reach for dy in reach if abs(dx) + abs(dy) <= self._reach):
             self._argb[np.clip(y + dy, 0, height - 1), np.clip(x + dx, 0, width - 1)] = self._core[0]
@@ -113,12 +121,21 @@ class TrailSheet:
         height = len(self._times)
         rows = -(-height // BANDS)
         for _ in range(bands):
-            self._colour_band(self._band * rows, min(height, (self._band + 1) * rows), now)
+            top, bottom = self._band * rows, min(height, (self._band + 1) * rows)
+            if top < bottom:
+                colour = self._colour_wide if self._reach else self._colour_thin
+                colour(top, bottom, now)
             self._band = (self._band + 1) % BANDS
 
-    def _colour_band(self, top: int, bottom: int, now: float) -> None:
-        if bottom <= top:
-            return
+    def _colour_thin(self, top: int, bottom: int, now: float) -> None:
+        """Colour the pixels where robots were, which are few."""
+        times, band = self._times[top:bottom].reshape(-1), self._argb[top:bottom].reshape(-1)
+        seen = np.flatnonzero(times > np.float32(now - self._epoch - self._trails.length.seconds))
+        band[:] = 0
+        band[seen] = self._core.take(self._shade(times.take(seen), now))
+
+    def _colour_wide(self, top: int, bottom: int, now: float) -> None:
+        """Colour also the pixels around them."""
         above = max(0, top - 2 * self._reach)
         times = self._times[above : bottom + 2 * self._reach]
         inside = slice(top - above, bottom - above)
@@ -130,9 +147,8 @@ class TrailSheet:
         # Most of a map has no trail: to look up only what has one is several times as fast.
         seen = np.flatnonzero(casing[inside] < FADED)
         shades = core[inside].ravel()[seen]
-        colours = self._core[shades]
-        if self._reach:
-            colours = np.where(shades < FADED, colours, self._casing[casing[inside].ravel()[seen]])
+        around = self._casing[casing[inside].ravel()[seen]]
+        colours = np.where(shades < FADED, self._core[shades], around)
         band = self._argb[top:bottom].reshape(-1)
         band[:] = 0
         band[seen] = colours
@@ -146,30 +162,32 @@ class TrailSheet:
         return np.maximum(age, 0, out=age).astype(np.uint8)
 
 
-def _on_lines(
-    start: Points, end: Points, times: Points, shape: tuple[int, int]
-) -> tuple[Pixels, Pixels, Points]:
-    """Return the pixels on the lines, as x and y, each line's first one left out, and the time of each."""
+def _on_lines(start: Points, end: Points, shape: tuple[int, int]) -> tuple[Pixels, Pixels]:
+    """Return the pixels on the lines, each line's first one left out, and the line that each is on.
+
+    Pixels are counted from the left, line after line of an image of ``shape``, height and width.
+    """
     height, width = shape
     # Columns apart: numpy is slow where it goes along rows of two.
     x, y, to_x, to_y = start[:, 0], start[:, 1], end[:, 0], end[:, 1]
     # Most of ten thousand robots stay on their pixel from one frame to the next.
     lines = np.flatnonzero((np.floor(x) != np.floor(to_x)) | (np.floor(y) != np.floor(to_y)))
-    x, y = x[lines], y[lines]
-    dx, dy = to_x[lines] - x, to_y[lines] - y
+    x, y, to_x, to_y = x.take(lines), y.take(lines), to_x.take(lines), to_y.take(lines)
+    dx, dy = to_x - x, to_y - y
     reach = np.maximum(np.abs(dx), np.abs(dy))
     # What is NaN compares false.
-    on = (np.maximum(x, x + dx) >= 0) & (np.maximum(y, y + dy) >= 0) & (reach < LONGEST_STEP)
-    on &= (np.minimum(x, x + dx) < width) & (np.minimum(y, y + dy) < height)
+    on = (np.maximum(x, to_x) >= 0) & (np.maximum(y, to_y) >= 0) & (reach < LONGEST_STEP)
+    on &= (np.minimum(x, to_x) < width) & (np.minimum(y, to_y) < height)
     on = np.flatnonzero(on)
-    steps = np.ceil(reach[on]).astype(np.intp)
+    steps = np.ceil(reach.take(on)).astype(np.intp)
     which = np.repeat(on, steps)
-    before = np.repeat(np.cumsum(steps) - steps, steps)
-    part = (np.arange(len(which)) - before + 1) / np.repeat(steps, steps)
-    x = np.floor(x[which] + dx[which] * part).astype(np.intp)
-    y = np.floor(y[which] + dy[which] * part).astype(np.intp)
+    # Counted from the end of each line, where its last step leads.
+    left = np.repeat(np.cumsum(steps), steps) - np.arange(1, len(which) + 1)
+    part = left / np.repeat(steps, steps)
+    x = np.floor(to_x.take(which) - dx.take(which) * part)
+    y = np.floor(to_y.take(which) - dy.take(which) * part)
     inside = np.flatnonzero((x >= 0) & (x < width) & (y >= 0) & (y < height))
-    return x[inside], y[inside], times[lines[which[inside]]]
+    return (y * width + x).take(inside).astype(np.intp), lines.take(which.take(inside))
 
 
 def _spread(shades: Shades, reach: int) -> Shades:

@@ -49,9 +49,9 @@ def drawn(draw: Draw, side: int, scale: float, degrees: float = 0.0) -> Cells:
     return np.frombuffer(bits, dtype=np.uint32).reshape(side, side).copy()
 
 
-def in_a_row(cells: Cells) -> QPixmap:
-    """Return (n, side, side) pixels as one picture, from left to right."""
+def in_a_column(cells: Cells) -> QPixmap:
+    """Return (n, side, side) pixels as one picture, from the top down: each cell's are together in memory."""
     count, side, _ = cells.shape
-    row = np.ascontiguousarray(cells.transpose(1, 0, 2)).reshape(side, count * side)
+    column = np.ascontiguousarray(cells)
     # A picture of its own: the image only looks at the array.
-    return QPixmap.fromImage(QImage(row.data, count * side, side, count * side * 4, FORMAT).copy())
+    return QPixmap.fromImage(QImage(column.data, side, count * side, side * 4, FORMAT).copy())

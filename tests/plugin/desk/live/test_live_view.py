@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from fleet_supervisor.plugin.desk.colours import TRAIL
+from qgis.core import QgsCoordinateReferenceSystem, QgsCoordinateTransform, QgsPointXY
 from qgis.PyQt.QtGui import QColor
 from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import QLabel
@@ -41,6 +42,24 @@ def test_a_trail_is_painted_and_is_there_again_after_the_view_has_moved(driven, 
     wait(lambda: is_blue(iface, 62, 40) and is_blue(iface, 56, 40), what="the trail")
     iface.canvas.setRotation(70)
     wait(lambda: is_blue(iface, 62, 40) and is_blue(iface, 56, 40), what="the trail")
+
+
+def test_robots_are_placed_anew_when_the_map_gets_another_crs(at_desk, gateway, iface, make_robot, wait):
+    gateway.show(make_robot("r1", 60, 30))
+    wait(lambda: at_desk.desk.picture.row("r1") is not None)
+    other = QgsCoordinateReferenceSystem("EPSG:3857")
+    iface.canvas.setDestinationCrs(other)
+    way = QgsCoordinateTransform(
+        QgsCoordinateReferenceSystem("EPSG:32633"), other, at_desk.desk.project.transformContext()
+    )
+    origin = at_desk.desk.site.origin
+    place = way.transform(QgsPointXY(origin[0] + 60, origin[1] + 30))
+
+    def is_there():
+        at = iface.canvas.getCoordinateTransform().transform(place)
+        return at_desk.view.overlay.robot_at(at.x(), at.y()) == "r1"
+
+    wait(is_there, what="the robot in the other CRS")
 
 
 def test_a_new_position_is_painted_without_anything_else_happening(at_desk, gateway, iface, make_robot, wait):

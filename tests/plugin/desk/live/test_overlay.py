@@ -10,6 +10,7 @@ import pytest
 from fleet_supervisor.plugin.desk.colours import CONE as CONE_COLOUR
 from fleet_supervisor.plugin.desk.colours import REFUSED, SELECTED, STATE_COLOURS, TRAIL
 from fleet_supervisor.plugin.desk.drafts import CONE, ROUTE, TARGETS, Draft, Findings
+from fleet_supervisor.plugin.desk.live.in_view import in_view
 from fleet_supervisor.plugin.desk.live.overlay import FleetOverlay
 from fleet_supervisor.plugin.desk.live.plans import Plan
 from fleet_supervisor.plugin.desk.live.scene import Placer, Scene
@@ -390,7 +391,7 @@ def test_the_names_of_a_crowd_do_not_cover_each_other_and_the_lost_are_named_fir
     names = NamesPainter(Labels())
     screen = overlay.screen()
     pixels = screen.pixels(overlay._placed.robots)
-    chosen = names._chosen(overlay._placed, pixels, np.arange(201), screen)
+    chosen = names._chosen(overlay._placed, in_view(overlay._placed, screen), screen)
     assert chosen[0] == 200
     assert 20 < len(chosen) < 200
     boxes = [QRectF(*(pixels[row] + BESIDE), 8 * len(f"r{row + 1}"), HEIGHT - 1) for row in chosen[1:]]
@@ -414,9 +415,9 @@ def written_after(canvas, site, first, second):
     image = QImage(canvas.size(), QImage.Format.Format_ARGB32_Premultiplied)
     for scene in (first, second):
         overlay = show(canvas, site, scene)
-        screen, pixels = overlay.screen(), overlay.screen().pixels(overlay._placed.robots)
+        screen = overlay.screen()
         painter = QPainter(image)
-        names.paint(painter, overlay._placed, pixels, np.arange(len(pixels)), screen)
+        names.paint(painter, overlay._placed, in_view(overlay._placed, screen), screen)
         painter.end()
     return names._written
 

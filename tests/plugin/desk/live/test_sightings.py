@@ -81,6 +81,30 @@ def test_a_robot_keeps_its_row():
     assert [picture.row(name) for name in "bac"] == [0, 1, 2]
 
 
+def test_words_that_are_told_in_another_order_stay_what_they_are():
+    table = Sightings()
+    table.merge(sightings([told("a", status="driving", link="sql"), told("b", status="docked")], 0.0))
+    table.merge(
+        sightings([told("a", link="websocket"), told("b", status="driving"), told("c", status="new")], 1.0)
+    )
+    assert [table.told(row).get("status") for row in range(3)] == [None, "driving", "new"]
+    assert [table.told(row)["link"] for row in range(3)] == ["websocket", "sql", "sql"]
+
+
+def test_the_names_are_the_same_list_until_there_are_more_of_them():
+    picture = RobotPicture()
+    picture.merge(sightings([told("a"), told("b")], 0.0))
+    names = picture.arrays(0.0).names
+    picture.merge(sightings([told("b", x=2.0)], 1.0))
+    assert picture.arrays(1.0).names is names
+    picture.merge(sightings([told("c")], 2.0))
+    assert (names, picture.arrays(2.0).names) == (["a", "b"], ["a", "b", "c"])
+    picture.clear()
+    picture.merge(sightings([told("x"), told("y"), told("z")], 3.0))
+    assert picture.arrays(3.0).names == ["x", "y", "z"]
+    assert picture.arrays(3.0, slice(1, 2)).names == ["y"]
+
+
 def test_after_another_site_nothing_is_known_of_robots_before():
     picture = RobotPicture()
     picture.merge(sightings([told("a")], 0.0))

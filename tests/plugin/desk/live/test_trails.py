@@ -93,17 +93,30 @@ def test_a_trail_is_painted_where_the_robot_was_and_nowhere_else(qgis_app):
     assert alpha[:45].max() == alpha[56:].max() == 0
 
 
-def test_it_fades_and_is_gone_when_it_is_old(qgis_app):
+@pytest.mark.parametrize(("robots", "seconds"), [(1, 90.0), (400, 15.0)])
+def test_it_fades_and_is_gone_when_it_is_old(qgis_app, robots, seconds):
     trails = Trails()
     image = TrailImage(trails)
-    at = drive(trails, 60, image=image)
+    at = drive(trails, 60, robots=robots, image=image)
     for _ in range(20):
         image.extend(at, SCREEN, same, 60.0)
     now = painted(image)[50]
-    assert now[65] > now[40] > now[15] > 0
+    newest, middle, oldest = (round(70 - part * min(seconds, 60.0)) for part in (0.1, 0.5, 0.9))
+    assert now[newest] > now[middle] > now[oldest] > 0
     for frame in range(40):
-        image.extend(at, SCREEN, same, 151.0 + frame * 0.05)
+        image.extend(at, SCREEN, same, 61.0 + seconds + frame * 0.05)
     assert painted(image).max() == 0
+
+
+def test_trails_of_many_robots_are_a_pixel_wide(qgis_app):
+    trails = Trails()
+    image = TrailImage(trails)
+    at = drive(trails, 60, robots=400, image=image)
+    for _ in range(20):
+        image.extend(at, SCREEN, same, 60.0)
+    alpha = painted(image)
+    assert (alpha[50:98:3, 58:70] > 0).all()
+    assert alpha[51:99:3].max() == alpha[52:99:3].max() == alpha[:50].max() == 0
 
 
 @pytest.mark.parametrize("ratio", [1.0, 1.5, 2.0])
@@ -152,3 +165,18 @@ def test_a_robot_that_takes_many_frames_for_a_pixel_leaves_a_trail_without_gaps(
     assert (row[12:29] > 0).all()
     assert not row[:9].any()
     assert not row[33:].any()
+
+
+@pytest.mark.parametrize("robots", [1, 400])
+def test_a_robot_that_goes_many_pixels_in_a_frame_leaves_a_trail_without_gaps(qgis_app, robots):
+    trails = Trails()
+    image = TrailImage(trails)
+    for second in range(6):
+        at = np.tile([20.5 + 30.0 * second, 10.5 + 15.0 * second], (robots, 1))
+        trails.extend(at, float(second))
+        image.extend(at, SCREEN, same, float(second))
+    alpha = painted(image)
+    across = np.arange(22, 170)
+    for x, y in zip(across, (10.5 + (across - 20.0) / 2).astype(int), strict=True):
+        assert alpha[y - 1 : y + 2, x].max() > 0
+    assert alpha[:, 172:].max() == alpha[:, :18].max() == 0

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from fleet_supervisor.plugin.desk.colours import SELECTED
 from fleet_supervisor.plugin.desk.glyphs import draw_arrow, draw_robot
-from fleet_supervisor.plugin.desk.live.turned import drawn, in_a_row, turned
+from fleet_supervisor.plugin.desk.live.turned import drawn, in_a_column, turned
 from fleet_supervisor.plugin.desk.picture import STATES
 from fleet_supervisor.robot_bridge.messages import RobotState
 from qgis.PyQt.QtGui import QImage
@@ -38,11 +38,11 @@ def test_an_arrow_points_where_it_would_if_it_were_drawn_so(qgis_app):
     check(lambda painter: draw_arrow(painter, RobotState.FRESH, SELECTED), 30)
 
 
-def test_cells_stand_in_a_row_from_left_to_right(qgis_app):
+def test_cells_stand_in_a_column_from_the_top_down(qgis_app):
     cells = np.zeros((3, 4, 4), dtype=np.uint32)
     cells[1, 2, 3] = 0xFF336699
-    image = in_a_row(cells).toImage().convertToFormat(QImage.Format.Format_ARGB32)
-    assert (image.width(), image.height()) == (12, 4)
-    found = [(x, y) for x in range(12) for y in range(4) if image.pixel(x, y)]
-    assert found == [(7, 2)]
-    assert image.pixel(7, 2) == 0xFF336699
+    image = in_a_column(cells).toImage().convertToFormat(QImage.Format.Format_ARGB32)
+    assert (image.width(), image.height()) == (4, 12)
+    found = [(x, y) for x in range(4) for y in range(12) if image.pixel(x, y)]
+    assert found == [(3, 6)]
+    assert image.pixel(3, 6) == 0xFF336699
