@@ -57,7 +57,7 @@ class DistanceToRobot(QgsExpressionFunction):
         parameter = QgsExpressionFunction.Parameter
         parameters = [parameter("robot"), parameter("geometry", True), parameter("crs", True)]
         # Handles NULL itself: an argument that is left out comes as NULL, too.
-        super().__init__(NAME, parameters, GROUP, _HELP, False, True, True)
+        super().__init__(NAME, parameters, GROUP, _HELP, lazyEval=False, handlesNull=True)
         self._fleet = fleet
 
     def isStatic(

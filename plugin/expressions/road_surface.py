@@ -54,7 +54,7 @@ class RoadSurface(QgsExpressionFunction):
         parameter = QgsExpressionFunction.Parameter
         parameters = [parameter("x"), parameter("y"), parameter("layer", True), parameter("crs", True)]
         # Handles NULL itself: an argument that is left out comes as NULL, too.
-        super().__init__(NAME, parameters, GROUP, _HELP, False, True, True)
+        super().__init__(NAME, parameters, GROUP, _HELP, lazyEval=False, handlesNull=True)
         self._store = store
 
     def usesGeometry(self, _node: QgsExpressionNodeFunction):

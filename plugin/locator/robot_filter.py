@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 
 from qgis.core import QgsFeedback, QgsLocatorContext, QgsLocatorFilter, QgsLocatorResult
 from qgis.PyQt.QtGui import QIcon
@@ -15,6 +16,13 @@ from ..language import tr
 NAME = "fleet_robots"
 MOST = 50
 """Results: nobody reads more, and the list is made anew with each letter."""
+
+
+@dataclass
+class LastSearch:
+    """What was looked for last, for the filter and its clones, which are gone when a result is chosen."""
+
+    text: str = ""
 
 
 class RobotFilter(QgsLocatorFilter):
@@ -32,13 +40,15 @@ class RobotFilter(QgsLocatorFilter):
         icons: Mapping[str, QIcon],
         go: Callable[[str], None],
         typed: Callable[[], str | None],
+        last: LastSearch | None = None,
     ):
         super().__init__()
         self._fleet, self._icons, self._go, self._typed = fleet, icons, go, typed
         self._robots: RobotsNow | None = None
+        self._last = last or LastSearch()
 
     def clone(self):
-        return RobotFilter(self._fleet, self._icons, self._go, self._typed)
+        return RobotFilter(self._fleet, self._icons, self._go, self._typed, self._last)
 
     def name(self):
         return NAME
@@ -61,25 +71,28 @@ class RobotFilter(QgsLocatorFilter):
         return []
 
     def fetchResults(self, string: str, context: QgsLocatorContext, feedback: QgsFeedback):
+        self._last.text = string.strip()
         robots = self._robots
         if robots is None or (not string.strip() and not context.usingPrefix):
             return
         for score, name in ranked(string, list(robots.rows))[:MOST]:
             if feedback.isCanceled():
                 return
-            result = self._result(name, robots, score)
-            result.userData = string.strip()
-            self.resultFetched.emit(result)
+            self.resultFetched.emit(self._result(name, robots, score))
 
     def triggerResult(self, result: QgsLocatorResult):
         # QGIS looks a moment after the last letter. Whoever presses Enter sooner is given a row of what was
         # typed before, which may be another robot: what is typed counts.
         typed = self._typed_name()
-        if typed is None or typed == result.userData:
+        if typed is None:
             self._go(result.displayString)
-        elif self._fleet.robots is not None:
-            for _, name in ranked(typed, list(self._fleet.robots.rows))[:1]:
-                self._go(name)
+            return
+        robots = self._fleet.robots
+        names = [name for _, name in ranked(typed, list(robots.rows))] if robots is not None else []
+        if typed == self._last.text and result.displayString in names:
+            self._go(result.displayString)
+        elif names:
+            self._go(names[0])
 
     def _typed_name(self) -> str | None:
         """Return what stands in the locator's field behind the prefix."""

@@ -58,7 +58,8 @@ class FleetAlgorithm(QgsProcessingAlgorithm):
         return self.SUMMARY
 
     def shortHelpString(self):
-        return self.HELP
+        # QGIS shows <b> in a dark grey, which its dark themes swallow.
+        return self.HELP.replace("<b>", "<strong>").replace("</b>", "</strong>")
 
     def icon(self):
         return QIcon(self.svgIconPath())

@@ -19,13 +19,13 @@ from qgis.PyQt.QtWidgets import (
 
 from ..errors import FleetError
 from ..file_dialogs import file_to_read, file_to_write
-from ..language import tr
+from ..language import tr, tr_count
 from ..wire.addresses import DEFAULT_URL, Credentials
 from .connection_dialog import ConnectionDialog
 from .connection_trial import ConnectionTrial
 from .connections import Connections
 from .gateway_connection import GatewayConnection, connections_in, connections_text
-from .preferences import exports_folder
+from .preferences import export_path, exports_folder
 from .token_store import TokenStore
 from .verdict_label import VerdictLabel
 
@@ -145,15 +145,10 @@ class ConnectionsWidget(QWidget):
             values = (connection.name, connection.url, connection.operator, connection.ca_file)
             self._connections.put(GatewayConnection(*values, auth))
         self.show_all()
-        self._verdict.tell(
-            True,
-            tr(
-                "{found} connections from {file}, {replaced} of them replaced.",
-                found=len(found),
-                file=file,
-                replaced=replaced,
-            ),
-        )
+        text = tr_count(len(found), "1 connection from {file}.", "%n connections from {file}.", file=file)
+        if replaced:
+            text += " " + tr("Replaced: {replaced}.", replaced=replaced)
+        self._verdict.tell(True, text)
 
     def write_file(self, file: str) -> None:
         """Write the selected connections, or all when none is selected, without their tokens."""
@@ -164,9 +159,13 @@ class ConnectionsWidget(QWidget):
         except OSError as error:
             self._verdict.tell(False, tr("{file} cannot be written: {error}", file=file, error=error))
             return
-        self._verdict.tell(
-            True, tr("{chosen} connections in {file}, without tokens.", chosen=len(chosen), file=file)
+        text = tr_count(
+            len(chosen),
+            "1 connection in {file}, without its token.",
+            "%n connections in {file}, without tokens.",
+            file=file,
         )
+        self._verdict.tell(True, text)
 
     def end(self) -> None:
         """Give up a test that is under way."""
@@ -183,7 +182,7 @@ class ConnectionsWidget(QWidget):
             self.read_file(file)
 
     def _choose_export(self) -> None:
-        file = file_to_write(self, tr("Export connections"), exports_folder(), FILTER)
+        file = file_to_write(self, tr("Export connections"), export_path("connections.json"), FILTER)
         if file:
             self.write_file(QgsFileUtils.ensureFileNameHasExtension(file, ["json"]))
 

@@ -49,9 +49,10 @@ def write_preferences(preferences: Preferences) -> None:
 
 
 def exports_folder() -> str:
-    """Return the folder that dialogs for files begin in."""
-    documents = QStandardPaths.StandardLocation.DocumentsLocation
-    return read_preferences().folder or QStandardPaths.writableLocation(documents)
+    """Return the folder that dialogs for files begin in: the first that is there."""
+    documents = QStandardPaths.writableLocation(QStandardPaths.StandardLocation.DocumentsLocation)
+    folders = (Path(one) for one in (read_preferences().folder, documents) if one)
+    return str(next((folder for folder in folders if folder.is_dir()), Path.home()))
 
 
 def export_path(name: str) -> str:

@@ -1995,8 +1995,48 @@
         </message>
         <message>
             <location filename="../../plugin/desk/live/robot_features.py" />
+            <source>Accuracy (m)</source>
+            <translation>Exactitud (m)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/robot_features.py" />
+            <source>Age (s)</source>
+            <translation>Antiguitat (s)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/robot_features.py" />
+            <source>Battery (0 to 1)</source>
+            <translation>Bateria (0 a 1)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/robot_features.py" />
+            <source>Heading (°)</source>
+            <translation>Rumb (°)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/robot_features.py" />
+            <source>Link</source>
+            <translation>Enllaç</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/robot_features.py" />
             <source>Robots (live)</source>
             <translation>Robots (en directe)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/robot_features.py" />
+            <source>Speed (m/s)</source>
+            <translation>Velocitat (m/s)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/robot_features.py" />
+            <source>Status</source>
+            <translation>Situació</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/robot_features.py" />
+            <source>Theta (rad)</source>
+            <translation>Theta (rad)</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/observations/observation_dock.py" />
@@ -3512,11 +3552,6 @@
             <location filename="../../plugin/desk/robots/columns.py" />
             <source>Its speed, as it says</source>
             <translation>La seva velocitat, tal com diu</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/robots/columns.py" />
-            <source>Link</source>
-            <translation>Enllaç</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/robots/columns.py" />
@@ -7335,6 +7370,22 @@
             <source>Connections to gateways</source>
             <translation>Connexions a passarel·les</translation>
         </message>
+        <message numerus="yes">
+            <location filename="../../plugin/settings/connections_widget.py" />
+            <source>%n connections from {file}.</source>
+            <translation>
+                <numerusform>%n connexió de {file}.</numerusform>
+                <numerusform>%n connexions de {file}.</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/settings/connections_widget.py" />
+            <source>%n connections in {file}, without tokens.</source>
+            <translation>
+                <numerusform>%n connexió a {file}, sense testimoni.</numerusform>
+                <numerusform>%n connexions a {file}, sense testimonis.</numerusform>
+            </translation>
+        </message>
         <message>
             <location filename="../../plugin/settings/connections_widget.py" />
             <source>&amp;Edit…</source>
@@ -7402,8 +7453,8 @@
         </message>
         <message>
             <location filename="../../plugin/settings/connections_widget.py" />
-            <source>{chosen} connections in {file}, without tokens.</source>
-            <translation>{chosen} connexions a {file}, sense testimonis.</translation>
+            <source>Replaced: {replaced}.</source>
+            <translation>Substituïdes: {replaced}.</translation>
         </message>
         <message>
             <location filename="../../plugin/settings/connections_widget.py" />
@@ -7414,11 +7465,6 @@
             <location filename="../../plugin/settings/connections_widget.py" />
             <source>{file} cannot be written: {error}</source>
             <translation>{file} no es pot escriure: {error}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/settings/connections_widget.py" />
-            <source>{found} connections from {file}, {replaced} of them replaced.</source>
-            <translation>{found} connexions de {file}, {replaced} d'elles substituïdes.</translation>
         </message>
         <message>
             <location filename="../../plugin/settings/gateway_connection.py" />

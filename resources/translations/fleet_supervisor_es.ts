@@ -1995,8 +1995,48 @@
         </message>
         <message>
             <location filename="../../plugin/desk/live/robot_features.py" />
+            <source>Accuracy (m)</source>
+            <translation>Exactitud (m)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/robot_features.py" />
+            <source>Age (s)</source>
+            <translation>Antigüedad (s)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/robot_features.py" />
+            <source>Battery (0 to 1)</source>
+            <translation>Batería (0 a 1)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/robot_features.py" />
+            <source>Heading (°)</source>
+            <translation>Rumbo (°)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/robot_features.py" />
+            <source>Link</source>
+            <translation>Enlace</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/robot_features.py" />
             <source>Robots (live)</source>
             <translation>Robots (en vivo)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/robot_features.py" />
+            <source>Speed (m/s)</source>
+            <translation>Velocidad (m/s)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/robot_features.py" />
+            <source>Status</source>
+            <translation>Situación</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/robot_features.py" />
+            <source>Theta (rad)</source>
+            <translation>Theta (rad)</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/observations/observation_dock.py" />
@@ -3512,11 +3552,6 @@
             <location filename="../../plugin/desk/robots/columns.py" />
             <source>Its speed, as it says</source>
             <translation>Su velocidad, según dice</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/robots/columns.py" />
-            <source>Link</source>
-            <translation>Enlace</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/robots/columns.py" />
@@ -7335,6 +7370,22 @@
             <source>Connections to gateways</source>
             <translation>Conexiones a pasarelas</translation>
         </message>
+        <message numerus="yes">
+            <location filename="../../plugin/settings/connections_widget.py" />
+            <source>%n connections from {file}.</source>
+            <translation>
+                <numerusform>%n conexión de {file}.</numerusform>
+                <numerusform>%n conexiones de {file}.</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/settings/connections_widget.py" />
+            <source>%n connections in {file}, without tokens.</source>
+            <translation>
+                <numerusform>%n conexión en {file}, sin testigo.</numerusform>
+                <numerusform>%n conexiones en {file}, sin testigos.</numerusform>
+            </translation>
+        </message>
         <message>
             <location filename="../../plugin/settings/connections_widget.py" />
             <source>&amp;Edit…</source>
@@ -7402,8 +7453,8 @@
         </message>
         <message>
             <location filename="../../plugin/settings/connections_widget.py" />
-            <source>{chosen} connections in {file}, without tokens.</source>
-            <translation>{chosen} conexiones en {file}, sin testigos.</translation>
+            <source>Replaced: {replaced}.</source>
+            <translation>Sustituidas: {replaced}.</translation>
         </message>
         <message>
             <location filename="../../plugin/settings/connections_widget.py" />
@@ -7414,11 +7465,6 @@
             <location filename="../../plugin/settings/connections_widget.py" />
             <source>{file} cannot be written: {error}</source>
             <translation>{file} no se puede escribir: {error}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/settings/connections_widget.py" />
-            <source>{found} connections from {file}, {replaced} of them replaced.</source>
-            <translation>{found} conexiones de {file}, {replaced} de ellas sustituidas.</translation>
         </message>
         <message>
             <location filename="../../plugin/settings/gateway_connection.py" />

@@ -1993,8 +1993,48 @@
         </message>
         <message>
             <location filename="../../plugin/desk/live/robot_features.py" />
+            <source>Accuracy (m)</source>
+            <translation>Pontosság (m)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/robot_features.py" />
+            <source>Age (s)</source>
+            <translation>Kor (s)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/robot_features.py" />
+            <source>Battery (0 to 1)</source>
+            <translation>Akku (0–1)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/robot_features.py" />
+            <source>Heading (°)</source>
+            <translation>Irány (°)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/robot_features.py" />
+            <source>Link</source>
+            <translation>Kapcs.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/robot_features.py" />
             <source>Robots (live)</source>
             <translation>Robotok (élő)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/robot_features.py" />
+            <source>Speed (m/s)</source>
+            <translation>Sebesség (m/s)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/robot_features.py" />
+            <source>Status</source>
+            <translation>Állapotszöveg</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/live/robot_features.py" />
+            <source>Theta (rad)</source>
+            <translation>Théta (rad)</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/observations/observation_dock.py" />
@@ -3509,11 +3549,6 @@
             <location filename="../../plugin/desk/robots/columns.py" />
             <source>Its speed, as it says</source>
             <translation>A sebessége, ahogy mondja</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/robots/columns.py" />
-            <source>Link</source>
-            <translation>Kapcs.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/robots/columns.py" />
@@ -7331,6 +7366,20 @@
             <source>Connections to gateways</source>
             <translation>Kapcsolatok az átjárókhoz</translation>
         </message>
+        <message numerus="yes">
+            <location filename="../../plugin/settings/connections_widget.py" />
+            <source>%n connections from {file}.</source>
+            <translation>
+                <numerusform>%n kapcsolat innen: {file}.</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/settings/connections_widget.py" />
+            <source>%n connections in {file}, without tokens.</source>
+            <translation>
+                <numerusform>%n kapcsolat itt: {file}, tokenek nélkül.</numerusform>
+            </translation>
+        </message>
         <message>
             <location filename="../../plugin/settings/connections_widget.py" />
             <source>&amp;Edit…</source>
@@ -7398,8 +7447,8 @@
         </message>
         <message>
             <location filename="../../plugin/settings/connections_widget.py" />
-            <source>{chosen} connections in {file}, without tokens.</source>
-            <translation>{chosen} kapcsolat itt: {file}, tokenek nélkül.</translation>
+            <source>Replaced: {replaced}.</source>
+            <translation>Lecserélve: {replaced}.</translation>
         </message>
         <message>
             <location filename="../../plugin/settings/connections_widget.py" />
@@ -7410,11 +7459,6 @@
             <location filename="../../plugin/settings/connections_widget.py" />
             <source>{file} cannot be written: {error}</source>
             <translation>{file} nem írható: {error}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/settings/connections_widget.py" />
-            <source>{found} connections from {file}, {replaced} of them replaced.</source>
-            <translation>{found} kapcsolat innen: {file}, ebből {replaced} lecserélve.</translation>
         </message>
         <message>
             <location filename="../../plugin/settings/gateway_connection.py" />

@@ -11,9 +11,12 @@ from qgis.core import (
     QgsCoordinateReferenceSystem,
     QgsGeometry,
     QgsMarkerSymbol,
+    QgsPalLayerSettings,
     QgsPointXY,
     QgsRendererCategory,
+    QgsTextFormat,
     QgsVectorLayer,
+    QgsVectorLayerSimpleLabeling,
 )
 
 from ....robot_bridge.sites.frame import SiteFrame
@@ -36,6 +39,22 @@ FIELDS = (
     "command:string",
     "accuracy:double",
 )
+ALIASES = (
+    tr("Robot"),
+    tr("State"),
+    tr("Theta (rad)"),
+    tr("Heading (°)"),
+    tr("Speed (m/s)"),
+    tr("Battery (0 to 1)"),
+    tr("Status"),
+    tr("Age (s)"),
+    tr("Link"),
+    tr("Command"),
+    tr("Accuracy (m)"),
+)
+"""What people read for each of :data:`FIELDS`; expressions go by the fields' names."""
+LABEL_OFFSET_MM = 5.0
+"""How far below a robot a label is: the live map's arrow and name are above that."""
 NAME_AT, STATE_AT, AGE_AT = (FIELDS.index(field) for field in ("robot:string", "state:string", "age:double"))
 
 
@@ -60,7 +79,26 @@ def made_layer(crs: QgsCoordinateReferenceSystem) -> QgsVectorLayer:
     # QGIS would ask on closing whether the layer's contents may be lost; they come anew each second.
     layer.setCustomProperty("skipMemoryLayersCheck", 1)
     layer.setRenderer(_renderer())
+    for at, alias in enumerate(ALIASES):
+        layer.setFieldAlias(at, alias)
+    layer.setLabeling(QgsVectorLayerSimpleLabeling(_labels()))
+    layer.setLabelsEnabled(False)
     return layer
+
+
+def _labels() -> QgsPalLayerSettings:
+    """Return how labels look once the user switches them on: legible, and beside what the live map draws."""
+    labels = QgsPalLayerSettings()
+    labels.fieldName = "state"
+    labels.placement = QgsPalLayerSettings.Placement.OverPoint
+    labels.yOffset = LABEL_OFFSET_MM
+    looks = QgsTextFormat()
+    looks.setSize(9)
+    around = looks.buffer()
+    around.setEnabled(True)
+    looks.setBuffer(around)
+    labels.setFormat(looks)
+    return labels
 
 
 def features_of(picture: RobotPicture, now: float, rows: slice, frame: SiteFrame) -> list[RobotFeature]:

@@ -28,6 +28,8 @@ SPINS = (
         tr("The layer Robots (live): attribute table, labels, expressions. The live map goes its own way"),
     ),
 )
+WIDTH = 90
+"""Pixels of a field for a number, so that all are as wide."""
 
 
 class PreferencesForm(QWidget):
@@ -47,6 +49,7 @@ class PreferencesForm(QWidget):
             spin.setDecimals(decimals)
             spin.setSuffix(unit)
             spin.setToolTip(tip)
+            spin.setMinimumWidth(WIDTH)
             self._spins[name] = spin
             _add(form, text, spin)
         self._folder = file_field()

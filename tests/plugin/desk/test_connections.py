@@ -224,8 +224,16 @@ def test_export_and_import_hand_connections_on_without_tokens(widget, tmp_path, 
     Connections().remove("Track")
     widget.read_file(str(file))
     assert listed(widget) == ["Track", "Yard"]
-    assert "2 connections" in verdict(widget) and "1 of them replaced" in verdict(widget)
+    assert "2 connections" in verdict(widget) and "Replaced: 1." in verdict(widget)
     assert Connections().get("Yard") == kept
+
+
+def test_one_connection_is_told_as_one(widget, tmp_path):
+    Connections().put(GatewayConnection("Yard", "ws://127.0.0.1:8765/desk"))
+    widget.show_all()
+    for work in (widget.write_file, widget.read_file):
+        work(str(tmp_path / "one.json"))
+        assert "1 connection " in verdict(widget)
 
 
 def test_only_what_is_selected_is_exported(widget, tmp_path):

@@ -17,6 +17,7 @@ from qgis.core import (
     QgsExpressionContextUtils,
     QgsProject,
 )
+from qgis.gui import QgsExpressionTreeView
 
 NAMES = ("robot_state", "robot_battery", "robot_age", "distance_to_robot")
 EAST, NORTH = 488000.0, 5190000.0
@@ -146,6 +147,12 @@ def test_each_has_help_and_stands_in_the_group_fleet(fleet, name):
     assert f"{name}(" in function.helpText()
     assert "NULL" in function.helpText()
     assert function.groups() == ["Fleet"]
+
+
+@pytest.mark.parametrize("name", [*NAMES, "road_surface"])
+def test_each_is_listed_where_expressions_are_written(fleet, name):
+    tree = QgsExpressionTreeView()
+    assert [item.text() for item in tree.findExpressions(name)] == [name]
 
 
 def test_they_go_with_the_plugin(qgis_app):

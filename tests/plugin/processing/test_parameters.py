@@ -23,3 +23,12 @@ def test_robots_and_roads_have_a_speed_each(qgis_app):
     algorithm = provider.algorithm("assigncones")
     assert algorithm.parameterDefinition("ROBOT_SPEED").type() == "number"
     assert algorithm.parameterDefinition("SPEED").type() == "expression"
+
+
+def test_help_is_legible_in_dark_themes(qgis_app):
+    """Beneath <b> QGIS puts a dark grey of its own."""
+    provider = FleetProvider()
+    provider.loadAlgorithms()
+    helps = [algorithm.shortHelpString() for algorithm in provider.algorithms()]
+    assert any("<strong>" in text for text in helps)
+    assert not any("<b>" in text for text in helps)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 from fleet_supervisor.plugin.settings.connections import Connections
 from fleet_supervisor.plugin.settings.gateway_connection import GatewayConnection
@@ -62,3 +64,9 @@ def test_files_go_where_the_options_say(connections, tmp_path):
     assert export_path("a.csv").endswith("/a.csv")
     write_preferences(Preferences(folder=str(tmp_path)))
     assert export_path("a.csv") == str(tmp_path / "a.csv")
+
+
+def test_a_folder_that_is_gone_is_not_proposed(connections, tmp_path):
+    write_preferences(Preferences(folder=str(tmp_path / "gone")))
+    folder = Path(export_path("a.csv")).parent
+    assert folder.is_dir() and folder != tmp_path / "gone"

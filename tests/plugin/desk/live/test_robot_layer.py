@@ -6,7 +6,7 @@ import pytest
 from fleet_supervisor.plugin.desk.live.robot_layer import AT_ONCE, RobotLayer
 from fleet_supervisor.plugin.desk.picture import RobotPicture
 from fleet_supervisor.plugin.wire.position_rows import sightings
-from qgis.core import NULL, QgsProject, QgsSingleSymbolRenderer
+from qgis.core import NULL, QgsPalLayerSettings, QgsProject, QgsSingleSymbolRenderer
 from qgis.gui import QgsAttributeTableFilterModel, QgsDualView
 
 
@@ -167,3 +167,20 @@ def test_an_open_attribute_table_shows_what_comes_in(layer, iface, wait):
     column = layer.layer.fields().indexOf("battery")
     wait(lambda: model.data(model.index(0, model.fieldCol(column)), 0) == "0.25", what="the new value")
     table.deleteLater()
+
+
+def test_people_read_units_and_expressions_go_by_names(layer):
+    shown = {
+        field.name(): layer.layer.attributeDisplayName(at) for at, field in enumerate(layer.layer.fields())
+    }
+    assert shown["v"] == "Speed (m/s)"
+    assert shown["heading_deg"] == "Heading (°)"
+    assert not {name for name, text in shown.items() if text == name}
+
+
+def test_labels_are_the_users_to_switch_on_and_lie_beside_what_the_live_map_draws(layer):
+    assert not layer.layer.labelsEnabled()
+    labels = layer.layer.labeling().settings()
+    assert labels.placement == QgsPalLayerSettings.Placement.OverPoint
+    assert labels.yOffset > 0
+    assert labels.format().buffer().enabled()
