@@ -9,6 +9,7 @@ import os
 import sys
 from collections.abc import Sequence
 from importlib import import_module
+from typing import Annotated
 
 import typer
 
@@ -36,6 +37,7 @@ def command_line(arguments: Sequence[str]) -> typer.Typer:
     app = typer.Typer(
         help="The bridge between operators and robots.", no_args_is_help=True, pretty_exceptions_enable=False
     )
+    app.callback()(_shared)
     # A shell that completes words asks for every name that there is.
     completing = any(name.endswith("_COMPLETE") for name in os.environ)
     for name, does in COMMANDS.items():
@@ -63,6 +65,23 @@ def _add(app: typer.Typer, name: str) -> None:
         app.add_typer(module.app, name=name)
     else:
         app.command(name)(getattr(module, name))
+
+
+def _print_version(asked: bool) -> None:
+    if asked:
+        from importlib.metadata import version
+
+        print(version("fleet-supervisor-robot-bridge"))
+        raise typer.Exit
+
+
+def _shared(
+    of_program: Annotated[
+        bool,
+        typer.Option("--version", help="Print the version and exit.", callback=_print_version, is_eager=True),
+    ] = False,
+) -> None:
+    """Stand for what all commands share, which is this option."""
 
 
 def _only_named() -> None:

@@ -71,7 +71,7 @@ def serve(
 ) -> None:
     """Serve one site to robots (/robot, and tables rr and sa) and to operators (/desk).
 
-    What is not given is taken from [gateway] of site.toml. SIGHUP reads the site anew.
+    What is not given is taken from table gateway of site.toml. SIGHUP reads the site anew.
     """
     from ..access.tls import server_files
     from ..gateway import GatewaySettings

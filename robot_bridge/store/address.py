@@ -27,7 +27,9 @@ def read_address(text: str, password_file: Path | None = None) -> URL:
         raise StoreError(
             f"database URL {text.rpartition('@')[2]!r} cannot be read; write it like {FORMS}"
         ) from None
-    _dialect(url)
+    if isinstance(_dialect(url), SQLite) and url.database in (None, "", ":memory:"):
+        # SQLite would keep it in memory: what is told as queued would go with the process.
+        raise StoreError(f"database {shown(url)}: no file is named; write it like sqlite:////path/fleet.db")
     secret = sorted({"password", "passwd", "passfile"} & {key.lower() for key in url.query})
     if secret:
         raise StoreError(

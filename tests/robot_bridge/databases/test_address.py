@@ -19,6 +19,9 @@ FORMS = "write (it like )?sqlite:////path/fleet.db, postgresql://"
         ("postgres://u@h/d", "postgres is not supported; " + FORMS),
         ("postgresql+psycopg2://u@h/d", r"postgresql\+psycopg2 is not supported"),
         ("postgresql://u@h:port/d", "cannot be read; " + FORMS),
+        ("sqlite://", "database sqlite://: no file is named; write it like sqlite:////path/fleet.db"),
+        ("sqlite://fleet.db", "database sqlite://fleet.db: no file is named"),
+        ("sqlite:///:memory:", "no file is named; write it like sqlite:"),
     ],
 )
 def test_an_address_of_no_known_database_is_refused_with_what_is_right(url, text):

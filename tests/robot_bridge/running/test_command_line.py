@@ -1,10 +1,13 @@
 """The command line names every command without importing it, and imports the one that is asked for."""
 
 import pkgutil
+import re
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
+import tomllib
 import typer
 
 from robot_bridge import commands
@@ -72,3 +75,26 @@ def test_what_there_is_not_is_said_with_a_status_of_2():
     done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
     assert done.returncode == 2
     assert "No such command 'databse'" in done.stderr
+
+
+def test_the_version_is_that_of_the_project():
+    project = tomllib.loads(
+        (Path(commands.__file__).parents[2] / "pyproject.toml").read_text(encoding="utf-8")
+    )
+    modules, text = imported_by("--version")
+    assert text.strip() == project["project"]["version"]
+    assert modules & HEAVY == set()
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_no_help_has_lost_a_word_to_markup(name):
+    """What stands in brackets is taken for a style, and dropped."""
+    for text in help_texts(typer.main.get_command(command_line([name])).commands[name]):
+        assert not re.search(r"\[[a-z]", text), text
+
+
+def help_texts(command):
+    yield command.help or ""
+    yield from (parameter.help or "" for parameter in command.params)
+    for inner in getattr(command, "commands", {}).values():
+        yield from help_texts(inner)
