@@ -45,9 +45,14 @@ class Screen:
 
     def since(self, earlier: Screen) -> QTransform:
         """Return what takes pixels of ``earlier`` to those of this screen, both without rounding."""
-        linear = np.linalg.solve(earlier._axes, self._axes)
-        shift = self.pixels(np.array([earlier.centre]))[0] - np.array(earlier.at) @ linear
-        return QTransform(*linear[0].tolist(), *linear[1].tolist(), *shift.tolist())
+        # Not by numpy's solver: on a busy machine that takes milliseconds now and then, in a frame.
+        (rx, ry), (ux, uy) = earlier.right, earlier.up
+        scale = 1.0 / (rx * uy - ry * ux)
+        to_map = QTransform(uy * scale, -ry * scale, -ux * scale, rx * scale, 0.0, 0.0)
+        turned = to_map * QTransform(*self.right, *self.up, 0.0, 0.0)
+        was_x, was_y = turned.map(*earlier.at)
+        (x, y), *_ = self.pixels(np.array([earlier.centre])).tolist()
+        return turned * QTransform.fromTranslate(x - was_x, y - was_y)
 
     @cached_property
     def _axes(self) -> Points:
