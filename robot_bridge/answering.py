@@ -88,8 +88,9 @@ class Answering:
         task = self._book.task(robot)
         if task is None:
             raise RefusedError(f"GetPath: robot {robot!r} has no task; wait for SetPosEnd or SetPath")
-        pose = self._robots.get(robot).pose
-        if pose is None:
+        known = self._robots.get(robot)
+        pose = known.pose
+        if pose is None or not known.located:
             raise RefusedError(f"GetPath: it is not known where robot {robot!r} is; send SendPos first")
         message, driven = task
         left = await asyncio.to_thread(way_left, message, (pose.x, pose.y), driven, self._planner)

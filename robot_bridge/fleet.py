@@ -321,8 +321,9 @@ class Fleet:
     # --- time -----------------------------------------------------------------------------------------
 
     async def watch_roads(self) -> None:
-        """Open the roads that were closed until now, and see to robots in each other's way."""
+        """Open roads that were closed until now; see to robots on closed ones, and in each other's way."""
         await self.closures.expire()
+        await self.closures.catch_up()
         await self.traffic.watch(listened_to=bool(self._listeners))
 
     def age(self) -> None:

@@ -62,7 +62,8 @@ class GroundTracks:
         """
         x, y = place
         at = next(time for time in (fix.fix_t, fix.t, now) if time is not None)
-        track = self._tracks.setdefault(robot, GroundTrack(x, y, at))
+        # Until two fixes tell how fast it is it goes as it did: one that drove has not been seen to stand.
+        track = self._tracks.setdefault(robot, GroundTrack(x, y, at, v=0.0 if last is None else last.v))
         if at < track.at:
             # A clock that was set back tells no speed; the track begins anew.
             track = self._tracks[robot] = GroundTrack(x, y, at, track.theta)

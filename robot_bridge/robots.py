@@ -75,6 +75,14 @@ class Robots:
         robot = self._robots.get(name)
         return None if robot is None else robot.pose
 
+    def is_placed(self, name: str) -> bool:
+        """Tell whether it is known where a robot is now: it is heard, and has said so since its last Ready.
+
+        What is known of others is where they were: they may have driven on unseen.
+        """
+        robot = self._robots.get(name)
+        return robot is not None and robot.located and robot.state is RobotState.FRESH
+
     def restore(self, robot: Robot, now: float) -> None:
         """Take in a robot that an earlier gateway knew."""
         self._robots[robot.name] = robot

@@ -38,6 +38,8 @@ __all__ = ["GATEWAY", "CommandBook", "OpenCommand", "Order"]
 T = TypeVar("T")
 DRIVEN_STEP = 0.5
 """metres along a path between two that are stored."""
+NOWHERE = SendPos(x=1e9, y=1e9, theta=0.0, v=0.0)
+"""Where a robot was of which that was not stored: far from wherever it is now."""
 MOST_LATE = 1000
 """acknowledgements of ended commands that wait for the database."""
 
@@ -345,7 +347,8 @@ class CommandBook:
         return dataclasses.replace(noted, written_at=now, handed=handed)
 
     def _restored(self, stored: StoredCommand) -> OpenCommand:
-        command = dataclasses.replace(opened(stored), handed=self.seen(stored.report.robot))
+        handed = self.seen(stored.report.robot) or NOWHERE
+        command = dataclasses.replace(opened(stored), handed=handed)
         if stored.report.state is CommandState.ACKNOWLEDGED:
             command.arrival = judge(command.message, self.tolerance, driven=stored.driven, under_way=True)
         return command

@@ -138,12 +138,13 @@ class ClosureReport:
 class ReplannedRobot:
     """A robot whose way led along a road that was closed, and what became of it.
 
-    ``became`` is ``another way``, ``stopped``, ``told only`` (the site's settings ask for no more) or
-    ``failed``: look after that robot yourself. ``command`` is the one that does it, if one does.
+    ``became`` is ``another way``, ``stopped``, ``told only`` (the site's settings ask for no more), ``later``
+    (it is not known where it is now: as soon as it says so it is told) or ``failed``: look after that robot
+    yourself. ``command`` is the one that does it, if one does.
     """
 
     robot: str
-    became: Literal["another way", "stopped", "told only", "failed"]
+    became: Literal["another way", "stopped", "told only", "later", "failed"]
     text: str
     command: str | None = None
 

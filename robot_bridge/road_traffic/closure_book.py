@@ -6,7 +6,7 @@ import asyncio
 import logging
 import time
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import numpy as np
@@ -18,6 +18,7 @@ from ..messages import (
     Closures,
     Command,
     OpenRoad,
+    ReplannedRobot,
     RoadClosed,
     SetPath,
     SetPosEnd,
@@ -66,6 +67,7 @@ class ClosureBook:
     async def restore(self) -> None:
         """Close what an earlier gateway left closed."""
         self._rows = {row.id: row for row in await self._database.run(closures.in_force)}
+        self._detours.restore()
         await self._enforce()
 
     async def site_changed(self) -> None:
@@ -110,9 +112,18 @@ class ClosureBook:
             self._announce()
             log.warning("%s closed a road%s", operator, f" ({row.reason})" if row.reason else "")
         robots = await self._detours.around(row.id, row.reason, operator)
-        for robot in robots:
-            self._announce_news("replanned", robot.robot, to_json(robot))
+        self._announce_replanned(robots)
         return RoadClosed(self._reported(row), robots)
+
+    async def catch_up(self) -> None:
+        """Lead those robots round that could not be led when their road was closed, as Detours tells."""
+        placed = self._detours.placed()
+        if not placed:
+            return
+        for row in list(self._rows.values()):
+            self._announce_replanned(
+                await self._detours.around(row.id, row.reason, row.closed_by, only=placed)
+            )
 
     async def open(self, request: OpenRoad, operator: str) -> ClosureReport:
         """Open a road; the same again changes nothing.
@@ -195,6 +206,10 @@ class ClosureBook:
             opened_at=row.opened_at,
             opened_by=row.opened_by,
         )
+
+    def _announce_replanned(self, robots: Iterable[ReplannedRobot]) -> None:
+        for robot in robots:
+            self._announce_news("replanned", robot.robot, to_json(robot))
 
     def _announce(self) -> None:
         self._announce_news("closures", "closures", to_json(self.report()))

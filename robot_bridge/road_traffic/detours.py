@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import logging
 import uuid
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from functools import partial
 from typing import Protocol
 
@@ -77,12 +77,31 @@ class Detours:
         self.queues = queues
         self._book = book
         self._stops = stops
+        self._later: set[str] = set()
 
-    async def around(self, closure: str, reason: str | None, operator: str) -> list[ReplannedRobot]:
-        """Send every robot whose way leads along the road of ``closure``, closed by now, another way."""
+    def restore(self) -> None:
+        """Have all robots led round later: nobody knows which of them an earlier gateway has come to."""
+        self._later = set(self._ways.names())
+
+    def placed(self) -> set[str]:
+        """Return the robots that were to be led round later and can be now; each of them once."""
+        placed = {robot for robot in self._later if self._ways.is_placed(robot)}
+        self._later -= placed
+        return placed
+
+    async def around(
+        self, closure: str, reason: str | None, operator: str, only: Collection[str] | None = None
+    ) -> list[ReplannedRobot]:
+        """Send every robot, or ``only`` some, whose way leads along the road of ``closure`` another way.
+
+        The road is closed by now. A robot of which it is not known where it is now is led round later, as
+        :meth:`placed` tells: another way from where it was would lead it back.
+        """
         if self._roads is None:
             return []
-        concerned = await asyncio.to_thread(self._concerned, self._roads, closure, self._ways.all())
+        underway = [one for one in self._ways.all() if only is None or one.robot in only]
+        self._later.update(one.robot for one in underway if not self._ways.is_placed(one.robot))
+        concerned = await asyncio.to_thread(self._concerned, self._roads, closure, underway)
         because = f"a road was closed{f': {reason}' if reason else ''}"
         found = await asyncio.gather(*(self._lead(way, because, operator) for way in concerned))
         return sorted(found, key=lambda robot: robot.robot)
@@ -134,6 +153,11 @@ class Detours:
         return found
 
     async def _lead(self, way: Way, because: str, operator: str) -> ReplannedRobot:
+        if way.robot in self._later:
+            text = (
+                f"{way.robot} is sent another way when it has said where it is now: {because}. Look after it."
+            )
+            return ReplannedRobot(way.robot, "later", text)
         try:
             points, none = await asyncio.to_thread(self._other_way, way)
             if points is None:

@@ -109,7 +109,8 @@ class TrafficControl:
             if pose is not None:
                 usual = abs(pose.v) >= SLOWEST * settings.speed_ms
                 places[name] = (pose.x, pose.y), abs(pose.v) if usual else settings.speed_ms
-        return Seen(self._clock(), settings, self._ways.all(), places, self._waiting.rows())
+        placed = frozenset(name for name in places if self._robots.is_placed(name))
+        return Seen(self._clock(), settings, self._ways.all(), places, self._waiting.rows(), placed)
 
     def _plan(self, seen: Seen, request: ResolveConflict) -> Plan:
         """Return how the robot is out of the way soonest; raises RefusedError where it cannot be."""
@@ -117,6 +118,11 @@ class TrafficControl:
         for robot in (request.robot, request.other):
             if robot not in movements:
                 raise RefusedError(f"it is not known where robot {robot!r} is, so nothing can be planned")
+        if request.robot not in seen.placed:
+            raise RefusedError(
+                f"it is not known where {request.robot} is now, and another way might lead it back to where "
+                "it was; try again when it is heard"
+            )
         mine, margin = movements[request.robot], seen.settings.margin_m
         if not conflicts_with(mine, [movements[request.other]], margin, seen.now):
             raise RefusedError(

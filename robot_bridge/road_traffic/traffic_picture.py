@@ -17,13 +17,17 @@ from .ways import Underway
 
 
 class Seen(NamedTuple):
-    """All that movements are made of: ``places`` says where each robot is and how fast it drives."""
+    """All that movements are made of: ``places`` says where each robot is and how fast it drives.
+
+    Those in ``placed`` are there now; the others were there, and may have driven on unseen.
+    """
 
     now: float
     settings: RouteSettings
     underway: list[Underway]
     places: dict[str, tuple[Point, float]]
     holds: dict[str, HoldRow]
+    placed: frozenset[str]
 
     def movements(self) -> dict[str, Movement]:
         """Return how every robot moves that has said where it is, if all goes on as it is planned."""

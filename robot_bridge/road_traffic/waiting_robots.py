@@ -106,8 +106,11 @@ class WaitingRobots:
             )
 
     async def see_to(self, seen: Seen) -> None:
-        """Send on who waits no longer: the time is over and nobody is in the way."""
-        for row in list(self._rows.values()):
+        """Send on who waits no longer: the time is over and nobody is in the way.
+
+        Of a robot of which it is not known where it is now nothing is decided yet.
+        """
+        for row in [row for row in self._rows.values() if row.robot in seen.placed]:
             try:
                 await self._see_to(row, seen)
             except BridgeError as error:
@@ -144,8 +147,6 @@ class WaitingRobots:
         """Tell whether the robot still does what it was told to, or stands where it was to wait."""
         if task is not None:
             return task == row.command
-        if row.robot not in seen.places:
-            return False
         place, _ = seen.places[row.robot]
         return math.dist(place, SetPath(**row.rest).points[0]) <= NEAR
 

@@ -84,6 +84,10 @@ class Ways:
         self._book = book
         self._told: dict[str, tuple[SetPosEnd, ToldWay]] = {}
 
+    def is_placed(self, robot: str) -> bool:
+        """Tell whether it is known where a robot is now, so that its way can be changed from there."""
+        return self._robots.is_placed(robot)
+
     def told(self, robot: str, task: SetPosEnd | SetPath, way: SetPath) -> None:
         """Note the way to ``task`` that a robot was told."""
         if isinstance(task, SetPosEnd):
@@ -100,6 +104,10 @@ class Ways:
         known_way = told[1] if told is not None and told[0] == task else None
         line = self._book.line(robot)
         return Underway(robot, command, task, (pose.x, pose.y), driven, known_way, line)
+
+    def names(self) -> list[str]:
+        """Return the names of all robots."""
+        return self._robots.names()
 
     def all(self) -> list[Underway]:
         """Return what all robots are doing that have a task."""

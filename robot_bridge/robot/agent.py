@@ -83,6 +83,7 @@ class Agent:
         self._greet_in = math.inf
         self._since_pose = math.inf
         self._moving = False
+        self._wants_path = False
         self._ground: str | None = None
         self.map: RobotMap | None = None
 
@@ -161,6 +162,7 @@ class Agent:
         self._admitted = ack.ok
         if ack.ok:
             self._count_ids_of(ack.database)
+            self._ask_path()
         else:
             self._greet_in = GREET_AGAIN
 
@@ -177,11 +179,12 @@ class Agent:
             return self._take_map(answer)
         if isinstance(answer, SetPosEnd):
             self._driver = Driver([(answer.x, answer.y)], answer.theta, limits)
-            if self._settings.asks_path:
-                self._say(GetPath())
+            self._wants_path = self._settings.asks_path
+            self._ask_path()
             self._ask_surface((answer.x, answer.y))
         elif isinstance(answer, SetPath):
             self._driver = Driver(answer.points, answer.theta, limits)
+            self._wants_path = False
             self._ask_surface(answer.points[-1])
         elif isinstance(answer, SetSurface):
             names = ["no road" if name is None else name or "an unknown surface" for name in answer.surfaces]
@@ -190,9 +193,17 @@ class Agent:
             return self._take_place(answer)
         elif isinstance(answer, Abort):
             self._driver = None
+            self._wants_path = False
             self._body.drive(0.0, 0.0)
         self._moving = self._moving or self._driver is not None
         return None
+
+    def _ask_path(self) -> None:
+        """Ask for the path that is wanted, again after each Ready: a gateway that died answers no more."""
+        if self._wants_path and self._driver is not None:
+            # The path is to begin where the robot is now.
+            self._say(self._position())
+            self._say(GetPath())
 
     def _ask_surface(self, goal: tuple[float, float]) -> None:
         if self._settings.asks_surface:

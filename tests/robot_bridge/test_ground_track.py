@@ -69,6 +69,14 @@ def test_what_the_robot_measured_before_is_kept(walk):
     assert (pose.theta, pose.theta_from) == (2.0, "last")
 
 
+def test_a_robot_that_drove_when_it_was_seen_last_is_not_seen_to_stand_by_its_first_fix(walk):
+    walk.last = SendPos(0.0, 0.0, 2.0, 1.5)
+    pose = walk.fix(8.0, 0.0, 0.0)
+    assert (pose.v, pose.theta, pose.theta_from) == (1.5, 2.0, "last")
+    assert walk.fix(8.1, 0.0, 1.0).v == 1.5
+    assert walk.fix(8.1, 0.0, 2.5).v == 0.0
+
+
 def test_a_clock_that_was_set_back_tells_no_speed(walk):
     walk.fix(0.0, 0.0, 1000.0)
     assert walk.fix(50.0, 0.0, 10.0).v == 0.0

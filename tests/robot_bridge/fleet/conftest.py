@@ -15,7 +15,17 @@ from queue_line import Line
 
 from robot_bridge.fleet import Fleet
 from robot_bridge.links.sql import SqlLink
-from robot_bridge.messages import CloseRoad, GetRoute, OpAck, OpenRoad, Ready, Send, SendPos, to_json
+from robot_bridge.messages import (
+    CloseRoad,
+    GetRoute,
+    OpAck,
+    OpenRoad,
+    Ready,
+    ResolveConflict,
+    Send,
+    SendPos,
+    to_json,
+)
 from robot_bridge.road_traffic.road_planning import RoadPlanner
 from robot_bridge.road_traffic.road_requests import route
 from robot_bridge.site_maps import SiteMaps
@@ -174,6 +184,18 @@ class RoadYard(Yard):
         await self.at(*points[0], v=1.0, robot=robot)
         await self.send(id, "SetPath", robot, points=points)
         await self.take(robot)
+
+    async def wait_at_the_crossing(self):
+        """Let r1 stand where it waits for r2, the first part of its way driven; return how it waits."""
+        await self.drive("one", [(16.0, 8.0), (44.0, 22.0), (90.0, 22.0)])
+        await self.drive("two", [(13.0, 22.0), (60.0, 22.0), (60.0, 40.0)], robot="r2")
+        await self.fleet.traffic.resolve(ResolveConflict("r1", "r2", "waiting"), "Ada")
+        (hold,) = (await self.fleet.traffic.conflicts()).waiting
+        await self.take()
+        for share in (0.25, 0.5, 0.75, 1.0):
+            await self.at(16.0 + share * (hold.x - 16.0), 8.0 + share * (hold.y - 8.0), v=1.0 - share)
+        assert self.fleet.ways.of("r1") is None
+        return hold
 
     async def new_path(self, robot="r1"):
         """Return the newest path that waits for the robot."""

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import pytest
+from road_places import SOUTH, highest
 
 from robot_bridge.commanding.writing import write_again
-from robot_bridge.errors import StoreError
+from robot_bridge.errors import RefusedError, StoreError
+from robot_bridge.messages import GetPath, ResolveConflict
 
 PATH = [(20.0, 40.0), (40.0, 40.0), (40.0, 60.0)]
 
@@ -22,6 +24,19 @@ async def test_a_path_that_was_driven_before_its_acknowledgement_came_is_reached
     await roads.at(*PATH[-1])
     await roads.ack(row.id)
     assert (await roads.states())["a"] == "acknowledged"
+    await roads.at(*PATH[-1])
+    assert (await roads.states())["a"] == "reached"
+
+
+async def test_a_path_that_was_driven_before_it_was_stored_where_its_robot_is_is_reached(roads):
+    await roads.ready()
+    await roads.take()
+    await roads.at(*PATH[0])
+    await roads.send("a", "SetPath", points=PATH)
+    (row,) = await roads.deliver()
+    await roads.restart()
+    await roads.ready()
+    await roads.ack(row.id)
     await roads.at(*PATH[-1])
     assert (await roads.states())["a"] == "reached"
 
@@ -79,3 +94,85 @@ async def test_a_robot_that_starts_anew_while_the_database_fails_is_sent_its_tas
     await roads.ready(magic=2)
     assert "SetPosEnd" in await roads.take()
     assert await roads.steps("a") == ["queued", "delivered", "acknowledged", "acknowledged", "acknowledged"]
+
+
+async def test_robots_whose_road_was_closed_when_the_gateway_died_are_led_round(roads, monkeypatch):
+    await roads.drive("one", [(10.0, 8.0), (126.0, 8.0)])
+    await roads.fleet.save()
+
+    async def died(*_):
+        raise StoreError("the gateway is gone")
+
+    monkeypatch.setattr(roads.fleet.closures._detours, "around", died)
+    with pytest.raises(StoreError):
+        await roads.close_road(*SOUTH, reason="tree")
+    await roads.restart()
+    await roads.ready()
+    await roads.fleet.watch_roads()
+    assert "SetPath" not in await roads.take()
+    await roads.at(15.0, 8.0, v=1.0)
+    await roads.fleet.watch_roads()
+    points = await roads.new_path()
+    assert points[0] == [15.0, 8.0]
+    assert highest(points) == pytest.approx(22.0, abs=0.5)
+    assert (roads.news["replanned"]["robot"], roads.news["replanned"]["became"]) == ("r1", "another way")
+    await roads.take()
+    await roads.fleet.watch_roads()
+    assert await roads.take() == []
+
+
+async def test_a_robot_that_is_not_heard_when_its_road_is_closed_is_led_round_from_where_it_comes_back(roads):
+    await roads.drive("one", [(10.0, 8.0), (126.0, 8.0)])
+    roads.now += 20
+    roads.fleet.age()
+    (robot,) = (await roads.close_road(*SOUTH, reason="tree")).robots
+    assert (robot.robot, robot.became) == ("r1", "later")
+    assert await roads.take() == []
+    await roads.ready()
+    await roads.at(15.0, 8.0, v=1.0)
+    await roads.fleet.watch_roads()
+    assert (await roads.new_path())[0] == [15.0, 8.0]
+    assert roads.news["replanned"]["became"] == "another way"
+
+
+async def test_a_robot_that_waits_is_sent_on_although_it_was_stored_where_it_had_not_come_to_yet(roads):
+    await roads.drive("one", [(16.0, 8.0), (44.0, 22.0), (90.0, 22.0)])
+    await roads.fleet.save()
+    hold = await roads.wait_at_the_crossing()
+    await roads.restart()
+    await roads.fleet.watch_roads()
+    await roads.ready()
+    await roads.fleet.watch_roads()
+    assert (await roads.fleet.traffic.conflicts()).waiting == [hold]
+    await roads.at(hold.x, hold.y)
+    await roads.at(60.0, 40.0, robot="r2")
+    roads.now = hold.until + 1
+    await roads.fleet.watch_roads()
+    assert (await roads.new_path())[0] == [hold.x, hold.y]
+
+
+async def test_nobody_gives_way_from_where_he_was(roads):
+    await roads.drive("one", [(16.0, 8.0), (44.0, 22.0), (90.0, 22.0)])
+    await roads.drive("two", [(13.0, 22.0), (60.0, 22.0), (60.0, 40.0)], robot="r2")
+    await roads.fleet.save()
+    await roads.restart()
+    with pytest.raises(RefusedError, match="it is not known where r1 is now"):
+        await roads.fleet.traffic.resolve(ResolveConflict("r1", "r2"), "Ada")
+    await roads.ready()
+    await roads.at(16.0, 8.0, v=1.0)
+    assert (await roads.fleet.traffic.resolve(ResolveConflict("r1", "r2"), "Ada")).robot == "r1"
+
+
+async def test_a_way_is_told_from_where_a_robot_is_not_from_where_it_was(roads):
+    await roads.ready()
+    await roads.at(10.0, 8.0)
+    await roads.send("cone", x=126.0, y=8.0)
+    await roads.take()
+    await roads.ready()
+    with pytest.raises(
+        RefusedError, match="GetPath: it is not known where robot 'r1' is; send SendPos first"
+    ):
+        await roads.fleet.receive("r1", "websocket", GetPath(), 7)
+    await roads.at(40.0, 8.0)
+    answer = (await roads.fleet.receive("r1", "websocket", GetPath(), 8)).answer
+    assert answer.points[0] == (40.0, 8.0)

@@ -133,21 +133,8 @@ async def test_who_cannot_give_way_says_why_and_nothing_changes(roads):
     assert await roads.states() == before
 
 
-async def wait_at_the_crossing(roads):
-    """Let r1 stand where it waits for r2, the first part of its way driven; return how it waits."""
-    await roads.drive("one", [(16.0, 8.0), (44.0, 22.0), (90.0, 22.0)])
-    await roads.drive("two", [(13.0, 22.0), (60.0, 22.0), (60.0, 40.0)], robot="r2")
-    await roads.fleet.traffic.resolve(ResolveConflict("r1", "r2", "waiting"), "Ada")
-    (hold,) = (await roads.fleet.traffic.conflicts()).waiting
-    await roads.take()
-    for share in (0.25, 0.5, 0.75, 1.0):
-        await roads.at(16.0 + share * (hold.x - 16.0), 8.0 + share * (hold.y - 8.0), v=1.0 - share)
-    assert roads.fleet.ways.of("r1") is None
-    return hold
-
-
 async def test_a_robot_that_is_aborted_while_it_waits_is_sent_on_by_nobody(each):
-    hold = await wait_at_the_crossing(each)
+    hold = await each.wait_at_the_crossing()
     await each.fleet.orders.abort(AbortTask("command-abort", "r1"), "Ada")
     assert await each.take() == ["Abort"]
     await each.at(hold.x, hold.y)

@@ -231,6 +231,19 @@ def test_it_asks_for_a_path_and_drives_what_it_is_answered():
     assert robot.agent.pose == pytest.approx((3.0, 3.0, 0.0), abs=0.06)
 
 
+def test_it_says_where_it_is_before_it_asks_for_a_path_and_asks_again_after_each_ready():
+    robot = Robot(asks_path=True)
+    robot.agent.receive(SetPosEnd(30.0, 0.0), 1)
+    for _ in range(2):
+        assert [type(message) for message in robot.said] == [SendPos, GetPath]
+        robot.said.clear()
+        robot.agent.receive(OpAck(magic=42, robot="r1", database="first"), None)
+    robot.agent.receive(SetPath([(0.0, 0.0), (30.0, 0.0)]), 2)
+    robot.said.clear()
+    robot.agent.receive(OpAck(magic=42, robot="r1", database="first"), None)
+    assert robot.said == []
+
+
 def test_it_asks_what_ground_it_is_on_and_is_to_go_to_and_says_so():
     robot = Robot(asks_surface=True)
     robot.agent.receive(SetPosEnd(3.0, 3.0), 1)
