@@ -52,14 +52,23 @@ class AlarmBar(QObject):
         pressing = any(alarm.kind in PRESSING and alarm.ended is None for alarm in new)
         level = Qgis.MessageLevel.Critical if pressing else Qgis.MessageLevel.Warning
         has_begun = any(event.change is AlarmChange.BEGAN for event in events)
-        if self._item is not None and has_begun and level != self._level:
-            # Hung up anew it comes to the front of what hangs there meanwhile.
-            self._take_down()
-        if self._item is None and has_begun:
-            self._hang_up(level)
+        if has_begun:
+            self._bring_to_front(level)
         if self._label is not None:
             self._label.show_text(in_words(new))
             self._label.setToolTip("\n".join(alarm.text for alarm in new[:20]))
+
+    def _bring_to_front(self, level: Qgis.MessageLevel) -> None:
+        """Let it hang there with this level; it is hung up anew only behind another notice, since that takes
+        QGIS as long as a frame of the map."""
+        if self._item is None:
+            self._hang_up(level)
+        elif level != self._level and self._bar.currentItem() is self._item:
+            self._level = level
+            self._item.setLevel(level)
+        elif level != self._level:
+            self._take_down()
+            self._hang_up(level)
 
     def _hang_up(self, level: Qgis.MessageLevel) -> None:
         self._level = level
