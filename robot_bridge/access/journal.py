@@ -100,16 +100,23 @@ class Journal:
         batch = [self._waiting.popleft() for _ in range(count)]
         try:
             await self._database.run(_do_all, batch)
-        except StoreError:
-            if count == 1 and await self._succeeds([]):
-                # One piece that the database refuses must not keep back all that come after it; one that
-                # failed because the database was away is written now that it is back.
-                self._dropped += not await self._succeeds(batch)
+        except StoreError as error:
+            if count == 1 and (await self._succeeds(batch) or await self._says_lost(error)):
                 return
             self._waiting.extendleft(reversed(batch))
             self._batch = max(1, count // 2)
             raise
         self._batch = min(BATCH, 2 * self._batch)
+
+    async def _says_lost(self, error: StoreError) -> bool:
+        """Give up one piece, which must not keep back all that come after it, and write that it is missing.
+
+        A database that cannot be written, such as on a full disk, does not take that either: the piece waits.
+        """
+        gap = Entry(self._clock(), "gateway", "audit", False, detail=f"an entry is missing here: {error}")
+        lost = await self._succeeds([lambda connection: audit.add(connection, [gap])])
+        self._dropped += lost
+        return lost
 
     async def _succeeds(self, batch: list[Work]) -> bool:
         try:

@@ -207,8 +207,37 @@ async def test_one_piece_that_the_database_refuses_keeps_none_of_the_others_back
             break
         except StoreError:
             continue
-    assert [entry.action for entry in await written(database)] == ["after", "before"]
+    after, gap, before = await written(database)
+    assert (after.action, before.action) == ("after", "before")
+    assert (gap.who, gap.done) == ("gateway", False) and "an entry is missing here: database" in gap.detail
     assert "1 pieces of the audit log were lost" in caplog.text
+
+
+async def test_on_a_full_disk_nothing_is_given_up(database, clock, caplog):
+    """It can be read, and takes transactions that write nothing."""
+    full = FullDisk(database)
+    journal = Journal(full, clock)
+    for number in range(3):
+        journal.note("Ada", str(number))
+    for _ in range(5):
+        with pytest.raises(StoreError):
+            await journal.flush()
+    full.has_room = True
+    await journal.flush()
+    assert [entry.action for entry in await written(database)] == ["2", "1", "0"]
+    assert "lost" not in caplog.text
+
+
+class FullDisk:
+    """A database that takes no row until it has room."""
+
+    def __init__(self, database):
+        self.database, self.has_room = database, False
+
+    async def run(self, work, pieces):
+        if pieces and not self.has_room:
+            raise StoreError("database or disk is full")
+        return await self.database.run(work, pieces)
 
 
 async def test_a_piece_that_failed_while_the_database_came_back_is_written(database, clock, caplog):
