@@ -166,10 +166,11 @@ class RobotPicture:
 
     def _aged(self, now: float, rows: list[int] | slice) -> tuple[npt.NDArray[np.intp], Numbers]:
         """Return states and ages, as :func:`~.robot_bridge.liveness.liveness` says for each robot."""
-        told = self._seen.column("state")[rows]
-        ended_in_order = self._seen.column("stopped")[rows] == 1.0
         age = self._seen.column("age")[rows] + np.maximum(0.0, now - self._seen.column("received")[rows])
-        silent = np.where(age < self.lost_after, _STALE, _LOST)
-        here = np.where(age < self.stale_after, told, np.where(ended_in_order, _OFFLINE, silent))
+        state = self._seen.column("state")[rows].astype(np.intp)
+        silent = np.flatnonzero(~(age < self.stale_after))
+        told, ended_in_order = state[silent], self._seen.column("stopped")[rows][silent] == 1.0
+        here = np.where(ended_in_order, _OFFLINE, np.where(age[silent] < self.lost_after, _STALE, _LOST))
         # The gateway may know more than the age tells, such as a link closed in good order.
-        return np.where((told == _LOST) | (told == _OFFLINE), told, here).astype(np.intp), age
+        state[silent] = np.where((told == _LOST) | (told == _OFFLINE), told, here)
+        return state, age

@@ -55,6 +55,13 @@ class Placement:
         """
         return transformed(self.frame.to_crs(xy), self._forward)
 
+    @property
+    def axes(self) -> Points | None:
+        """The site's x and y, a metre of each in the map's CRS as a row of (2, 2); None unless they are the
+        same all over the map, as they are in the site's own CRS.
+        """
+        return self.frame.axes() if self._forward.isShortCircuited() else None
+
     def to_site(self, point: QgsPointXY) -> tuple[float, float]:
         """Return a point in the map's CRS as metres in the site frame.
 

@@ -29,12 +29,12 @@ class SiteFrame:
 
     def to_site(self, xy: Any) -> Points:
         """Return ``xy``, an (n, 2) array of CRS metres, as (n, 2) float64 metres in the site frame."""
-        points: Points = (_points(xy) - self.origin) @ self._axes().T
+        points: Points = (_points(xy) - self.origin) @ self.axes().T
         return points
 
     def to_crs(self, xy: Any) -> Points:
         """Return ``xy``, an (n, 2) array of metres in the site frame, as (n, 2) float64 CRS metres."""
-        points: Points = _points(xy) @ self._axes()
+        points: Points = _points(xy) @ self.axes()
         # Column by column: numpy takes five times as long to add a pair to each row.
         points[:, 0] += self.origin[0]
         points[:, 1] += self.origin[1]
@@ -48,7 +48,7 @@ class SiteFrame:
         """Return a site theta, in radians, as an angle from the CRS's x axis in (-π, π]."""
         return math.remainder(theta + self.rotation, math.tau)
 
-    def _axes(self) -> Points:
+    def axes(self) -> Points:
         """Return the site's x and y unit vectors in the CRS as the rows of a (2, 2) array."""
         c, s = math.cos(self.rotation), math.sin(self.rotation)
         return np.array([[c, s], [-s, c]])

@@ -11,6 +11,10 @@ from qgis.PyQt.QtCore import QEvent, QObject, QPoint, Qt
 from .hover_card import HoverCard
 from .overlay import FleetOverlay
 
+_MOVE = QEvent.Type.MouseMove
+_ENDS = (QEvent.Type.Leave, QEvent.Type.MouseButtonPress)
+"""Looked up once: every event of the canvas comes by here, and there are many to a frame."""
+
 
 class Hovering(QObject):
     """``card_of`` returns the text of a robot's card, None when it is not known any more."""
@@ -51,12 +55,13 @@ class Hovering(QObject):
             self._card.show_at(text, self._mouse)
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
-        if event.type() == QEvent.Type.MouseMove:
+        kind = event.type()
+        if kind == _MOVE:
             # While something is dragged a card would be in the way.
             free = event.buttons() == Qt.MouseButton.NoButton
             self._mouse = event.pos() if free else None
             self.refresh()
-        elif event.type() in (QEvent.Type.Leave, QEvent.Type.MouseButtonPress):
+        elif kind in _ENDS:
             self._mouse = None
             self.refresh()
         return False

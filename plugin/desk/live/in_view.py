@@ -45,4 +45,4 @@ def in_view(placed: PlacedScene, screen: Screen) -> InView:
     rows = np.flatnonzero(screen.seen(pixels, BESIDE))
     # To take rows with [] instead takes numpy ten times as long.
     there = pixels.take(rows, axis=0)
-    return InView(pixels, rows, there, screen.pixels(placed.ahead.take(rows, axis=0)) - there)
+    return InView(pixels, rows, there, screen.ways(placed.metre.take(rows, axis=0)))

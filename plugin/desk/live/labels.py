@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from qgis.PyQt.QtCore import QPointF
-from qgis.PyQt.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPixmap
+from qgis.PyQt.QtCore import QPointF, Qt
+from qgis.PyQt.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPixmap, QStaticText
 
 from ...language import tr
 from ..colours import PAPER
@@ -72,11 +72,13 @@ def _drawn(text: str, ratio: float) -> QPixmap:
     painter = QPainter(pixmap)
     painter.setFont(font)
     painter.setPen(PAPER)
-    at = QPointF(MARGIN, MARGIN + metrics.ascent())
+    at = QPointF(MARGIN, MARGIN)
+    written = QStaticText(text)
+    written.setTextFormat(Qt.TextFormat.PlainText)
     # To stroke the letters' outlines would take six times as long as to write them eight times.
     for turn in (k * math.pi / 4 for k in range(8)):
-        painter.drawText(at + QPointF(CASING * math.cos(turn), CASING * math.sin(turn)), text)
+        painter.drawStaticText(at + QPointF(CASING * math.cos(turn), CASING * math.sin(turn)), written)
     painter.setPen(INK)
-    painter.drawText(at, text)
+    painter.drawStaticText(at, written)
     painter.end()
     return pixmap

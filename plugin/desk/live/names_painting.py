@@ -139,10 +139,11 @@ class NamesPainter:
         corner = _corners(view.there, width, screen)
         room = Room(screen, view.there, taken)
         # Texts that urge may cover a robot; the others stand where there is none.
-        possible = np.flatnonzero((rank < 4) | room.without_robots(corner, width))
+        cells = room.cells(corner, width)
+        possible = np.flatnonzero((rank < 4) | room.without_robots(cells))
         order = possible[np.argsort(rank[possible], kind="stable")]
         order = order[_first_of_each_spot(corner.take(order, axis=0))]
-        return seen[order[room.take(corner.take(order, axis=0), width[order])]]
+        return seen[order[room.take(cells.take(order, axis=1))]]
 
 
 def texts(robots: RobotArrays, row: int) -> list[str]:

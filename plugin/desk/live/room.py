@@ -36,17 +36,28 @@ class Room:
             cells = _bits(max(0, int(left // GRID)), max(0, int(right // GRID) + 1))
             self._cover(int(top // GRID), int(bottom // GRID) + 1, cells)
 
-    def without_robots(self, corner: Points, width: Widths) -> npt.NDArray[np.bool_]:
-        """Tell which texts, (n, 2) left upper ``corner`` and ``width`` in pixels, cover no robot."""
-        line, left, right = self._cells(corner, width)
-        begin = line * (self._columns + 1)
-        return self._robots.take(begin + right) == self._robots.take(begin + left)
+    def cells(self, corner: Points, width: Widths) -> Cells:
+        """Return (3, n) the first line, the left cell, and the one just right of the texts that have so much
+        ``width`` and begin at the left upper ``corner``, (n, 2), all in pixels.
+        """
+        x, y = corner[:, 0], corner[:, 1]
+        found = np.empty((3, len(corner)), dtype=np.intp)
+        edges = (y, self._lines - LINES), (x, self._columns), (x + width + GRID, self._columns)
+        for cell, (edge, most) in zip(found, edges, strict=True):
+            # numpy takes ten times as long for //.
+            cell[:] = np.minimum(np.maximum(np.floor(edge * (1.0 / GRID)), 0), most)
+        return found
 
-    def take(self, corner: Points, width: Widths) -> list[int]:
+    def without_robots(self, cells: Cells) -> npt.NDArray[np.bool_]:
+        """Tell which texts, as :meth:`cells` has them, cover no robot."""
+        line, left, right = cells
+        stride = self._lines + 2
+        return self._robots.take(right * stride + line) == self._robots.take(left * stride + line)
+
+    def take(self, cells: Cells) -> list[int]:
         """Take one place after the other unless a text has a part of it; return the indices of those."""
         found = []
-        cells = zip(*(edge.tolist() for edge in self._cells(corner, width)), strict=True)
-        for index, (line, left, right) in enumerate(cells):
+        for index, (line, left, right) in enumerate(cells.T.tolist()):
             wanted = _bits(left, right)
             if not self._taken[line] & wanted:
                 self._cover(line, line + LINES, wanted)
@@ -58,27 +69,21 @@ class Room:
         for line in range(max(0, top - LINES + 1), min(self._lines, bottom)):
             self._taken[line] |= cells
 
-    def _counted(self, robots: Points) -> Cells:
-        """Return for each line, and the :data:`LINES` from it on, the robots left of each cell and in all
-        lines before: where that differs between two cells, a robot is between them."""
-        stride = self._columns + 1
+    def _counted(self, robots: Points) -> npt.NDArray[np.int32]:
+        """Return for each cell in how many of those left of it a text that begins on its line covers a robot:
+        where that differs between two cells, a robot is between them.
+        """
         # What is beyond the screen goes to lines and columns that no text lies on.
-        line = np.clip(np.floor(robots[:, 1] * (1.0 / GRID)), -1, self._lines) + 1
-        column = np.clip(np.floor(robots[:, 0] * (1.0 / GRID)), -1, self._columns - 1) + 1
-        cells = (line * stride + column).astype(np.intp)
-        count = np.bincount(cells, minlength=(self._lines + 2) * stride).reshape(-1, stride)[1:-1]
-        below = sum(count[k : len(count) - LINES + 1 + k] for k in range(LINES))
-        return below.cumsum()
-
-    def _cells(self, corner: Points, width: Widths) -> tuple[Cells, Cells, Cells]:
-        """Return the first line, the left cell, and the one just right of each text."""
-        x, y = corner[:, 0], corner[:, 1]
-        edges = (y, self._lines - LINES), (x, self._columns), (x + width + GRID, self._columns)
-        # numpy takes ten times as long for //.
-        line, left, right = (
-            np.clip(np.floor(edge * (1.0 / GRID)), 0, most).astype(np.intp) for edge, most in edges
-        )
-        return line, left, right
+        line = np.minimum(np.maximum(np.floor(robots[:, 1] * (1.0 / GRID)), -1), self._lines) + 1
+        column = np.minimum(np.maximum(np.floor(robots[:, 0] * (1.0 / GRID)), -1), self._columns - 1) + 1
+        # Line beside line in memory: numpy sums up rows faster than along them.
+        shape = self._columns + 1, self._lines + 2
+        stands = np.zeros(shape[0] * shape[1] + LINES, dtype=np.uint8)
+        stands[(column * shape[1] + line).astype(np.intp)] = 1
+        below = stands[1 : 1 - LINES].copy()
+        for down in range(1, LINES):
+            below |= stands[1 + down : len(below) + 1 + down]
+        return below.reshape(shape).cumsum(axis=0, dtype=np.int32)
 
 
 def _bits(left: int, right: int) -> int:

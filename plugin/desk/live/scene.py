@@ -15,8 +15,6 @@ from ..placement import Placement
 from .plans import Plan
 
 Points = npt.NDArray[np.float64]
-AHEAD = 1.0
-"""Metres to the second point that shows a heading in whatever CRS the map has."""
 
 
 @dataclass(frozen=True)
@@ -40,15 +38,15 @@ class Scene:
 
 @dataclass(frozen=True)
 class PlacedScene:
-    """The same in the map's CRS: (n, 2) coordinates for each part; ``ahead`` is 1 m before each robot, or
-    along the site's x of one whose heading is not known.
+    """The same in the map's CRS: (n, 2) coordinates for each part; ``metre`` is the way to 1 m before each
+    robot, or along the site's x of one whose heading is not known.
 
     Robots without a place have NaN. ``to_map`` places more.
     """
 
     scene: Scene
     robots: Points
-    ahead: Points
+    metre: Points
     plans: list[Points]
     draft: Points
     cursor: Points
@@ -78,10 +76,11 @@ class Placer:
         robots = scene.robots
         there = np.flatnonzero(np.isfinite(robots.xy[:, 0]) & np.isfinite(robots.xy[:, 1]))
         # To take rows with [] instead takes numpy ten times as long.
-        known_places = robots.xy.take(there, axis=0)
+        known_places, metre = robots.xy.take(there, axis=0), _forward(robots.theta.take(there))
+        axes = placement.axes
         parts = [
             known_places,
-            _ahead(known_places, robots.theta.take(there)),
+            known_places + metre if axes is None else metre[:0],
             _points(() if is_known else outline),
             _points([scene.cursor] if scene.cursor else ()),
             *[plan.points for plan in new],
@@ -94,7 +93,7 @@ class Placer:
         return PlacedScene(
             scene,
             _spread(at, there, len(robots.xy)),
-            _spread(before, there, len(robots.xy)),
+            _spread(before - at if axes is None else metre @ axes, there, len(robots.xy)),
             list(self._plans.values()),
             self._draft,
             cursor,
@@ -102,15 +101,14 @@ class Placer:
         )
 
 
-def _ahead(xy: Points, theta: npt.NDArray[np.float64]) -> Points:
-    """Return what is :data:`AHEAD` of each place, along x where the heading is not known."""
+def _forward(theta: npt.NDArray[np.float64]) -> Points:
+    """Return the way of 1 m in each heading, along x where it is not known."""
     # Floats of half the size are exact enough for a heading; numpy is ten times as fast with them.
     turn = theta.astype(np.float32)
     turn[np.isnan(turn)] = 0.0
-    ahead = np.empty_like(xy)
-    ahead[:, 0] = xy[:, 0] + AHEAD * np.cos(turn)
-    ahead[:, 1] = xy[:, 1] + AHEAD * np.sin(turn)
-    return ahead
+    way = np.empty((len(turn), 2))
+    way[:, 0], way[:, 1] = np.cos(turn), np.sin(turn)
+    return way
 
 
 def _parted(whole: Points, parts: list[Points]) -> list[Points]:

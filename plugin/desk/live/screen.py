@@ -32,11 +32,15 @@ class Screen:
 
     def pixels(self, xy: Points) -> Points:
         """Return (n, 2) map coordinates as (n, 2) logical pixels."""
-        pixels = xy @ self._axes
+        pixels = self.ways(xy)
         # Column by column: numpy is slow where it goes along rows of two.
         pixels[:, 0] += self._shift[0]
         pixels[:, 1] += self._shift[1]
         return pixels
+
+    def ways(self, xy: Points) -> Points:
+        """Return (n, 2) ways in map units as ways in logical pixels."""
+        return xy @ self._axes
 
     def seen(self, pixels: Points, margin: float) -> npt.NDArray[np.bool_]:
         """Tell which of (n, 2) ``pixels`` are on the screen, or no farther than ``margin`` off it."""

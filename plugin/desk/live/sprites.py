@@ -35,8 +35,12 @@ class Sprites:
         self._provide(count)
         table, side = self._table, self._side
         # A whole device pixel keeps the drawing sharp.
-        corner = np.round(centre * self._ratio - side / 2)
-        table[:count, 0:2] = (corner + side / 2) / self._ratio
+        at = centre * self._ratio
+        at -= side / 2
+        np.rint(at, out=at)
+        at += side / 2
+        at /= self._ratio
+        table[:count, 0:2] = at
         table[:count, 3] = cell * side
         # What was painted before and is no more must not show: a size of nothing hides it.
         table[count : self._painted, 4:6] = 0.0

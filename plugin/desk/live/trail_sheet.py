@@ -15,6 +15,7 @@ from .screen import Screen
 from .trails import Trails
 
 Points = npt.NDArray[np.float64]
+Numbers = npt.NDArray[np.float64]
 Pixels = npt.NDArray[np.intp]
 Shades = npt.NDArray[np.uint8]
 
@@ -59,7 +60,8 @@ class TrailSheet:
 
     def extend(self, xy: Points, now: float) -> None:
         """Draw on to (n, 2) ``xy``, where the robots are now in map coordinates, NaN where not known."""
-        here = self.screen.pixels(xy) * self.screen.ratio
+        here = self.screen.pixels(xy)
+        here *= self.screen.ratio
         if self._here is None:
             self._later = here[: len(self._taken)], np.full(len(self._taken), now)
         else:
@@ -167,27 +169,48 @@ def _on_lines(start: Points, end: Points, shape: tuple[int, int]) -> tuple[Pixel
 
     Pixels are counted from the left, line after line of an image of ``shape``, height and width.
     """
-    height, width = shape
     # Columns apart: numpy is slow where it goes along rows of two.
     x, y, to_x, to_y = start[:, 0], start[:, 1], end[:, 0], end[:, 1]
-    # Most of ten thousand robots stay on their pixel from one frame to the next.
-    lines = np.flatnonzero((np.floor(x) != np.floor(to_x)) | (np.floor(y) != np.floor(to_y)))
+    last_x, last_y = np.floor(to_x), np.floor(to_y)
+    # Most of ten thousand robots stay on their pixel from one frame to the next, or go on by one.
+    lines = np.flatnonzero((np.floor(x) != last_x) | (np.floor(y) != last_y))
     x, y, to_x, to_y = x.take(lines), y.take(lines), to_x.take(lines), to_y.take(lines)
-    dx, dy = to_x - x, to_y - y
-    reach = np.maximum(np.abs(dx), np.abs(dy))
+    reach = np.maximum(np.abs(to_x - x), np.abs(to_y - y))
     # What is NaN compares false.
-    on = (np.maximum(x, to_x) >= 0) & (np.maximum(y, to_y) >= 0) & (reach < LONGEST_STEP)
-    on &= (np.minimum(x, to_x) < width) & (np.minimum(y, to_y) < height)
-    on = np.flatnonzero(on)
+    is_way = reach < LONGEST_STEP
+    pixels, those = _inside(last_x.take(lines), last_y.take(lines), is_way, shape)
+    long = np.flatnonzero((reach > 1.0) & is_way)
+    if len(long):
+        more, which = _between(*(edge.take(long) for edge in (x, y, to_x, to_y, reach)), shape)
+        pixels, those = np.concatenate([pixels, more]), np.concatenate([those, long.take(which)])
+    return pixels, lines.take(those)
+
+
+def _between(
+    x: Numbers, y: Numbers, to_x: Numbers, to_y: Numbers, reach: Numbers, shape: tuple[int, int]
+) -> tuple[Pixels, Pixels]:
+    """Return the pixels between the ends of lines, a step apart, and the line that each is on."""
+    height, width = shape
+    on = (np.maximum(x, to_x) >= 0) & (np.maximum(y, to_y) >= 0)
+    on = np.flatnonzero(on & (np.minimum(x, to_x) < width) & (np.minimum(y, to_y) < height))
     steps = np.ceil(reach.take(on)).astype(np.intp)
-    which = np.repeat(on, steps)
-    # Counted from the end of each line, where its last step leads.
-    left = np.repeat(np.cumsum(steps), steps) - np.arange(1, len(which) + 1)
-    part = left / np.repeat(steps, steps)
-    x = np.floor(to_x.take(which) - dx.take(which) * part)
-    y = np.floor(to_y.take(which) - dy.take(which) * part)
-    inside = np.flatnonzero((x >= 0) & (x < width) & (y >= 0) & (y < height))
-    return (y * width + x).take(inside).astype(np.intp), lines.take(which.take(inside))
+    count = steps - 1
+    which = np.repeat(on, count)
+    back = np.repeat(np.cumsum(count), count) - np.arange(len(which))
+    part = back / np.repeat(steps, count)
+    at_x = np.floor(to_x.take(which) - (to_x - x).take(which) * part)
+    at_y = np.floor(to_y.take(which) - (to_y - y).take(which) * part)
+    pixels, those = _inside(at_x, at_y, True, shape)
+    return pixels, which.take(those)
+
+
+def _inside(
+    x: Numbers, y: Numbers, wanted: npt.NDArray[np.bool_] | bool, shape: tuple[int, int]
+) -> tuple[Pixels, Pixels]:
+    """Return the places on the image of those that are ``wanted``, and which of them these are."""
+    height, width = shape
+    those = np.flatnonzero((x >= 0) & (x < width) & (y >= 0) & (y < height) & wanted)
+    return (y * width + x).take(those).astype(np.intp), those
 
 
 def _spread(shades: Shades, reach: int) -> Shades:

@@ -71,7 +71,7 @@ class Trails:
         samples = np.empty((len(rows), 3))
         # To take rows with [] instead takes numpy ten times as long.
         samples[:, :2], samples[:, 2] = xy.take(rows, axis=0), now
-        self._last[rows] = samples
+        self._last[rows], self._last_time[rows] = samples[:, :2], now
         self._ring[self._taken[rows] % len(self._ring), rows] = samples
         self._taken[rows] += 1
 
@@ -93,13 +93,12 @@ class Trails:
 
     def _due(self, xy: Points, now: float) -> npt.NDArray[np.intp]:
         """Return the rows of the robots that have gone on long enough after their last samples."""
-        last = self._last
-        # Of a robot without samples the last one is NaN, of which no comparison is true.
-        rows = np.flatnonzero(last[:, 2] <= now - SHORTEST_WAIT)
+        # Of a robot without samples the last time is NaN, of which no comparison is true.
+        rows = np.flatnonzero(self._last_time <= now - SHORTEST_WAIT)
         if len(rows):
-            away = np.abs(xy.take(rows, axis=0) - last.take(rows, axis=0)[:, :2])
+            away = np.abs(xy.take(rows, axis=0) - self._last.take(rows, axis=0))
             rows = rows[away[:, 0] + away[:, 1] >= SHORTEST_STEP]
-        first = np.flatnonzero(np.isnan(last[:, 2]))
+        first = np.flatnonzero(np.isnan(self._last_time))
         if len(first):
             rows = np.concatenate([rows, first[np.isfinite(xy[first]).all(axis=1)]])
         return rows
@@ -108,7 +107,7 @@ class Trails:
         self._ring = self._empty(0)
         self._taken = np.zeros(0, dtype=np.intp)
         # Each one's newest sample again: to gather them out of the ring takes ten times as long.
-        self._last = np.empty((0, 3))
+        self._last, self._last_time = np.empty((0, 2)), np.empty(0)
 
     def _provide(self, robots: int) -> None:
         length = next(length for length in LENGTHS if robots <= length.robots)
@@ -119,7 +118,8 @@ class Trails:
         if missing > 0:
             self._ring = np.concatenate([self._ring, self._empty(missing)], axis=1)
             self._taken = np.concatenate([self._taken, np.zeros(missing, dtype=np.intp)])
-            self._last = np.concatenate([self._last, np.full((missing, 3), np.nan)])
+            self._last = np.concatenate([self._last, np.full((missing, 2), np.nan)])
+            self._last_time = np.concatenate([self._last_time, np.full(missing, np.nan)])
 
     def _cut(self, length: TrailLength) -> None:
         kept = [self.before(self._taken - back) for back in range(length.samples)]

@@ -38,13 +38,15 @@ def test_a_text_is_without_robots_where_none_stands_in_its_cells(number):
     taken = {(int(np.floor(y / GRID)), int(np.floor(x / GRID))) for x, y in robots}
     corner, width = texts(500, 1)
     expected = [taken.isdisjoint(cells_of(*text)) for text in zip(corner, width, strict=True)]
-    assert Room(SCREEN, robots).without_robots(corner, width).tolist() == expected
+    room = Room(SCREEN, robots)
+    assert room.without_robots(room.cells(corner, width)).tolist() == expected
 
 
 def test_a_robot_beyond_the_border_is_in_no_texts_way():
     corner, width = np.array([[0.0, 0.0], [203.0, 0.0], [0.0, 182.0], [203.0, 182.0]]), np.full(4, 100.0)
     beyond = np.array([[-1.0, 5.0], [-1.0, 190.0], [315.0, 5.0], [315.0, 190.0], [50.0, -1.0], [50.0, 220.0]])
-    assert Room(SCREEN, beyond).without_robots(corner, width).all()
+    room = Room(SCREEN, beyond)
+    assert room.without_robots(room.cells(corner, width)).all()
 
 
 def test_texts_are_taken_in_their_order_unless_one_before_has_a_cell_of_theirs():
@@ -55,7 +57,8 @@ def test_texts_are_taken_in_their_order_unless_one_before_has_a_cell_of_theirs()
         if taken.isdisjoint(cells):
             taken |= cells
             expected.append(index)
-    assert Room(SCREEN, NOBODY).take(corner, width) == expected
+    room = Room(SCREEN, NOBODY)
+    assert room.take(room.cells(corner, width)) == expected
     assert 5 < len(expected) < 300
 
 
@@ -65,4 +68,4 @@ def test_what_is_there_already_leaves_room_only_beside_it():
     )
     above, below, left, right, over = (60.0, 36.0), (60.0, 78.0), (24.0, 60.0), (120.0, 60.0), (100.0, 50.0)
     corners = np.array([over, (0.0, 0.0), (260.0, 182.0), above, below, left, right])
-    assert room.take(corners, np.full(7, 29.0)) == [3, 4, 5, 6]
+    assert room.take(room.cells(corners, np.full(7, 29.0))) == [3, 4, 5, 6]
