@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import bisect
 from collections.abc import Iterable
+from itertools import groupby
 
 from qgis.PyQt.QtCore import QAbstractItemModel, QModelIndex, QObject, Qt
 from qgis.PyQt.QtGui import QFont
@@ -17,18 +18,27 @@ from .entries import Filter, cells, step_cells
 COLUMNS = (tr("Time"), tr("Command"), tr("State"), tr("Details"))
 STATE = 2
 COMMAND_ROLE = Qt.ItemDataRole.UserRole
+PAGE = 200
+"""Commands that a view is told of at first, and each time that it comes to the end of those."""
 
 
 class LogModel(QAbstractItemModel):
-    """Lists what ``filter`` keeps. Of a step, the index holds the number of its command."""
+    """Lists what ``filter`` keeps. Of a step, the index holds the number of its command.
+
+    A view lays out every row that it is told of, whenever one is added: it is told of the newest, and of
+    older ones when it asks for more.
+    """
 
     def __init__(self, parent: QObject | None = None):
         super().__init__(parent)
         self._filter = Filter()
         self._shown: list[CommandReport] = []
+        self._told = 0
+        """How many of those a view is told of."""
+        self._rows: dict[str, int] | None = {}
+        """The row of each command; None where it has to be counted anew."""
         self._numbers: dict[str, int] = {}
         self._by_number: dict[int, str] = {}
-        self._rows: dict[str, int] = {}
         self._bold = QFont()
         self._bold.setPointSizeF(max(7.0, self._bold.pointSizeF() - 1.0))
         self._bold.setBold(True)
@@ -45,14 +55,25 @@ class LogModel(QAbstractItemModel):
     def parent(self, index: QModelIndex | None = None) -> QModelIndex:
         if index is None or not index.isValid() or index.internalId() == 0:
             return QModelIndex()
-        row = self._rows.get(self._by_number.get(int(index.internalId()), ""))
+        row = self.row_of(self._by_number.get(int(index.internalId()), ""))
         return QModelIndex() if row is None else self.createIndex(row, 0, 0)
 
     def rowCount(self, parent: QModelIndex | None = None) -> int:
         if parent is None or not parent.isValid():
-            return len(self._shown)
+            return self._told
         is_command = parent.internalId() == 0 and parent.column() == 0
         return len(self._shown[parent.row()].steps) if is_command else 0
+
+    def canFetchMore(self, parent: QModelIndex) -> bool:
+        return not parent.isValid() and self._told < len(self._shown)
+
+    def fetchMore(self, parent: QModelIndex) -> None:
+        if not self.canFetchMore(parent):
+            return
+        last = min(self._told + PAGE, len(self._shown)) - 1
+        self.beginInsertRows(parent, self._told, last)
+        self._told = last + 1
+        self.endInsertRows()
 
     def columnCount(self, parent: QModelIndex | None = None) -> int:
         return len(COLUMNS)
@@ -97,49 +118,77 @@ class LogModel(QAbstractItemModel):
         # Of one time those that were told last come first.
         kept.sort(key=asked_at)
         self._shown = kept[::-1]
+        self._told = min(PAGE, len(kept))
+        self._rows = None
         # No index outlives this, so no number is needed any more: they would add up over a shift.
         self._numbers.clear()
         self._by_number.clear()
-        self._count()
         self.endResetModel()
 
     def merge(self, reports: Iterable[CommandReport]) -> list[str]:
         """Take in new reports and return the commands that were not listed before."""
-        added = []
+        new, gone = [], []
         for report in reports:
-            row = self._rows.get(report.command)
-            if row is None:
-                if self._filter.keeps(report):
-                    self._insert(report)
-                    added.append(report.command)
-            elif self._filter.keeps(report):
-                self._renew(row, report)
-            else:
-                self._remove(row)
-        return added
+            row = self.row_of(report.command)
+            if self._filter.keeps(report):
+                new.append(report) if row is None else self._renew(row, report)
+            elif row is not None:
+                gone.append(row)
+        for row in sorted(gone, reverse=True):
+            self._remove(row)
+        self._insert(new)
+        return [report.command for report in new]
+
+    def shorten(self) -> None:
+        """Tell a view of the first page only, as long as it has not asked for more than comes in a while."""
+        if self._told > 2 * PAGE:
+            self.beginRemoveRows(QModelIndex(), PAGE, self._told - 1)
+            self._told = PAGE
+            self.endRemoveRows()
 
     def report_at(self, index: QModelIndex) -> CommandReport | None:
         """Return the command of a row, be it its own or that of a step."""
         if not index.isValid():
             return None
         row = index.row() if index.internalId() == 0 else self.parent(index).row()
-        return self._shown[row] if 0 <= row < len(self._shown) else None
+        return self._shown[row] if 0 <= row < self._told else None
 
     def row_of(self, command: str) -> int | None:
         """Return the row of a command, None where it is not listed."""
+        if self._rows is None:
+            self._rows = {report.command: row for row, report in enumerate(self._shown)}
         return self._rows.get(command)
 
-    def _insert(self, report: CommandReport) -> None:
+    def _insert(self, reports: list[CommandReport]) -> None:
         # Newest first, and of one time those that were told last.
-        row = bisect.bisect_left(self._shown, -asked_at(report), key=lambda known: -asked_at(known))
-        self.beginInsertRows(QModelIndex(), row, row)
-        self._shown.insert(row, report)
-        self._count()
-        self.endInsertRows()
+        newest_first = sorted(reports, key=asked_at)[::-1]
+        places = [
+            bisect.bisect_left(self._shown, -asked_at(report), key=lambda known: -asked_at(known))
+            for report in newest_first
+        ]
+        end = len(newest_first)
+        # From the oldest on, so that the places of the others stay theirs.
+        for place, run in groupby(reversed(places)):
+            begin = end - len(list(run))
+            self._insert_at(place, newest_first[begin:end])
+            end = begin
+
+    def _insert_at(self, row: int, reports: list[CommandReport]) -> None:
+        is_told = row < self._told or self._told == len(self._shown)
+        if is_told:
+            self.beginInsertRows(QModelIndex(), row, row + len(reports) - 1)
+            self._told += len(reports)
+        self._shown[row:row] = reports
+        self._rows = None
+        if is_told:
+            self.endInsertRows()
 
     def _renew(self, row: int, report: CommandReport) -> None:
         before = len(self._shown[row].steps)
         more = len(report.steps) - before
+        if row >= self._told:
+            self._shown[row] = report
+            return
         top = self.index(row, 0)
         if more > 0:
             self.beginInsertRows(top, before, before + more - 1)
@@ -149,13 +198,14 @@ class LogModel(QAbstractItemModel):
         self.dataChanged.emit(top, self.index(row, len(COLUMNS) - 1))
 
     def _remove(self, row: int) -> None:
-        self.beginRemoveRows(QModelIndex(), row, row)
+        is_told = row < self._told
+        if is_told:
+            self.beginRemoveRows(QModelIndex(), row, row)
+            self._told -= 1
         del self._shown[row]
-        self._count()
-        self.endRemoveRows()
-
-    def _count(self) -> None:
-        self._rows = {report.command: row for row, report in enumerate(self._shown)}
+        self._rows = None
+        if is_told:
+            self.endRemoveRows()
 
     def _number(self, command: str) -> int:
         number = self._numbers.get(command)

@@ -26,7 +26,7 @@ from ..desk import Desk
 from ..small_views import shrink
 from ..state_words import COMMAND_STATES, longest
 from .entries import CSV_HEAD, Filter, Which, csv_rows, summary
-from .log_model import LogModel
+from .log_model import PAGE, LogModel
 
 EVERY_ROBOT, SELECTED = tr("All robots"), tr("Selected robots")
 WHICH = {
@@ -79,6 +79,7 @@ class CommandLog(QWidget):
         if len(self._model.shown) > MOST_COMMANDS:
             self.refresh()
         elif added:
+            self._let_go_of_old()
             self._open(self._model.index(0, 0))
         self._summary.setText(summary(self._desk.book))
 
@@ -160,6 +161,13 @@ class CommandLog(QWidget):
         self._robots.addItems(sorted(known | robots))
         self._robots.setCurrentText(chosen)
         self._robots.blockSignals(False)
+
+    def _let_go_of_old(self) -> None:
+        """Keep the view short while nobody looks at older commands: it lays out each row at each new one."""
+        current = self.view.currentIndex()
+        chosen = current.parent() if current.parent().isValid() else current
+        if self.view.verticalScrollBar().value() == 0 and chosen.row() < PAGE:
+            self._model.shorten()
 
     def _open(self, index: QModelIndex) -> None:
         report = self._model.report_at(index)
