@@ -53,13 +53,15 @@ def decode(frame: str | bytes) -> Call | Reply:
         value = msgspec.json.decode(frame)
     except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
         raise FrameError(PARSE_ERROR, f"the frame is not JSON: {error}") from None
+    if isinstance(value, list):
+        raise FrameError(INVALID_REQUEST, "the frame is a batch; send each object in a frame of its own")
     if not isinstance(value, dict) or value.get("jsonrpc") != "2.0":
         raise FrameError(
             INVALID_REQUEST, 'the frame is not a JSON-RPC 2.0 object; it must hold "jsonrpc": "2.0"'
         )
     id = value.get("id")
     if not (id is None or (isinstance(id, (int, str)) and not isinstance(id, bool))):
-        raise FrameError(INVALID_REQUEST, f"id is {id!r}; give a number or a string")
+        raise FrameError(INVALID_REQUEST, f"id is {id!r}; give a whole number or a string")
     if "method" in value:
         if not isinstance(value["method"], str):
             raise FrameError(INVALID_REQUEST, f"method is {value['method']!r}; give a string", id)

@@ -16,8 +16,11 @@ import pytest
 from bridge_accounts import bearing
 from bridge_programs import wait_until
 from bridge_wires import RefusedError
+from websockets.frames import CloseCode
 
 from robot_bridge import jsonrpc
+from robot_bridge.access.gate import REVOKED
+from robot_bridge.links.robot_session import REPLACED
 from robot_bridge.messages import ANSWERS, DESK_REQUESTS, PAYLOADS, REQUESTS
 from robot_bridge.schemas.documents import documents
 from robot_bridge.schemas.tables import NOTIFICATIONS
@@ -136,6 +139,18 @@ def test_every_operation_and_method_has_an_example_on_each_wire():
 def test_every_error_code_is_explained():
     codes = {value for name, value in vars(jsonrpc).items() if name.isupper() and isinstance(value, int)}
     assert codes == {int(code) for code in re.findall(r"^\| (-32\d{3}) \|", GUIDE, re.MULTILINE)}
+
+
+def test_every_code_with_which_a_robot_is_closed_is_explained():
+    told = {int(code) for code in re.findall(r"^\| closed with (\d+)", GUIDE, re.MULTILINE)}
+    used = {
+        CloseCode.SERVICE_RESTART,
+        CloseCode.POLICY_VIOLATION,
+        CloseCode.MESSAGE_TOO_BIG,
+        REPLACED,
+        REVOKED,
+    }
+    assert told == used
 
 
 def test_the_columns_are_those_of_the_tables(bridge):

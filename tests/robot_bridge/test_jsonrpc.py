@@ -62,19 +62,26 @@ def test_what_is_not_json_is_a_parse_error(frame):
         '{"method": "Alive"}',
         '{"jsonrpc": "1.0", "method": "Alive"}',
         '{"jsonrpc": 2.0, "method": "Alive"}',
-        '[{"jsonrpc": "2.0", "method": "Alive"}]',
-        "[]",
     ],
 )
-def test_json_that_is_no_json_rpc_object_and_batches_are_invalid_requests(frame):
+def test_json_that_is_no_json_rpc_object_is_an_invalid_request(frame):
     with pytest.raises(FrameError, match='must hold "jsonrpc"') as caught:
         jsonrpc.decode(frame)
     assert caught.value.code == jsonrpc.INVALID_REQUEST
 
 
+@pytest.mark.parametrize("frame", ["[]", '[{"jsonrpc": "2.0", "method": "Alive"}]'])
+def test_a_batch_is_an_invalid_request(frame):
+    with pytest.raises(
+        FrameError, match="the frame is a batch; send each object in a frame of its own"
+    ) as caught:
+        jsonrpc.decode(frame)
+    assert caught.value.code == jsonrpc.INVALID_REQUEST
+
+
 @pytest.mark.parametrize("id", [True, False, 1.5, [1], {"a": 1}])
-def test_an_id_is_a_number_or_a_string(id):
-    with pytest.raises(FrameError, match=r"id is .*; give a number or a string") as caught:
+def test_an_id_is_a_whole_number_or_a_string(id):
+    with pytest.raises(FrameError, match=r"id is .*; give a whole number or a string") as caught:
         jsonrpc.decode(json.dumps({"jsonrpc": "2.0", "method": "Alive", "id": id}))
     assert caught.value.code == jsonrpc.INVALID_REQUEST
 
