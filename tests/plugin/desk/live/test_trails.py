@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from fleet_supervisor.plugin.desk.live.screen import Screen
 from fleet_supervisor.plugin.desk.live.trail_image import TrailImage
-from fleet_supervisor.plugin.desk.live.trails import LENGTHS, Trails
+from fleet_supervisor.plugin.desk.live.trails import LENGTHS, SHORTEST_WAIT, Trails
 from qgis.PyQt.QtGui import QImage, QPainter
 
 SCREEN = Screen((0.0, 0.0), (0.0, 0.0), (1.0, 0.0), (0.0, 1.0), 200, 100)
@@ -180,3 +180,26 @@ def test_a_robot_that_goes_many_pixels_in_a_frame_leaves_a_trail_without_gaps(qg
     for x, y in zip(across, (10.5 + (across - 20.0) / 2).astype(int), strict=True):
         assert alpha[y - 1 : y + 2, x].max() > 0
     assert alpha[:, 172:].max() == alpha[:, :18].max() == 0
+
+
+def test_a_robot_is_sampled_again_only_after_a_while():
+    trails = Trails()
+    for step in range(41):
+        trails.extend(np.array([[float(step), 0.0]]), step * SHORTEST_WAIT / 4)
+    assert trails.taken.tolist() == [11]
+    assert trails.of(0, 10 * SHORTEST_WAIT)[:, 0].tolist() == [4.0 * step for step in range(11)]
+
+
+def test_a_trail_that_is_drawn_again_has_its_own_age_beside_those_of_others(qgis_app):
+    trails = Trails()
+    for second in range(5):
+        trails.extend(np.array([[10.0, 20.0], [10.0 + 30.0 * second, 60.0]]), float(second))
+    for second in range(50, 61):
+        trails.extend(np.array([[float(second) - 40.0, 20.0], [130.0, 60.0]]), float(second))
+    image = TrailImage(trails)
+    for _ in range(20):
+        image.extend(np.array([[20.0, 20.0], [130.0, 60.0]]), SCREEN, same, 60.0)
+    alpha = painted(image)
+    newer, older = alpha[20, 11:20].astype(int), alpha[60, 12:128].astype(int)
+    assert older.min() > 0
+    assert newer.min() > 2 * older.max()
