@@ -13,7 +13,7 @@ from fleet_supervisor.robot_bridge.messages import (
     to_json,
 )
 
-MADE_AT = 1_790_000_000.0
+from tests.plugin.desk.accounts.accounts_desk import MADE_AT, AccountsDesk
 
 
 def secret(number: int) -> str:
@@ -67,3 +67,17 @@ def book(gateway):
     book.put("Ada", Role.SUPERVISOR, used_at=MADE_AT + 60)
     book.put("Ben", Role.VIEWER, used_at=MADE_AT + 60, expires_at=MADE_AT + 86_400)
     return book
+
+
+@pytest.fixture
+def operator(plugin, iface, gateway, wait):
+    return AccountsDesk(plugin, iface, gateway, wait)
+
+
+@pytest.fixture
+def at_accounts(operator, book):
+    """Connected, with the window open and both accounts listed."""
+    operator.connect()
+    operator.open()
+    operator.listed("Ada", "Ben")
+    return operator

@@ -1,0 +1,93 @@
+"""A cone plan is sent when the operator agrees, and not otherwise."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from fleet_supervisor.robot_bridge.messages import to_json
+from qgis.PyQt.QtCore import Qt
+from qgis.PyQt.QtTest import QTest
+
+from tests.plugin.desk.plans.panel_parts import (
+    answer,
+    child,
+    cones_of,
+    key,
+    planned,
+    press,
+    question,
+)
+
+
+def test_only_send_and_a_second_send_fill_the_queues(panel, gateway, wait):
+    plan = planned(panel, wait)
+    box = question(panel)
+    assert "r1: 3 cones" in box.text() and "The robots set off at once" in box.text()
+    answer(box, send=False)
+    QTest.qWait(200)
+    assert gateway.asked("set_queue") == []
+    answer(question(panel), send=True)
+    wait(lambda: len(gateway.asked("set_queue")) == 2 and not panel.driven.busy, 10, "both queues")
+    sent = {one["robot"]: one for one in gateway.asked("set_queue")}
+    assert {robot: [t["cone"] for t in one["tasks"]] for robot, one in sent.items()} == cones_of(plan)
+    assert all(one["revision"] == 0 for one in sent.values())
+    tasks = [task for one in sent.values() for task in one["tasks"]]
+    assert len({task["task"] for task in tasks}) == 6
+    assert {task["kind"] for task in tasks} == {"place"} and {task["layout"] for task in tasks} == {"row"}
+    assert "Under way: 0 of 6 cones" in panel.bar.text.text()
+    before = panel.driven.driven.plan
+    key(panel, child(panel, "r1", cones_of(plan)["r1"][0]), Qt.Key.Key_Delete)
+    QTest.qWait(100)
+    assert panel.driven.driven.plan is before, "what is driven is not edited"
+
+
+def test_what_was_refused_and_what_was_not_done_is_said(panel, gateway, wait, iface):
+    planned(panel, wait)
+    gateway.refuse["set_queue"] = "the queue of robot 'r1' is at revision 4, not 0; look at it again"
+    answer(question(panel), send=True)
+    wait(lambda: any("was not sent as a whole" in text for text in iface.texts()), 10, "the refusal")
+    (text,) = [text for text in iface.texts() if "as a whole" in text]
+    assert "revision 4" in text and "Not done therefore" in text and "the queue of r2" in text
+    assert len(gateway.asked("set_queue")) == 1
+
+
+def test_the_question_names_robots_that_moved_and_would_meet(panel, gateway, wait, make_robot):
+    panel.form.apart.setValue(50.0)
+    planned(panel, wait)
+    gateway.show(make_robot("r1", 50, 48))
+    wait(lambda: panel._desk.picture.view("r1", panel._desk.clock()).report.y == 48, 5)
+    text = question(panel).text()
+    assert "r1 is 8.0 m from where the plan begins" in text
+    assert "r1 and r2 come within" in text
+
+
+def test_a_plan_that_is_driven_is_not_thrown_away_by_another_preview(panel, gateway, wait, iface):
+    planned(panel, wait)
+    answer(question(panel), send=True)
+    wait(lambda: not panel.driven.busy and panel.driven.driven is not None, 10)
+    driven = panel.driven.driven
+    press(panel, "fleet_plan_preview")
+    wait(lambda: any("A plan is being driven" in text for text in iface.texts()), 5)
+    assert panel.driven.driven is driven
+    press(panel, "fleet_plan_clear")
+    assert panel.driven.driven is None and "No plan" in panel.bar.text.text()
+
+
+def test_nothing_is_sent_while_an_emergency_stop_is_in_force(panel, gateway, wait, iface):
+    planned(panel, wait)
+    gateway.stand(in_force=True, stop="stop-1", at=1.0, by="bert")
+    wait(lambda: panel._desk.emergency is not None and panel._desk.emergency.in_force, 5)
+    answer(question(panel), send=True)
+    wait(lambda: any("An emergency stop is in force" in text for text in iface.texts()), 5)
+    assert gateway.asked("set_queue") == [] and panel.driven.driven is None
+
+
+def test_a_site_that_is_published_anew_keeps_the_plan_and_another_site_does_not(
+    under_way, gateway, wait, site
+):
+    driven = under_way.driven.driven
+    gateway.tell("site", to_json(replace(site, version="2")))
+    wait(lambda: under_way._desk.site.version == "2", 5)
+    assert under_way.driven.driven is driven
+    gateway.tell("site", to_json(replace(site, id="elsewhere")))
+    wait(lambda: under_way.driven.driven is None, 5)
