@@ -122,7 +122,6 @@ class SupervisorDialog(QDialog):
         line.addStretch()
         standard = QDialogButtonBox.StandardButton
         foot = QDialogButtonBox(standard.Close | standard.Help)
-        foot.button(standard.Close).setDefault(True)
         foot.rejected.connect(self.reject)
         foot.helpRequested.connect(lambda: show_help(self._topic, self))
         rows = QVBoxLayout(self)
@@ -130,6 +129,8 @@ class SupervisorDialog(QDialog):
         rows.addLayout(line)
         rows.addWidget(self.said)
         rows.addWidget(foot)
+        # Only within the dialog: Enter would mean nothing once another button had the keyboard.
+        foot.button(standard.Close).setDefault(True)
         self.resize(*SIZE)
         self._renew()
 

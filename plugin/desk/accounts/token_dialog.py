@@ -41,10 +41,10 @@ class TokenDialog(QDialog):
             rows.addWidget(WholeText(ENDS_LINK))
         rows.addWidget(self._field)
         rows.addWidget(self._copied)
-        rows.addWidget(self._foot())
+        self._add_foot(rows)
         self.finished.connect(self._forget)
 
-    def _foot(self) -> QDialogButtonBox:
+    def _add_foot(self, rows: QVBoxLayout) -> None:
         copy = QPushButton(tr("&Copy"))
         copy.setObjectName("fleet_token_copy")
         copy.clicked.connect(self._copy)
@@ -52,9 +52,10 @@ class TokenDialog(QDialog):
         foot.addButton(copy, QDialogButtonBox.ButtonRole.ActionRole)
         # Enter takes the token along; it must not make it vanish.
         foot.button(QDialogButtonBox.StandardButton.Close).setAutoDefault(False)
-        copy.setDefault(True)
         foot.rejected.connect(self.reject)
-        return foot
+        rows.addWidget(foot)
+        # Only within the dialog: Enter would mean nothing once another button had the keyboard.
+        copy.setDefault(True)
 
     def _copy(self) -> None:
         QApplication.clipboard().setText(self._field.text())

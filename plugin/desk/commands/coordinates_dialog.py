@@ -55,13 +55,22 @@ class CoordinatesDialog(QDialog):
         self._told.setAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignTop)
         self._set = QPushButton(tr("Set on the map"))
         self._set.setObjectName("fleet_coordinates_set")
-        self._set.setDefault(True)
         self._lay_out()
+        # Only within the dialog: Enter would be another button's once that had the keyboard.
+        self._set.setDefault(True)
         self._text.textChanged.connect(self._read)
         self._crs.crsChanged.connect(self._read)
         self._set.clicked.connect(self._choose)
         desk.site_changed.connect(self._read)
         self._read()
+
+    def ask(self) -> None:
+        """Come to the front, with what was written last in hand: what is typed takes its place."""
+        self.show()
+        self.raise_()
+        self.activateWindow()
+        self._text.setFocus()
+        self._text.selectAll()
 
     def _lay_out(self) -> None:
         form = QFormLayout()

@@ -138,9 +138,7 @@ class DraftCommands(QObject):
         if self._coordinates is None:
             self._coordinates = CoordinatesDialog(self._desk, self._window)
             self._coordinates.chosen.connect(self._chosen)
-        self._coordinates.show()
-        self._coordinates.raise_()
-        self._coordinates.activateWindow()
+        self._coordinates.ask()
 
     def _chosen(self, x: float, y: float) -> None:
         if not isinstance(self._desk.canvas.mapTool(), DraftTool):

@@ -11,7 +11,8 @@ from fleet_supervisor.plugin.desk.menu_letters import with_letters
 from fleet_supervisor.plugin.desk.shortcuts import KEYS
 from qgis.gui import QgsGui
 from qgis.PyQt import sip
-from qgis.PyQt.QtCore import Qt
+from qgis.PyQt.QtCore import QEvent, Qt
+from qgis.PyQt.QtGui import QFocusEvent
 from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import QApplication, QDialogButtonBox, QPushButton, QWidget
 
@@ -123,6 +124,21 @@ def test_enter_has_one_meaning_in_every_dialog(dialogs):
     for name, dialog in dialogs():
         if dialog.findChildren(QPushButton):
             assert len(defaults_of(dialog)) == 1, (name, defaults_of(dialog))
+
+
+def test_enter_keeps_its_meaning_when_the_keyboard_comes_back_from_a_button(dialogs):
+    """A button that has the keyboard has Enter meanwhile; a field is given back what it had."""
+    changed = []
+    for name, dialog in dialogs():
+        before = defaults_of(dialog)
+        buttons = [button for button in dialog.findChildren(QPushButton) if button.isEnabled()]
+        for button in filter(QPushButton.autoDefault, buttons):
+            for event in (QEvent.Type.FocusIn, QEvent.Type.FocusOut):
+                QApplication.sendEvent(button, QFocusEvent(event, Qt.FocusReason.TabFocusReason))
+            if defaults_of(dialog) != before:
+                changed.append((name, button.objectName() or button.text(), defaults_of(dialog), before))
+                break
+    assert not changed, repr(changed)
 
 
 def test_enter_does_not_let_robots_go(dialogs):

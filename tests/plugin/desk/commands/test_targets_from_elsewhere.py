@@ -122,6 +122,18 @@ def test_typed_coordinates_say_where_they_are_and_by_which_way_and_set_a_cone(ha
     assert hand.nothing_sent()
 
 
+def test_coordinates_are_asked_for_anew_by_keyboard_alone(hand, dialog):
+    field = dialog.findChild(QLineEdit, "fleet_coordinates_text")
+    enter(dialog, "{:.8f}, {:.8f}".format(*earth(70, 55)))
+    QTest.mouseClick(dialog.findChild(QPushButton, "fleet_coordinates_set"), Qt.MouseButton.LeftButton)
+    dialog.close()
+    hand.window.actions.coordinates.trigger()
+    assert dialog.focusWidget() is field
+    QTest.keyClicks(field, "{:.8f}, {:.8f}".format(*earth(80, 55)))
+    QTest.keyClick(field, Qt.Key.Key_Return)
+    assert hand.points == (pytest.approx((80, 55), abs=0.01),)
+
+
 def test_coordinates_of_another_datum_name_the_operation_and_how_exact_it_is(dialog):
     enter(dialog, "1234.5, 339912.7", "EPSG:31257")
     text = told(dialog)
