@@ -1,0 +1,104 @@
+"""Nothing is left when the plugin goes, and all of it has a name while it is there."""
+
+from __future__ import annotations
+
+import threading
+import time
+
+from fleet_supervisor.plugin.supervisor import FleetSupervisor
+from qgis.core import QgsApplication, QgsProject, QgsVectorLayer
+from qgis.PyQt.QtWidgets import (
+    QAction,
+    QLineEdit,
+)
+
+from tests.plugin.desk.left_behind import left_behind
+
+
+def test_unloading_leaves_nothing_twice(iface, gateway, make_robot, wait):
+    gateway.show(make_robot("r1"))
+    before = left_behind(iface)
+    before_tool = iface.canvas.mapTool()
+    for _ in range(2):
+        plugin = FleetSupervisor(iface)
+        plugin.initGui()
+        window = plugin.window
+        window.dock.findChild(QLineEdit, "fleet_url").setText(gateway.url)
+        window.actions.connect.trigger()
+        wait(lambda window=window: len(window.desk.picture) == 1)
+        window.desk.select("r1")
+        window.actions.cone.trigger()
+        iface.click(60, 50)
+        window.desk.abort_all()
+        window.notices.error("Something")
+        wait(lambda window=window: window.view.layer.layer.featureCount() == 1, 3)
+        during = left_behind(iface)
+        assert [kind for kind in before if during[kind] <= before[kind]] == []
+        began = time.monotonic()
+        plugin.unload()
+        assert time.monotonic() - began < 4.0
+        assert plugin.window is None
+        assert left_behind(iface) == before
+    assert iface.canvas.mapTool() is before_tool
+
+
+def test_unloading_while_a_gateway_hangs_does_not_hang(iface, gateway, wait):
+    plugin = FleetSupervisor(iface)
+    plugin.initGui()
+    plugin.window.dock.findChild(QLineEdit, "fleet_url").setText(gateway.url)
+    plugin.window.actions.connect.trigger()
+    wait(lambda: plugin.window.desk.site is not None)
+    release = threading.Event()
+    gateway._loop.call_soon_threadsafe(release.wait)
+    began = time.monotonic()
+    plugin.unload()
+    took = time.monotonic() - began
+    release.set()
+    assert took < 4.0
+
+
+def test_a_group_with_layers_of_the_users_own_is_left_to_the_user(iface, plugin, gateway, wait):
+    window = plugin.window
+    window.dock.findChild(QLineEdit, "fleet_url").setText(gateway.url)
+    window.actions.connect.trigger()
+    wait(lambda: window.view.layer.layer is not None)
+    own = QgsVectorLayer("Point?crs=EPSG:32633", "mine", "memory")
+    QgsProject.instance().addMapLayer(own, False)
+    QgsProject.instance().layerTreeRoot().findGroup("Fleet").addLayer(own)
+    plugin.unload()
+    assert [layer.name() for layer in QgsProject.instance().mapLayers().values()] == ["mine"]
+    assert QgsProject.instance().layerTreeRoot().findGroup("Fleet") is not None
+
+
+def test_unloading_twice_or_before_loading_does_no_harm(iface):
+    plugin = FleetSupervisor(iface)
+    plugin.unload()
+    plugin.initGui()
+    plugin.unload()
+    plugin.unload()
+
+
+def test_without_a_window_only_processing_is_loaded():
+    before = len(QgsApplication.processingRegistry().providers())
+    plugin = FleetSupervisor(None)
+    plugin.initGui()
+    assert plugin.window is None
+    assert len(QgsApplication.processingRegistry().providers()) == before + 1
+    plugin.unload()
+    assert len(QgsApplication.processingRegistry().providers()) == before
+
+
+def test_scripts_find_every_action_and_button_by_its_name(plugin, iface):
+    names = [
+        "connect",
+        "cone_target",
+        "draw_route",
+        "send",
+        "cancel",
+        "select",
+        "follow",
+        "abort",
+        "abort_all",
+        "panel",
+    ]
+    assert all(iface.findChild(QAction, f"fleet_{name}") is not None for name in names)
