@@ -20,9 +20,9 @@ from qgis.PyQt.QtGui import QColor
 
 from ...robot_bridge.messages import SiteReport
 from ...robot_bridge.sites.frame import SiteFrame
+from ..sites.fleet_group import fleet_group, remove_if_empty
 from .live_layers import MARK, give_style
 
-GROUP = "Fleet"
 Row = tuple[Sequence[tuple[float, float]], Sequence[Any]]
 """Points in the site frame, one for a point layer, and the values of the fields."""
 
@@ -75,7 +75,7 @@ class RowLayer:
             dirty = self._project.isDirty()
             self._project.removeMapLayer(self._id)
             self._project.setDirty(dirty)
-            self._remove_empty_group()
+            remove_if_empty(self._project)
         self._id = None
 
     def _write(self, layer: QgsVectorLayer, rows: Sequence[Row], frame: SiteFrame) -> bool:
@@ -108,17 +108,10 @@ class RowLayer:
         if not give_style(self._project, layer):
             self._style(layer)
         self._project.addMapLayer(layer, False)
-        root = self._project.layerTreeRoot()
-        (root.findGroup(GROUP) or root.insertGroup(0, GROUP)).addLayer(layer)
+        fleet_group(self._project).addLayer(layer)
         self._id = layer.id()
         self._project.setDirty(dirty)
         return layer
-
-    def _remove_empty_group(self) -> None:
-        root = self._project.layerTreeRoot()
-        group = root.findGroup(GROUP)
-        if group is not None and not group.children():
-            root.removeChildNode(group)
 
 
 def _features(layer: QgsVectorLayer, rows: Sequence[Row], frame: SiteFrame) -> list[QgsFeature]:

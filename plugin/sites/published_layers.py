@@ -6,7 +6,7 @@ import json
 from dataclasses import dataclass
 from pathlib import Path
 
-from qgis.core import QgsLayerTreeGroup, QgsProject, QgsVectorLayer
+from qgis.core import QgsProject, QgsVectorLayer
 
 from ...robot_bridge.sites.geopackage import GEOPACKAGE_FILE
 from ...robot_bridge.sites.layers import CENTRELINES, KEEPOUTS, OBSTACLES, SURFACES
@@ -14,6 +14,7 @@ from ...robot_bridge.sites.settings import SETTINGS_FILE
 from ...robot_bridge.sites.settings_toml import value_text
 from ..language import tr
 from .errors import PublicationError
+from .fleet_group import fleet_group
 from .roles import (
     KEEPOUT,
     OBSTACLE,
@@ -25,7 +26,6 @@ from .roles import (
     layers_with_role,
 )
 
-GROUP = "Fleet"
 AGAIN = tr("Publish the site again.")
 STYLES = Path(__file__).parents[2] / "resources" / "styles"
 
@@ -120,7 +120,7 @@ def load_site(folder: Path, project: QgsProject) -> LoadedSite:
             )
         )
     taken = {part.setup.role for part in PARTS if layers_with_role(project, part.setup.role)}
-    group = _group(project, name)
+    group = fleet_group(project).addGroup(name)
     for part, layer in opened:
         if part.setup.role not in taken:
             keep_setup(layer, part.setup)
@@ -155,9 +155,3 @@ def _site_name(folder: Path) -> str:
     raise PublicationError(
         tr("{file} names no site: it has no table [site] with a name. {again}", file=file, again=AGAIN)
     )
-
-
-def _group(project: QgsProject, name: str) -> QgsLayerTreeGroup:
-    root = project.layerTreeRoot()
-    fleet = root.findGroup(GROUP) or root.insertGroup(0, GROUP)
-    return fleet.addGroup(name)

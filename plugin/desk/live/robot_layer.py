@@ -7,7 +7,6 @@ from collections.abc import Iterable
 from qgis.core import (
     QgsCoordinateReferenceSystem,
     QgsFeature,
-    QgsLayerTreeGroup,
     QgsMapLayerStyle,
     QgsProject,
     QgsVectorLayer,
@@ -18,11 +17,11 @@ from qgis.PyQt.QtCore import QObject, QTimer, pyqtSignal
 
 from ....robot_bridge.messages import RobotState, SiteReport
 from ....robot_bridge.sites.frame import SiteFrame
+from ...sites.fleet_group import fleet_group, remove_if_empty
 from ..live_layers import MARK, give_style
 from ..picture import RobotPicture
 from .robot_features import AGE_AT, NAME_AT, STATE_AT, RobotFeature, features_of, geometry_at, made_layer
 
-GROUP = "Fleet"
 KIND = "robots"
 AT_ONCE = 100
 """Robots that are written in one go; more take several, so that the window does not wait for them."""
@@ -76,7 +75,7 @@ class RobotLayer(QObject):
         self._layer.willBeDeleted.connect(self._gone)
         self._layer.selectionChanged.connect(self._selection_changed)
         self._project.addMapLayer(self._layer, False)
-        self._group().insertLayer(0, self._layer)
+        fleet_group(self._project).insertLayer(0, self._layer)
         self._leave_clean(was_dirty)
 
     def begin(self, robots: int) -> None:
@@ -127,10 +126,7 @@ class RobotLayer(QObject):
             layer.willBeDeleted.disconnect(self._gone)
             layer.selectionChanged.disconnect(self._selection_changed)
             self._project.removeMapLayer(layer.id())
-        group = self._project.layerTreeRoot().findGroup(GROUP)
-        if group is not None and not group.children():
-            above: QgsLayerTreeGroup = group.parent()
-            above.removeChildNode(group)
+        remove_if_empty(self._project)
         self._leave_clean(was_dirty)
 
     def _write(self, features: list[RobotFeature]) -> None:
@@ -183,10 +179,6 @@ class RobotLayer(QObject):
         # QGIS's layer panel notes a change once more when it has laid out the new group.
         project = self._project
         QTimer.singleShot(0, lambda: project.setDirty(False))
-
-    def _group(self) -> QgsLayerTreeGroup:
-        root = self._project.layerTreeRoot()
-        return root.findGroup(GROUP) or root.insertGroup(0, GROUP)
 
     def _keep_style(self, layer: QgsVectorLayer) -> None:
         self._style = QgsMapLayerStyle()

@@ -21,8 +21,8 @@ from qgis.PyQt.QtCore import QObject, QTimer, pyqtSignal
 from ....robot_bridge.messages import SiteReport
 from ....robot_bridge.sites.frame import SiteFrame
 from ...language import tr
+from ...sites.fleet_group import fleet_group, remove_if_empty
 from ..live_layers import MARK, give_style
-from ..row_layer import GROUP
 from .clockwork import local
 from .history import SILENT_AFTER, History
 from .replay_map import OWN_LAYER
@@ -88,10 +88,7 @@ class ReplayLayer(QObject):
         if self.layer is not None:
             dirty = self._project.isDirty()
             self._project.removeMapLayer(self._id)
-            root = self._project.layerTreeRoot()
-            group = root.findGroup(GROUP)
-            if group is not None and not group.children():
-                root.removeChildNode(group)
+            remove_if_empty(self._project)
             self._project.setDirty(dirty)
         self._id = None
 
@@ -104,8 +101,7 @@ class ReplayLayer(QObject):
         if not give_style(self._project, layer):
             layer.loadNamedStyle(str(STYLE))
         self._project.addMapLayer(layer, False)
-        root = self._project.layerTreeRoot()
-        (root.findGroup(GROUP) or root.insertGroup(0, GROUP)).addLayer(layer)
+        fleet_group(self._project).addLayer(layer)
         self._id = layer.id()
         self._project.setDirty(dirty)
         return layer

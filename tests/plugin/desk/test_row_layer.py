@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import pytest
 from fleet_supervisor.plugin.desk.live_layers import MARK
-from fleet_supervisor.plugin.desk.row_layer import GROUP, RowLayer
+from fleet_supervisor.plugin.desk.row_layer import RowLayer
+from fleet_supervisor.plugin.sites.fleet_group import GROUP, fleet_group
 from qgis.core import QgsProject
 
 E, N = 488000.0, 5190000.0
@@ -107,3 +108,14 @@ def test_removed_it_leaves_neither_layer_nor_group_nor_a_changed_project(points,
     points.remove()
     assert project.mapLayers() == {} and project.layerTreeRoot().findGroup(GROUP) is None
     assert not project.isDirty()
+
+
+def test_a_group_that_the_user_moved_into_another_is_filled_and_emptied_there(points, project, site):
+    root = project.layerTreeRoot()
+    points.show(TWO, site)
+    group = fleet_group(project)
+    root.addGroup("Mine").addChildNode(group.clone())
+    root.removeChildNode(group)
+    assert fleet_group(project).parent().name() == "Mine"
+    points.remove()
+    assert root.findGroup(GROUP) is None and root.findGroup("Mine") is not None
