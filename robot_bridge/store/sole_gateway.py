@@ -24,7 +24,8 @@ from sqlalchemy.exc import DBAPIError, SQLAlchemyError
 
 from ..errors import BridgeError, HopelessError, StoreError
 from .address import open_engine, shown
-from .engines.sqlite import file_of
+from .engines.dialect import Dialect
+from .engines.sqlite import SQLite, file_of
 from .schema import bridge
 
 log = logging.getLogger(__name__)
@@ -100,7 +101,7 @@ class SoleGateway:
             try:
                 await asyncio.to_thread(self._lock.ping)
             except StoreError as error:
-                log.error("database %s: %s; its lock is taken anew as soon as it is back", self._where, error)
+                log.error("%s; its lock is taken anew as soon as it is back", error)
                 await self._take_again()
 
     async def release(self) -> None:
@@ -196,7 +197,7 @@ class FileLock:
             self._file = None
 
     def _path(self) -> Path | None:
-        with _explained():
+        with _explained(self._url, SQLite()):
             file = file_of(self._url)
         return None if file is None else Path(f"{file}.gateway")
 
@@ -205,14 +206,14 @@ class ServerLock:
     """A lock in a transaction of its own connection, which the server ends when it hears no more of it."""
 
     def __init__(self, url: URL) -> None:
-        self._engine, dialect = open_engine(url)
-        self._statements = _LOCKING[dialect.name]
+        self._engine, self._dialect = open_engine(url)
+        self._statements = _LOCKING[self._dialect.name]
         self._connection: Connection | None = None
 
     def take(self) -> bool:
         """Take the lock."""
         self.release()
-        with _explained():
+        with _explained(self._engine.url, self._dialect):
             _make_row(self._engine)
             connection = self._engine.connect()
             try:
@@ -228,18 +229,18 @@ class ServerLock:
 
     def ping(self) -> None:
         """Use the connection, so that the server knows that somebody is there."""
-        with _explained():
+        with _explained(self._engine.url, self._dialect):
             assert self._connection is not None
             self._connection.execute(text("select 1"))
 
     def write(self, run: dict[str, Any]) -> None:
         """Write down which gateway runs."""
-        with _explained(), self._engine.begin() as connection:
+        with _explained(self._engine.url, self._dialect), self._engine.begin() as connection:
             connection.execute(update(bridge).where(bridge.c.name == RUN).values(value=json.dumps(run)))
 
     def read(self) -> dict[str, Any]:
         """Return which gateway wrote itself down last."""
-        with _explained(), self._engine.connect() as connection:
+        with _explained(self._engine.url, self._dialect), self._engine.connect() as connection:
             return _run_in(connection.scalar(select(bridge.c.value).where(bridge.c.name == RUN)))
 
     def release(self) -> None:
@@ -267,8 +268,8 @@ def _has_lock(url: URL) -> bool:
     """Tell whether gateways lock this database; those of version 0.1.0 did not."""
     if url.get_backend_name() == "sqlite":
         return True
-    engine, _ = open_engine(url)
-    with _explained(), engine.connect() as connection:
+    engine, dialect = open_engine(url)
+    with _explained(url, dialect), engine.connect() as connection:
         return inspect(connection).has_table(bridge.name)
 
 
@@ -285,11 +286,11 @@ def _codes(error: DBAPIError) -> set[object]:
 
 
 @contextlib.contextmanager
-def _explained() -> Any:
+def _explained(url: URL, dialect: Dialect) -> Any:
     try:
         yield
     except SQLAlchemyError as error:
-        raise StoreError(" ".join(str(getattr(error, "orig", None) or error).split())) from error
+        raise StoreError(f"database {shown(url)}: {dialect.cause(error)}; {dialect.advice}") from error
 
 
 def _run_in(text: str | None) -> dict[str, Any]:

@@ -9,12 +9,12 @@ import sys
 import pytest
 from sqlalchemy import insert, select
 
-from robot_bridge.errors import BridgeError, HopelessError
+from robot_bridge.errors import BridgeError, HopelessError, StoreError
 from robot_bridge.store import sole_gateway
 from robot_bridge.store.address import read_address
 from robot_bridge.store.database import Database, run_once
 from robot_bridge.store.schema import bridge
-from robot_bridge.store.sole_gateway import SoleGateway
+from robot_bridge.store.sole_gateway import SoleGateway, no_gateway
 
 HOLDER = """
 import asyncio, sys
@@ -133,3 +133,13 @@ async def test_a_gateway_that_another_replaced_while_it_was_cut_off_ends(address
     with pytest.raises(HopelessError, match="another gateway: process 7 on elsewhere, since 1970-01-01"):
         await asyncio.wait_for(hold, 10)
     await gateway.release()
+
+
+@pytest.mark.parametrize("kind", ["postgresql", "mariadb"])
+async def test_a_server_that_does_not_run_is_named_with_what_to_check(kind):
+    address = read_address(f"{kind}://fleet@127.0.0.1:1/fleet")
+    with pytest.raises(StoreError) as caught:
+        async with no_gateway(address, "robot-bridge database upgrade"):
+            pass
+    assert str(caught.value).startswith(f"database {kind}://fleet@127.0.0.1:1/fleet: ")
+    assert "check that the server runs" in str(caught.value)
