@@ -6,7 +6,7 @@ from pathlib import Path
 
 from qgis.core import QgsMimeDataUtils, QgsProject
 from qgis.gui import QgisInterface, QgsCustomDropHandler
-from qgis.PyQt.QtCore import QMimeData
+from qgis.PyQt.QtCore import QMimeData, QTimer
 
 from ..errors import FleetError
 from ..language import tr
@@ -67,7 +67,8 @@ class SiteDrop(QgsCustomDropHandler):
             return
         self._notices.info(_in_words(site))
         if was_empty:
-            self._iface.mapCanvas().zoomToFullExtent()
+            # QGIS takes over the site's CRS in a moment; what was shown whole before would be small then.
+            QTimer.singleShot(0, self._iface.mapCanvas().zoomToFullExtent)
 
 
 def _in_words(site: LoadedSite) -> str:

@@ -167,6 +167,8 @@ class RobotModel(QAbstractTableModel):
         task = fleet.book.task_of(name)
         if task is not None:
             lines.append(f"{in_words(task)}: {COMMAND_STATES[task.state]}")
+        elif fleet.task(row) and not told.get("status"):
+            lines.append(fleet.task(row))
         if told.get("status"):
             lines.append(tr("it says: {text}", text=told["status"]))
         return "\n".join(lines)

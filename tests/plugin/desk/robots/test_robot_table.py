@@ -21,13 +21,6 @@ from qgis.PyQt.QtWidgets import QComboBox, QLabel, QLineEdit, QToolButton
 LEFT = Qt.MouseButton.LeftButton
 
 
-@pytest.fixture(autouse=True)
-def settings():
-    QgsSettings().remove("fleet_supervisor")
-    yield
-    QgsSettings().remove("fleet_supervisor")
-
-
 @pytest.fixture
 def table(at_desk, gateway, make_robot, wait):
     gateway.show(
@@ -85,6 +78,14 @@ def test_every_column_of_a_robot(table, at_desk):
         "sql",
         "",
     ]
+
+
+def test_what_a_narrow_panel_cuts_of_a_task_is_in_its_tool_tip(table, at_desk, gateway, make_robot, wait):
+    gateway.show(make_robot("r1", 50, 40, stopped=True))
+    wait(lambda: "stopped" in column(table, "Task"))
+    for row, task in enumerate(column(table, "Task")):
+        tip = table.model().index(row, TITLES.index("Task")).data(Qt.ItemDataRole.ToolTipRole)
+        assert tip.count(task) == 1 or not task
 
 
 def test_how_far_a_robot_is_off_its_path_then_off_its_target(table, at_desk, gateway, make_robot, wait):
