@@ -333,6 +333,7 @@ def iface(qgis_app):
     yield window
     window.canvas.stopRendering()
     QgsProject.instance().clear()
+    QgsSettings().remove("fleet_supervisor")
     if not sip.isdeleted(window):
         # QGIS's list of shortcuts does not notice that an action is deleted.
         for action in window.findChildren(QAction):

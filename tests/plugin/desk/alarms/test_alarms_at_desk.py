@@ -25,13 +25,6 @@ from qgis.PyQt.QtWidgets import (
 LEFT = Qt.MouseButton.LeftButton
 
 
-@pytest.fixture(autouse=True)
-def settings():
-    QgsSettings().remove("fleet_supervisor")
-    yield
-    QgsSettings().remove("fleet_supervisor")
-
-
 @pytest.fixture
 def at_alarms(at_desk):
     """The desk with the panel of alarms in front."""
