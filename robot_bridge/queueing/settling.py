@@ -42,6 +42,10 @@ class QueueSettling:
 
     async def settle(self, queue: Queue) -> None:
         """Write down what came of the current task's command, if that has ended."""
+        await self._settle_current(queue)
+        await self._settle_given_back(self._book.get(queue.robot))
+
+    async def _settle_current(self, queue: Queue) -> None:
         current = queue.current
         if current is None or current.command is None or self._commands.is_open(current.command):
             return
@@ -55,6 +59,19 @@ class QueueSettling:
         skips = self._site.settings.queues.on_failure == "skip"
         outcome = life.settled(queue, found.report, self._legs_of(current), skips=skips)
         await self._write(queue, outcome, found.report)
+
+    async def _settle_given_back(self, queue: Queue) -> None:
+        """Write down that the task that comes next is done, if its robot came to its end all the same."""
+        head = queue.head
+        if head is None or head.is_current or head.command is None or not queue.running:
+            return
+        found = (await self._database.run(stored_commands.find_all, [head.command])).get(head.command)
+        if found is None or found.report.state is not CommandState.REACHED:
+            return
+        count = self._legs_of(head)
+        again = life.done_after_all(queue, count)
+        if again is not None:
+            await self._write(queue, life.settled(again, found.report, count, skips=False), found.report)
 
     async def _write(self, before: Queue, outcome: Settled, report: CommandReport) -> None:
         ended, placed, collected = outcome.ended, None, None

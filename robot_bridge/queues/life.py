@@ -65,6 +65,16 @@ def settled(queue: Queue, report: CommandReport, legs: int, *, skips: bool) -> S
     return Settled(queue.with_head(given_back(head, why)).paused(f"task {head.id}: {why}", step.by, step.at))
 
 
+def done_after_all(queue: Queue, legs: int) -> Queue | None:
+    """Return the queue with its head as the current task again, if its last command was the last of ``legs``.
+
+    A task may be given back just when its robot comes to its end: then it is not to be done once more.
+    """
+    head = queue.tasks[0]
+    last = dataclasses.replace(head, state=TaskState.CURRENT, leg=legs - 1)
+    return queue.with_head(last) if head.command == command_id(last) else None
+
+
 def failed(queue: Queue, reason: str, at: float, *, skips: bool) -> Settled:
     """Return what comes of a failure of the task at the head of a queue."""
     head = queue.tasks[0]

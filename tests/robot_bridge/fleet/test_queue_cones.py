@@ -11,6 +11,7 @@ from robot_bridge.errors import RefusedError
 from robot_bridge.messages import (
     AbortTask,
     CollectLayout,
+    MakeCurrent,
     QueueTask,
     SendPos,
     SetPath,
@@ -139,3 +140,18 @@ async def test_a_robot_is_sent_round_a_closed_road_without_its_queue_pausing(lin
     await line.reach(50.0, 40.0)
     assert await line.states() == {"a": "done", "b": "current"}
     assert await line.yard.fleet.driving.redirect("r2", SetPath(way), "gateway") is None
+
+
+async def test_a_cone_that_was_put_down_just_when_its_task_was_given_back_is_not_put_down_again(line):
+    await line.set(task("a", "place"), task("b"))
+    await line.yard.take()
+    revision = (await line.seen()).revision
+    await line.queues.make_current(MakeCurrent("r1", revision, "task-000b"), "Ada")
+    await line.yard.at(*PLACES["a"])
+    await line.go()
+    assert await line.states() == {"b": "current", "a": "waiting"}
+    await line.reach(*PLACES["b"])
+    assert await line.states() == {"a": "done", "b": "done"}
+    assert await line.sent() == [PLACES["a"], PLACES["b"]]
+    (cone,) = await placed(line)
+    assert (cone.task, cone.x, cone.y) == ("task-000a", *PLACES["a"])
