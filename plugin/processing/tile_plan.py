@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from qgis.core import QgsFeature, QgsProcessingAlgorithm, QgsProcessingContext
+from qgis.core import (
+    QgsFeature,
+    QgsProcessingAlgorithm,
+    QgsProcessingContext,
+    QgsProcessingOutputLayerDefinition,
+)
 
 from ..language import tr
 from ..sites.feature_filter import FeatureFilter
@@ -19,6 +25,7 @@ from .fleet_algorithm import Parameters
 from .map_profile import filter_in
 from .map_window import EXTENT, map_window
 from .tile_windows import Tile, TileSize, grid_tiles, route_tiles
+from .whole_file import check_target
 
 ROUTE, TILE_WIDTH, TILE_HEIGHT, OVERLAP = "ROUTE", "TILE_WIDTH", "TILE_HEIGHT", "OVERLAP"
 FOLDER, INDEX, SKIP_EMPTY = "OUTPUT", "INDEX", "SKIP_EMPTY"
@@ -65,7 +72,20 @@ def tile_plan_of(
     folder = Path(algorithm.parameterAsFileOutput(parameters, FOLDER, context))
     if folder.exists() and not folder.is_dir():
         raise ParameterError(tr("OUTPUT {folder} is a file: choose a folder for the tiles.", folder=folder))
+    _check_index(parameters, folder)
     return TilePlan(**vars(plan), tiles=tiles, folder=folder)
+
+
+def _check_index(parameters: Parameters, folder: Path) -> None:
+    """Raise :class:`OutputError` for an index that cannot be written: it comes after the tiles are there."""
+    value = parameters.get(INDEX)
+    if isinstance(value, QgsProcessingOutputLayerDefinition):
+        value = value.sink.staticValue()
+    # Neither TEMPORARY_OUTPUT nor what begins with a provider, such as memory: or postgres:, is a file.
+    if isinstance(value, str) and Path(value).suffix and not re.match(r"\w{2,}:", value):
+        file = Path(value)
+        if folder != file.parent:
+            check_target(file, tr("The index"))
 
 
 def _routes(

@@ -11,7 +11,13 @@ from fleet_supervisor.plugin.processing.tile_windows import TileSize, area_of, g
 from fleet_supervisor.robot_bridge.robotmap.binary import decode
 from fleet_supervisor.robot_bridge.robotmap.model import Border
 from fleet_supervisor.robot_bridge.robotmap.text import read_text
-from qgis.core import QgsProcessingContext, QgsProcessingException, QgsProject, QgsVectorLayer
+from qgis.core import (
+    QgsProcessingContext,
+    QgsProcessingException,
+    QgsProcessingOutputLayerDefinition,
+    QgsProject,
+    QgsVectorLayer,
+)
 
 UTM = "EPSG:32633"
 EXTENT = "600000,600100,5100000,5100060"
@@ -212,6 +218,21 @@ def test_a_folder_that_cannot_be_written_is_named_and_nothing_is_left(tiles, wal
     (tmp_path / "file").write_text("")
     with pytest.raises(QgsProcessingException, match="is a file: choose a folder"):
         tiles(wall, EXTENT=EXTENT, OUTPUT=str(tmp_path / "file"))
+
+
+def test_an_index_that_cannot_be_written_leaves_no_tiles(tiles, wall, tmp_path):
+    for index in (
+        str(tmp_path / "nowhere" / "index.gpkg"),
+        QgsProcessingOutputLayerDefinition(str(tmp_path / "nowhere" / "index.gpkg")),
+    ):
+        with pytest.raises(QgsProcessingException, match=f"The index .*: there is no folder {tmp_path}"):
+            tiles(wall, EXTENT=EXTENT, INDEX=index)
+        assert not (tmp_path / "out").exists()
+
+
+def test_the_index_may_lie_among_the_tiles(tiles, wall, tmp_path):
+    tiles(wall, EXTENT=EXTENT, TILE_WIDTH=100, TILE_HEIGHT=100, INDEX=str(tmp_path / "out" / "index.gpkg"))
+    assert "index.gpkg" in names(tmp_path / "out")
 
 
 def test_the_choice_of_area_is_checked_before_anything_is_read(tiles, wall):
