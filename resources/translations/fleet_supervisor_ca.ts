@@ -6941,6 +6941,11 @@
             <translation>ROUTE: l'entitat {id} de {sourcename} no té lloc al SRC del recinte ({error}): corregiu-ne la geometria o el SRC.</translation>
         </message>
         <message>
+            <location filename="../../plugin/processing/tile_plan.py" />
+            <source>The index</source>
+            <translation>L'índex</translation>
+        </message>
+        <message>
             <location filename="../../plugin/processing/tile_windows.py" />
             <source>OVERLAP is {overlap} m: give 0 or more, and at most nine tenths of a tile's side.</source>
             <translation>OVERLAP és {overlap} m: doneu 0 o més, i com a màxim nou dècimes del costat d'una tessel·la.</translation>

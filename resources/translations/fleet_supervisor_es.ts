@@ -6941,6 +6941,11 @@
             <translation>ROUTE: el objeto {id} de {sourcename} no tiene lugar en el SRC del recinto ({error}): corrija su geometría o el SRC.</translation>
         </message>
         <message>
+            <location filename="../../plugin/processing/tile_plan.py" />
+            <source>The index</source>
+            <translation>El índice</translation>
+        </message>
+        <message>
             <location filename="../../plugin/processing/tile_windows.py" />
             <source>OVERLAP is {overlap} m: give 0 or more, and at most nine tenths of a tile's side.</source>
             <translation>OVERLAP es {overlap} m: dé 0 o más, y como máximo nueve décimas del lado de una tesela.</translation>

@@ -6937,6 +6937,11 @@
             <translation>ROUTE: {sourcename} {id}. elemének nincs helye a telephely vetületében ({error}): javítsa ki a geometriáját vagy a vetületet.</translation>
         </message>
         <message>
+            <location filename="../../plugin/processing/tile_plan.py" />
+            <source>The index</source>
+            <translation>Az index</translation>
+        </message>
+        <message>
             <location filename="../../plugin/processing/tile_windows.py" />
             <source>OVERLAP is {overlap} m: give 0 or more, and at most nine tenths of a tile's side.</source>
             <translation>OVERLAP értéke {overlap} m: adjon meg 0-t vagy többet, legfeljebb a csempe oldalának kilenctizedét.</translation>
