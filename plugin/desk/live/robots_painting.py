@@ -46,6 +46,7 @@ _LAYER = np.argsort(_UPWARDS).astype(np.uint16)
 STRIP = 16
 STRIPS = 4096
 """Pixels of a strip of the screen, and more strips than any screen has."""
+_TURNS = np.arange(HEADINGS)
 _CIRCLE = np.column_stack([f(np.arange(CORNERS) * 2 * np.pi / CORNERS) for f in (np.cos, np.sin)])
 
 
@@ -81,15 +82,16 @@ class RobotsPainter:
         robots, scene = placed.scene.robots, placed.scene
         size = next(size for most, size in SIZES if len(view.rows) <= most)
         known = np.isfinite(robots.theta.take(view.rows))
-        ahead = np.where(known, robots.v.take(view.rows) * VELOCITY_SECONDS, 0.0)
-        _velocities(painter, view, ahead, NOSE * size * self.magnification + SHORTEST_VELOCITY)
+        speed = robots.v.take(view.rows)
+        _velocities(painter, view, speed, known, NOSE * size * self.magnification + SHORTEST_VELOCITY)
         chosen = [scene.rows[name] for name in scene.chosen if name in scene.rows]
-        rings = np.full(len(chosen), OTHER_RING)
-        rings[-1:] = RING
-        marks.paint(painter, view.pixels[chosen], rings)
-        cells = np.where(known, _directions(view.metre), HEADINGS)
         layer = _LAYER.take(robots.state)
-        layer[chosen] += len(STATES)
+        if chosen:
+            rings = np.full(len(chosen), OTHER_RING)
+            rings[-1:] = RING
+            marks.paint(painter, view.pixels[chosen], rings)
+            layer[chosen] += len(STATES)
+        cells = np.where(known, _directions(view.metre), HEADINGS)
         self._paint_drawings(painter, view.there, cells, layer.take(view.rows), size)
 
     def _paint_drawings(
@@ -128,8 +130,9 @@ def _directions(way: Points) -> Rows:
     """Return which of the :data:`HEADINGS` (n, 2) ``way`` in pixels points in, clockwise from +x."""
     # Floats of half the size are exact enough, and numpy is several times as fast with them.
     x, y = way[:, 0].astype(np.float32), way[:, 1].astype(np.float32)
-    direction = np.rint(np.arctan2(y, x) * np.float32(HEADINGS / (2 * np.pi))).astype(np.intp)
-    return np.where(direction < 0, direction + HEADINGS, direction)
+    turns = np.rint(np.arctan2(y, x) * np.float32(HEADINGS / (2 * np.pi)))
+    # What is negative counts from the end.
+    return _TURNS.take(turns.astype(np.intp))
 
 
 def _from_the_top(layer: npt.NDArray[np.uint16], y: npt.NDArray[np.float64]) -> Rows:
@@ -138,8 +141,8 @@ def _from_the_top(layer: npt.NDArray[np.uint16], y: npt.NDArray[np.float64]) -> 
     Ten thousand robots painted here and there take half as long again: a screen's lines lie apart in memory.
     Within a strip they keep their order, so that those that overlap do not change places all the time.
     """
-    # np.clip takes twice as long.
-    strip = np.minimum(np.maximum(y * (1 / STRIP), 0), STRIPS - 1).astype(np.uint16)
+    # What reaches in from above is less than a strip off the screen: cut off, that is the first one.
+    strip = (y * (1 / STRIP)).astype(np.uint16)
     # numpy sorts numbers of 16 bits in a fifth of the time.
     return np.argsort(layer * np.uint16(STRIPS) + strip, kind="stable")
 
@@ -175,14 +178,24 @@ def paint_circles(
         painter.drawPolygon(outline)
 
 
-def _velocities(painter: QPainter, view: InView, metres: npt.NDArray[np.float64], shortest: float) -> None:
-    """Draw a line from each robot so many ``metres`` ahead, unless that is less than ``shortest`` pixels."""
+def _velocities(
+    painter: QPainter,
+    view: InView,
+    speed: npt.NDArray[np.float64],
+    known: npt.NDArray[np.bool_],
+    shortest: float,
+) -> None:
+    """Draw a line from each robot to where it will be soon, unless that is less than ``shortest`` pixels.
+
+    ``speed`` is in metres a second, ``known`` whether there is a heading.
+    """
     # What is NaN compares false.
-    long = np.flatnonzero(np.abs(metres) * view.scale > shortest)
+    long = np.flatnonzero(np.abs(speed) * view.scale > shortest / VELOCITY_SECONDS)
+    long = long[known[long]]
     if len(long) == 0 or len(long) > MOST_VELOCITIES:
         return
     start = view.there[long]
-    end = start + view.metre[long] * metres[long, None]
+    end = start + view.metre[long] * (speed[long, None] * VELOCITY_SECONDS)
     if len(long) > FINE_VELOCITIES:
         painter.setRenderHint(QPainter.RenderHint.Antialiasing, False)
         painter.strokePath(segments(start, end), _flat(pen(PAPER, 1.0)))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from itertools import accumulate, chain
 
@@ -15,6 +15,7 @@ from ..placement import Placement
 from .plans import Plan
 
 Points = npt.NDArray[np.float64]
+_NOWHERE: Points = np.empty((0, 2))
 
 
 @dataclass(frozen=True)
@@ -60,7 +61,7 @@ class Placer:
         self._placement: Placement | None = None
         self._plans: dict[Plan, Points] = {}
         self._outline: object = None
-        self._draft: Points = np.empty((0, 2))
+        self._draft = _NOWHERE
 
     def placed(self, scene: Scene, placement: Placement) -> PlacedScene:
         """Place everything.
@@ -125,5 +126,5 @@ def _spread(values: Points, rows: npt.NDArray[np.intp], count: int) -> Points:
     return out
 
 
-def _points(points: Iterable[Point]) -> Points:
-    return np.fromiter(chain.from_iterable(points), np.float64).reshape(-1, 2)
+def _points(points: Sequence[Point]) -> Points:
+    return np.fromiter(chain.from_iterable(points), np.float64).reshape(-1, 2) if points else _NOWHERE

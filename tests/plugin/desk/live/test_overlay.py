@@ -328,6 +328,16 @@ def test_speed_is_a_line_to_where_the_robot_will_be_soon(canvas, site):
     assert brightness(70, 50.35) == brightness(50, 50.35) == 255
 
 
+def test_a_robot_whose_heading_is_not_known_has_no_line_of_speed(canvas, site):
+    show(canvas, site, scene_of((60, 50, 0.0, RobotState.FRESH), v=0.0))
+    still = canvas.grab().toImage()
+    show(canvas, site, scene_of((60, 50, np.nan, RobotState.FRESH), v=4.0))
+    image = canvas.grab().toImage()
+    ahead = expected(canvas, site, 67.2, 50).round().astype(int)
+    around = [(ahead[0], ahead[1] + side) for side in (-2, -1, 0, 1, 2)]
+    assert [image.pixel(x, y) for x, y in around] == [still.pixel(x, y) for x, y in around]
+
+
 @pytest.mark.parametrize("crs", ["EPSG:32633", "EPSG:3857", "EPSG:4326"])
 def test_accuracy_is_a_circle_of_so_many_metres_in_any_crs(canvas, site, crs):
     show(canvas, site, scene_of((60, 50, 0.0, RobotState.FRESH), accuracy=20.0), crs)
