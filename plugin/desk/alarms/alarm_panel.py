@@ -40,7 +40,8 @@ class AlarmPanel(QWidget):
         self._view = QTableView()
         self._note = QLabel()
         self._log: AlarmLogDialog | None = None
-        self._set_up()
+        self._set_up_view()
+        self._lay_out()
         watch.changed.connect(self.refresh)
         watch.happened.connect(self._happened)
         self.refresh()
@@ -58,7 +59,7 @@ class AlarmPanel(QWidget):
         self._allow()
         self.counted.emit(new)
 
-    def _set_up(self) -> None:
+    def _set_up_view(self) -> None:
         view = self._view
         view.setObjectName("fleet_alarms")
         view.setModel(self._model)
@@ -75,9 +76,8 @@ class AlarmPanel(QWidget):
         view.horizontalHeader().setHighlightSections(False)
         view.doubleClicked.connect(lambda index: self._go(self._model.alarm_at(index.row())))
         view.selectionModel().selectionChanged.connect(self._allow)
-        self._note.setObjectName("fleet_alarm_note")
-        self._note.setWordWrap(True)
-        self._note.setTextFormat(Qt.TextFormat.PlainText)
+
+    def _buttons(self) -> QHBoxLayout:
         self._seen = _button(
             "fleet_acknowledge", tr("&Acknowledge"), tr("Say that you have seen the chosen alarms")
         )
@@ -96,12 +96,18 @@ class AlarmPanel(QWidget):
         buttons.setSpacing(4)
         for button in (self._seen, self._all, log, limits):
             buttons.addWidget(button)
+        return buttons
+
+    def _lay_out(self) -> None:
+        self._note.setObjectName("fleet_alarm_note")
+        self._note.setWordWrap(True)
+        self._note.setTextFormat(Qt.TextFormat.PlainText)
         rows = QVBoxLayout(self)
         rows.setContentsMargins(0, 2, 0, 0)
         rows.setSpacing(4)
-        rows.addWidget(view, 1)
+        rows.addWidget(self._view, 1)
         rows.addWidget(self._note)
-        rows.addLayout(buttons)
+        rows.addLayout(self._buttons())
 
     def show_log(self) -> None:
         """Open the log of this session."""

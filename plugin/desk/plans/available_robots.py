@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 from ....robot_bridge.messages import RobotState
 from ..picture import STATES, RobotArrays
-from .wanted_job import PlanSettings
+from .plan_settings import PlanSettings
 
 _IS_HERE = np.array([state in (RobotState.FRESH, RobotState.STALE) for state in STATES])
 Which = npt.NDArray[np.bool_]

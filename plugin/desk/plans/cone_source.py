@@ -23,7 +23,7 @@ from ....robot_bridge.sites.frame import SiteFrame
 from ...errors import FleetError
 from ...language import tr
 from ...processing.cone_layer import theta_of
-from .wanted_job import PlanSettings
+from .plan_settings import PlanSettings
 
 _NAMES = ("id", "name")
 

@@ -22,9 +22,9 @@ from ..desk import Desk
 from .available_robots import has_place, taking_part
 from .cone_source import ConeFacts, read_cones, read_stores
 from .draft import Draft
+from .plan_settings import PlanSettings, settings_in
 from .plan_task import PlanTask
 from .plan_ways import PlanWays
-from .wanted_job import PlanSettings, settings_in
 
 
 class PlanningError(FleetError):

@@ -32,11 +32,11 @@ from .driven_plan import DrivenPlan
 from .driving_bar import DrivingBar
 from .plan_layers import PlanLayers
 from .plan_rows import rows_of
+from .plan_settings import PlanSettings, keep_settings, settings_in
 from .plan_tree import PlanTree
 from .robots_form import RobotsForm
 from .sending_check import before_sending
 from .settings_form import SettingsForm
-from .wanted_job import PlanSettings, keep_settings, settings_in
 
 
 class PlanDock(ActionDock):

@@ -32,7 +32,7 @@ from ...sites.roles import KEEPOUT, ROAD_CENTRELINE, LayerExpressions, layers_wi
 from ...sites.site_crs import stated_crs
 from .clear_paths import ClearTravel
 from .keepout_edges import edges_through
-from .wanted_job import PlanSettings
+from .plan_settings import PlanSettings
 
 Floats = npt.NDArray[np.float64]
 

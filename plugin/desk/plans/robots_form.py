@@ -8,8 +8,8 @@ from qgis.PyQt.QtWidgets import QAbstractItemView, QHeaderView, QTableView, QWid
 from ...language import tr
 from ..desk import Desk
 from .available_robots import available
+from .plan_settings import PlanSettings
 from .robots_model import RobotsModel
-from .wanted_job import PlanSettings
 
 SHOWN = 6
 """Rows that are shown without scrolling."""

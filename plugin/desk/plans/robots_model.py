@@ -11,7 +11,7 @@ from qgis.PyQt.QtGui import QColor
 
 from ...language import tr
 from ..item_values import CHECKED, TO_THE_RIGHT, UNCHECKED, number_of
-from .wanted_job import PlanSettings, RobotSettings
+from .plan_settings import PlanSettings, RobotSettings
 
 HEADS = (tr("Robot"), tr("Carries"), tr("Aboard"), tr("m/s"), tr("Range"))
 _FIELDS = ("used", "capacity", "aboard", "speed", "range_m")

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 from ....robot_bridge.assignment.job import Robot
 from ....robot_bridge.assignment.plan import Plan
-from ....robot_bridge.messages import QueueState, TaskState
+from ....robot_bridge.messages import QueueReport, QueueState, RobotState, TaskState
 from ...language import tr
 from ..desk import Desk
 from ..state_words import ROBOT_STATES
@@ -54,47 +55,45 @@ def after_sending(desk: Desk, plan: Plan) -> list[str]:
 
 
 def _doubts(desk: Desk, robot: Robot) -> list[str]:
-    doubts = []
+    queue = desk.queues.get(robot.id)
+    return [*_doubts_of_place(desk, robot), *(_doubts_of_queue(queue) if queue is not None else ())]
+
+
+def _doubts_of_place(desk: Desk, robot: Robot) -> Iterator[str]:
+    """Yield whether the robot is elsewhere than where the plan begins, or away."""
     view = desk.picture.view(robot.id, desk.clock())
     if view is None or not view.has_pose:
-        doubts.append(tr("it is not known where {id} is", id=robot.id))
-    else:
-        away = math.hypot(view.report.x - robot.x, view.report.y - robot.y)
-        if away > MOVED:
-            doubts.append(
-                tr(
-                    "{id} is {away:.1f} m from where the plan begins: better plan anew",
-                    id=robot.id,
-                    away=away,
-                )
-            )
-        if view.state.value not in ("fresh", "stale"):
-            doubts.append(
-                tr(
-                    "{id} is {state}: it gets its queue when it is heard of again",
-                    id=robot.id,
-                    state=ROBOT_STATES[view.state],
-                )
-            )
-    queue = desk.queues.get(robot.id)
-    if queue is not None:
-        waiting = sum(task.state is not TaskState.CURRENT for task in queue.tasks)
-        if waiting:
-            doubts.append(
-                tr(
-                    "{waiting} tasks that wait in the queue of {id} are replaced",
-                    waiting=waiting,
-                    id=robot.id,
-                )
-            )
-        if any(task.state is TaskState.CURRENT for task in queue.tasks):
-            doubts.append(tr("{id} finishes first what it is doing", id=robot.id))
-        if queue.state is QueueState.PAUSED:
-            doubts.append(
-                tr(
-                    "the queue of {id} is paused ({reason}): it is resumed",
-                    id=robot.id,
-                    reason=queue.reason or tr("no reason"),
-                )
-            )
-    return doubts
+        yield tr("it is not known where {id} is", id=robot.id)
+        return
+    away = math.hypot(view.report.x - robot.x, view.report.y - robot.y)
+    if away > MOVED:
+        yield tr(
+            "{id} is {away:.1f} m from where the plan begins: better plan anew",
+            id=robot.id,
+            away=away,
+        )
+    if view.state not in (RobotState.FRESH, RobotState.STALE):
+        yield tr(
+            "{id} is {state}: it gets its queue when it is heard of again",
+            id=robot.id,
+            state=ROBOT_STATES[view.state],
+        )
+
+
+def _doubts_of_queue(queue: QueueReport) -> Iterator[str]:
+    """Yield what becomes of the tasks that are in the robot's queue already."""
+    waiting = sum(task.state is not TaskState.CURRENT for task in queue.tasks)
+    if waiting:
+        yield tr(
+            "{waiting} tasks that wait in the queue of {id} are replaced",
+            waiting=waiting,
+            id=queue.robot,
+        )
+    if waiting < len(queue.tasks):
+        yield tr("{id} finishes first what it is doing", id=queue.robot)
+    if queue.state is QueueState.PAUSED:
+        yield tr(
+            "the queue of {id} is paused ({reason}): it is resumed",
+            id=queue.robot,
+            reason=queue.reason or tr("no reason"),
+        )

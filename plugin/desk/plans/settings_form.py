@@ -22,7 +22,7 @@ from ....robot_bridge.assignment.scheduling import BALANCED, LEAST_DISTANCE
 from ...language import tr
 from ..cone_store import MARK
 from .cone_source import point_layers
-from .wanted_job import PlanSettings
+from .plan_settings import PlanSettings
 
 OBJECTIVES = {BALANCED: tr("done as early as possible"), LEAST_DISTANCE: tr("fewest metres")}
 FINISHES = {STAY: tr("stay where they are"), TO_STORE: tr("drive to a store"), TO_START: tr("drive back")}

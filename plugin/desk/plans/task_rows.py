@@ -42,20 +42,19 @@ def tasks_of(
     staying = [one for one in plan.robots if not one.lost]
     ids = {one.robot.id: [new_id() for _ in one.stops] for one in staying}
     stages = {target.id: target.stage for target in plan.targets}
-    staged = [
-        (one.robot.id, stages[stop.id], task)
-        for one in staying
-        for stop, task in zip(one.stops, ids[one.robot.id], strict=True)
-        if stop.is_target
-    ]
-    now = [under_way[one.robot.id] for one in staying if under_way and one.robot.id in under_way]
-    staged += [(one.robot, stages[one.stop.id], one.task) for one in now if one.stop.is_target]
+    staged: dict[int, list[tuple[str, str]]] = {}
+    for one in staying:
+        sent = list(zip(one.stops, ids[one.robot.id], strict=True))
+        now = (under_way or {}).get(one.robot.id)
+        if now is not None:
+            sent.append((now.stop, now.task))
+        for stop, task in sent:
+            if stop.is_target:
+                staged.setdefault(stages[stop.id], []).append((one.robot.id, task))
 
     def after(robot: str, stop: Stop) -> list[str] | None:
-        if not stop.is_target:
-            return None
-        before = [task for by, stage, task in staged if by != robot and stage < stages[stop.id]]
-        return before or None
+        lower = [stage for stage in sorted(staged) if stop.is_target and stage < stages[stop.id]]
+        return [task for stage in lower for by, task in staged[stage] if by != robot] or None
 
     return {
         one.robot.id: [

@@ -38,40 +38,11 @@ class RobotPanel(QWidget):
         super().__init__(parent)
         self._desk = desk
         self.table = RobotTable(desk)
-        self._search = QgsFilterLineEdit()
-        self._search.setObjectName("fleet_robot_search")
-        self._search.setShowSearchIcon(True)
-        self._search.setPlaceholderText(tr("Search robots"))
-        self._search.setToolTip(tr("Name, state, task or link; several words have to be there all"))
-        self._which = QComboBox()
-        self._which.setObjectName("fleet_robot_filter")
-        self._which.addItems([WHICH[which] for which in Which])
-        self._which.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
-        self._which.setMinimumContentsLength(11)
-        self._count = QLabel()
-        self._count.setObjectName("fleet_robot_count")
-        # A panel that grew with each digit would move the map.
-        self._count.setMinimumWidth(self._count.fontMetrics().horizontalAdvance("10000"))
-        self._count.setAlignment(Qt.AlignmentFlag.AlignCenter)
-        self._columns = QToolButton()
-        self._columns.setObjectName("fleet_robot_columns")
-        self._columns.setText(tr("Columns"))
-        self._columns.setToolTip(tr("Which columns are shown, and in which CRS positions are"))
-        self._columns.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
-        self._columns.setMenu(QMenu(self._columns))
-        self._columns.menu().aboutToShow.connect(self._fill_menu)
-        head = QHBoxLayout()
-        head.setSpacing(4)
-        head.addWidget(self._search, 1)
-        head.addWidget(self._which)
-        head.addWidget(self._count)
-        head.addWidget(self._columns)
-        self._count.setSizePolicy(QSizePolicy.Policy.Minimum, QSizePolicy.Policy.Preferred)
-        rows = QVBoxLayout(self)
-        rows.setContentsMargins(0, 0, 0, 0)
-        rows.setSpacing(4)
-        rows.addLayout(head)
-        rows.addWidget(self.table, 1)
+        self._search = _search_field()
+        self._which = _choice_of_robots()
+        self._count = _counter()
+        self._columns = self._columns_button()
+        self._lay_out()
         self._search.textChanged.connect(self._narrow)
         self._which.currentIndexChanged.connect(self._narrow)
         self.table.refreshed.connect(self._show_count)
@@ -79,6 +50,29 @@ class RobotPanel(QWidget):
     def mark_troubled(self, robots: set[str]) -> None:
         """Say which robots have alarms."""
         self.table.robots.troubled = robots
+
+    def _columns_button(self) -> QToolButton:
+        button = QToolButton()
+        button.setObjectName("fleet_robot_columns")
+        button.setText(tr("Columns"))
+        button.setToolTip(tr("Which columns are shown, and in which CRS positions are"))
+        button.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
+        button.setMenu(QMenu(button))
+        button.menu().aboutToShow.connect(self._fill_menu)
+        return button
+
+    def _lay_out(self) -> None:
+        head = QHBoxLayout()
+        head.setSpacing(4)
+        head.addWidget(self._search, 1)
+        head.addWidget(self._which)
+        head.addWidget(self._count)
+        head.addWidget(self._columns)
+        rows = QVBoxLayout(self)
+        rows.setContentsMargins(0, 0, 0, 0)
+        rows.setSpacing(4)
+        rows.addLayout(head)
+        rows.addWidget(self.table, 1)
 
     def _narrow(self, *_what: object) -> None:
         self.table.robots.text = self._search.text()
@@ -127,3 +121,31 @@ class RobotPanel(QWidget):
         dialog.setCrs(self.table.positions.crs)
         if dialog.exec():
             self._choose(dialog.crs())
+
+
+def _search_field() -> QgsFilterLineEdit:
+    field = QgsFilterLineEdit()
+    field.setObjectName("fleet_robot_search")
+    field.setShowSearchIcon(True)
+    field.setPlaceholderText(tr("Search robots"))
+    field.setToolTip(tr("Name, state, task or link; several words have to be there all"))
+    return field
+
+
+def _choice_of_robots() -> QComboBox:
+    box = QComboBox()
+    box.setObjectName("fleet_robot_filter")
+    box.addItems([WHICH[which] for which in Which])
+    box.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
+    box.setMinimumContentsLength(11)
+    return box
+
+
+def _counter() -> QLabel:
+    label = QLabel()
+    label.setObjectName("fleet_robot_count")
+    # A panel that grew with each digit would move the map.
+    label.setMinimumWidth(label.fontMetrics().horizontalAdvance("10000"))
+    label.setAlignment(Qt.AlignmentFlag.AlignCenter)
+    label.setSizePolicy(QSizePolicy.Policy.Minimum, QSizePolicy.Policy.Preferred)
+    return label

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 from fleet_supervisor.plugin.desk.plans import plan_ways
+from fleet_supervisor.plugin.desk.plans.plan_settings import PlanSettings
 from fleet_supervisor.plugin.desk.plans.plan_ways import PlanWays
-from fleet_supervisor.plugin.desk.plans.wanted_job import PlanSettings
 from fleet_supervisor.plugin.sites.roles import ROAD_CENTRELINE, set_role
 from fleet_supervisor.robot_bridge.assignment.errors import CancelledError
 from fleet_supervisor.robot_bridge.assignment.job import STAY, Job, Robot, Target

@@ -7,8 +7,8 @@ from types import SimpleNamespace
 
 import pytest
 from fleet_supervisor.plugin.desk.picture import RobotPicture
+from fleet_supervisor.plugin.desk.plans.plan_settings import PlanSettings
 from fleet_supervisor.plugin.desk.plans.robots_form import SHOWN, RobotsForm
-from fleet_supervisor.plugin.desk.plans.wanted_job import PlanSettings
 from fleet_supervisor.plugin.wire.position_rows import sightings
 from fleet_supervisor.robot_bridge.messages import RobotState, to_json
 from qgis.PyQt.QtCore import Qt

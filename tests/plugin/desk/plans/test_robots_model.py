@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import pytest
+from fleet_supervisor.plugin.desk.plans.plan_settings import PlanSettings, RobotSettings
 from fleet_supervisor.plugin.desk.plans.robots_model import RobotsModel
-from fleet_supervisor.plugin.desk.plans.wanted_job import PlanSettings, RobotSettings
 from qgis.PyQt.QtCore import Qt
 
 USED, CARRIES, SPEED = 0, 1, 3

@@ -6,7 +6,7 @@ import math
 from dataclasses import replace
 
 import pytest
-from fleet_supervisor.plugin.desk.plans.wanted_job import (
+from fleet_supervisor.plugin.desk.plans.plan_settings import (
     KEY,
     SCOPE,
     PlanSettings,
