@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 from fleet_supervisor.plugin.processing.provider import FleetProvider
 from qgis.core import QgsApplication
 
@@ -32,3 +34,26 @@ def test_help_is_legible_in_dark_themes(qgis_app):
     helps = [algorithm.shortHelpString() for algorithm in provider.algorithms()]
     assert any("<strong>" in text for text in helps)
     assert not any("<b>" in text for text in helps)
+
+
+def documented_calls(root):
+    """Yield the file, the algorithm and the names of its parameters for each command in guides and help."""
+    files = [
+        root / "README.md",
+        *(root / "docs").glob("*.md"),
+        *(root / "plugin" / "processing").glob("*.py"),
+    ]
+    for file in files:
+        text = re.sub(r"\\+\n\s*", " ", file.read_text(encoding="utf-8"))
+        for algorithm, words in re.findall(r"run fleet:(\w+)[^\n]*? -- ([^\n]+)", text):
+            yield file.name, algorithm, re.findall(r'(?:^|[\s"])([A-Z][A-Z_]+)=', words)
+
+
+def test_every_documented_command_has_parameters_that_there_are(qgis_app, root):
+    provider = FleetProvider()
+    provider.loadAlgorithms()
+    calls = list(documented_calls(root))
+    assert len({algorithm for _, algorithm, _ in calls}) > 10
+    for file, algorithm, names in calls:
+        known = {definition.name() for definition in provider.algorithm(algorithm).parameterDefinitions()}
+        assert set(names) <= known, f"{file}: fleet:{algorithm}"
