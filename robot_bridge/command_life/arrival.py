@@ -122,7 +122,9 @@ class PathArrival:
         """Return how many metres of path ahead the robot may be since its last pose."""
         last, self._last = self._last or pose, pose
         reach = LOOK_AHEAD + LOOK_AHEAD_TIME * max(abs(pose.v), abs(last.v))
-        return math.inf if _apart(pose, last) > reach else reach
+        moved = _apart(pose, last)
+        # Round a corner the path is longer than the way as the crow flies.
+        return math.inf if moved > reach else max(reach, LOOK_AHEAD + 2 * moved)
 
 
 @dataclass

@@ -96,6 +96,13 @@ def test_a_path_that_ends_beside_its_beginning_is_not_reached_by_a_robot_that_ca
     assert arrival.deviation(pose(0.0, 1.0)) is None
 
 
+def test_a_path_is_reached_by_a_robot_that_was_not_heard_round_its_last_corner():
+    arrival = judge(SetPath([(0.0, 0.0), (19.0, 0.0), (19.0, 10.0)]), TOLERANCE)
+    walk(arrival, [(0.0, 0.0), (12.0, 0.0)], v=4.0)
+    assert arrival.deviation(pose(12.0, 0.0, v=4.0)) is None
+    assert arrival.deviation(pose(19.0, 10.0)) == 0.0
+
+
 def test_a_path_that_ends_where_it_began_is_reached_once_driven():
     told, at_the_end = walk(PathArrival(SetPath(LOOP), TOLERANCE), LOOP)
     assert told is None
