@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from qgis.core import QgsProject, QgsVectorLayer
+from qgis.PyQt.QtGui import QColor
 
 from ...robot_bridge.sites.geopackage import GEOPACKAGE_FILE
 from ...robot_bridge.sites.layers import CENTRELINES, KEEPOUTS, OBSTACLES, SURFACES
@@ -26,6 +27,8 @@ from .roles import (
     layers_with_role,
 )
 
+PLAIN = "#78808a"
+"""The colour of a layer that has no style of its own: none that warns."""
 AGAIN = tr("Publish the site again.")
 STYLES = Path(__file__).parents[2] / "resources" / "styles"
 
@@ -126,6 +129,9 @@ def load_site(folder: Path, project: QgsProject) -> LoadedSite:
             keep_setup(layer, part.setup)
         if part.style:
             layer.loadNamedStyle(str(STYLES / part.style))
+        else:
+            # Of whatever kind its shapes are; QGIS would choose a colour by chance, red as well.
+            layer.renderer().symbol().setColor(QColor(PLAIN))
         project.addMapLayer(layer, False)
         group.addLayer(layer)
     titles = [part.title for part in PARTS if part.setup.role in taken]

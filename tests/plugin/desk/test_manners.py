@@ -13,6 +13,7 @@ from fleet_supervisor.plugin.help.topics import ACCOUNTS, CONNECTIONS, OPTIONS, 
 from fleet_supervisor.plugin.locator.robot_filter import RobotFilter, ranked
 from fleet_supervisor.plugin.locator.robot_locator import PREFIX_KEY
 from fleet_supervisor.plugin.settings.preferences import Preferences, read_preferences, write_preferences
+from fleet_supervisor.plugin.sites.published_layers import PLAIN
 from fleet_supervisor.plugin.supervisor import FleetSupervisor
 from qgis.core import (
     QgsApplication,
@@ -162,6 +163,7 @@ def test_a_published_site_that_is_dropped_is_loaded_with_roles_and_styles(plugin
     assert all(layer.isValid() and layer.featureCount() > 0 for layer in layers.values())
     assert layers["Keepouts"].customProperty("fleet/role") == "keepout"
     assert layers["Road surfaces"].renderer().type() == "categorizedSymbol"
+    assert layers["Obstacles"].renderer().symbol().color().name() == PLAIN
     group = QgsProject.instance().layerTreeRoot().findGroup("Fleet")
     assert [child.name() for child in group.children()] == ["Sample proving ground and campus"]
     assert iface.texts() == ["Fleet Supervisor: Sample proving ground and campus: 4 layers loaded."]
