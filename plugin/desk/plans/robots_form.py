@@ -13,6 +13,10 @@ from .robots_model import RobotsModel
 
 SHOWN = 6
 """Rows that are shown without scrolling."""
+WIDEST = ("", "100", "100", "0.05", "10000")
+"""What each column has room for, if its head needs less."""
+BESIDE_TEXT = 10
+"""Pixels at the edges of a cell."""
 
 
 class RobotsForm(QTableView):
@@ -49,12 +53,15 @@ class RobotsForm(QTableView):
             self._fit_height()
 
     def _fit_columns(self) -> None:
-        """Give the columns of numbers the width of their heads: asked for their contents, a thousand robots
-        would be measured at each change of one."""
+        """Give the columns of numbers a width for good: fitted to their contents, a thousand robots would be
+        measured at each change of one."""
         heads = self.horizontalHeader()
         heads.setSectionResizeMode(QHeaderView.ResizeMode.Fixed)
         heads.setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)
-        widths = [heads.sectionSizeHint(column) for column in range(heads.count())]
+        widths = [
+            max(heads.sectionSizeHint(column), self.fontMetrics().horizontalAdvance(widest) + BESIDE_TEXT)
+            for column, widest in enumerate(WIDEST)
+        ]
         for column, width in enumerate(widths):
             heads.resizeSection(column, width)
         self.setMinimumWidth(sum(widths) + 2 * self.frameWidth())

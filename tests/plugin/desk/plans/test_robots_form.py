@@ -77,3 +77,10 @@ def test_what_is_being_typed_stays_while_other_robots_come_and_go(form, show, ma
     QTest.keyClick(editor, Qt.Key.Key_Return)
     wait(lambda: edited, 5, "what was typed")
     assert edited == [("r1", 12)]
+
+
+def test_no_number_is_cut_off(form, show, make_robot):
+    show(make_robot("r1"))
+    for column, text in enumerate(("24", "24", "0.65", "12500"), CARRIES):
+        form.model().setData(form.model().index(0, column), text)
+        assert form.columnWidth(column) >= form.sizeHintForColumn(column), text
