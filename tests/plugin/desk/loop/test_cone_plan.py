@@ -41,11 +41,11 @@ class Planner:
         return next(layer for layer in layers if layer.customProperty(MARK))
 
     def set_robots(self, carries, aboard, speed, count=3):
-        form = self.dock.robots
-        self.operator.wait("robots in the form", lambda: form.rowCount() == count, 10)
-        for row in range(form.rowCount()):
+        robots = self.dock.robots.model()
+        self.operator.wait("robots in the form", lambda: robots.rowCount() == count, 10)
+        for row in range(robots.rowCount()):
             for column, value in enumerate((carries, aboard, speed), 1):
-                form.item(row, column).setText(str(value))
+                robots.setData(robots.index(row, column), str(value))
 
     def press(self, name):
         button = self.dock.findChild(QPushButton, name)
