@@ -6,7 +6,7 @@ import json
 from dataclasses import dataclass
 from pathlib import Path
 
-from qgis.core import QgsProject, QgsVectorLayer
+from qgis.core import QgsProject, QgsSingleSymbolRenderer, QgsVectorLayer
 from qgis.PyQt.QtGui import QColor
 
 from ...robot_bridge.sites.geopackage import GEOPACKAGE_FILE
@@ -129,9 +129,9 @@ def load_site(folder: Path, project: QgsProject) -> LoadedSite:
             keep_setup(layer, part.setup)
         if part.style:
             layer.loadNamedStyle(str(STYLES / part.style))
-        else:
+        elif isinstance(renderer := layer.renderer(), QgsSingleSymbolRenderer):
             # Of whatever kind its shapes are; QGIS would choose a colour by chance, red as well.
-            layer.renderer().symbol().setColor(QColor(PLAIN))
+            renderer.symbol().setColor(QColor(PLAIN))
         project.addMapLayer(layer, False)
         group.addLayer(layer)
     titles = [part.title for part in PARTS if part.setup.role in taken]
