@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from contextlib import suppress
 from pathlib import Path
+from uuid import uuid4
 
 from ..errors import FleetError
 from ..language import tr
@@ -36,7 +37,8 @@ def write_whole(target: Path, content: bytes, what: str = tr("The robot map")) -
     """
     check_target(target, what)
     file = Path(os.path.realpath(target))
-    part = file.with_name(f".{file.name}.{os.getpid()}.part")
+    # Not from the file's own name, which may be as long as names may be.
+    part = file.with_name(f".{uuid4().hex}.part")
     try:
         part.write_bytes(content)
         part.replace(file)

@@ -63,3 +63,9 @@ def test_a_folder_that_may_not_be_written_to_is_named(tmp_path, monkeypatch):
 def test_a_folder_that_is_not_there_is_named(tmp_path):
     with pytest.raises(OutputError, match=f"there is no folder {tmp_path / 'maps'}"):
         check_target(tmp_path / "maps" / "map.txt", "The map")
+
+
+def test_a_name_may_be_as_long_as_names_may_be(tmp_path):
+    target = tmp_path / ("ő" * 125 + ".txt")
+    write_whole(target, b"a map")
+    assert list(tmp_path.iterdir()) == [target]
