@@ -11,6 +11,7 @@ from qgis.PyQt.QtWidgets import (
     QAbstractScrollArea,
     QApplication,
     QComboBox,
+    QHeaderView,
     QLabel,
     QStyle,
     QTableView,
@@ -78,11 +79,18 @@ def _cut_cells(table: QTableView) -> Iterator[str]:
         for column in range(model.columnCount()):
             index, width = model.index(row, column), table.columnWidth(column)
             text = str(index.data() or "")
+            if _gives_way(table, column) and text in str(index.data(Qt.ItemDataRole.ToolTipRole) or ""):
+                continue
             wanted = table.fontMetrics().horizontalAdvance(text) + beside if text else 0
             if index.data(Qt.ItemDataRole.DecorationRole) is not None:
                 wanted += table.style().pixelMetric(QStyle.PixelMetric.PM_SmallIconSize) + beside
             if 0 < width < wanted:
                 yield f"the cell {text!r} does not fit into {width} px, it takes {wanted} px"
+
+
+def _gives_way(table: QTableView, column: int) -> bool:
+    """Tell whether a column takes what the others leave; what it cuts its tool tip has to say."""
+    return table.horizontalHeader().sectionResizeMode(column) == QHeaderView.ResizeMode.Stretch
 
 
 def _scrolls(widget: QWidget) -> bool:

@@ -15,8 +15,9 @@ from qgis.core import (
     QgsPointXY,
     QgsProject,
     QgsTemporalNavigationObject,
+    QgsVectorLayer,
 )
-from qgis.PyQt.QtCore import QObject, QPoint, QRect
+from qgis.PyQt.QtCore import QModelIndex, QObject, QPoint, QRect, Qt
 from qgis.PyQt.QtNetwork import QLocalServer, QLocalSocket
 from qgis.PyQt.QtWidgets import (
     QAbstractButton,
@@ -39,6 +40,8 @@ PLUGIN = "fleet_supervisor"
 PYTHON = "Python"
 """What the tags of QGIS's messages on exceptions begin with."""
 
+DROPPED = (Qt.CursorShape.DragCopyCursor, Qt.CursorShape.DragMoveCursor, Qt.CursorShape.DragLinkCursor)
+
 
 class Reporter(QObject):
     """Answers questions on a local socket, a JSON object on each line: ``answer`` or ``error``."""
@@ -53,12 +56,15 @@ class Reporter(QObject):
             "widget": _widget,
             "entry": _entry,
             "tab": _tab,
-            "cell": _cell,
+            "row": _row,
             "panel": _panel,
             "place": _place,
             "desk": _desk,
+            "layers": _layers,
             "map": _map,
+            "labels": _labels,
             "time": _time,
+            "drag": _drag,
             "out_of_sight": what_is_out_of_sight,
             "complaints": lambda: self._complaints,
         }
@@ -86,9 +92,20 @@ class Reporter(QObject):
 
 
 def _window() -> dict[str, Any]:
-    """The main window and the dialog over it, if any, by X's numbers for them."""
-    dialog = QApplication.activeModalWidget()
-    return {"main": int(iface.mainWindow().winId()), "dialog": int(dialog.winId()) if dialog else None}
+    """The main window and the one over it, if any, by X's numbers for them."""
+    over = _over()
+    return {"main": int(iface.mainWindow().winId()), "dialog": int(over.winId()) if over else None}
+
+
+def _over() -> QWidget | None:
+    """Return the dialog that blocks the others, or else a window beside the main one."""
+    kinds = (Qt.WindowType.Dialog, Qt.WindowType.Window)
+    beside = (
+        window
+        for window in QApplication.topLevelWidgets()
+        if window.isVisible() and window.windowType() in kinds and window is not iface.mainWindow()
+    )
+    return QApplication.activeModalWidget() or next(beside, None)
 
 
 def _widget(name: str) -> dict[str, Any]:
@@ -96,7 +113,9 @@ def _widget(name: str) -> dict[str, Any]:
     found = [widget for widget in QApplication.allWidgets() if widget.objectName() == name]
     if not found:
         return {"there": False, "visible": False}
-    widget = next((each for each in found if each.isVisible()), found[0])
+    over = QApplication.activeModalWidget()
+    # Of several, one that can be seen, in a dialog rather than beneath it.
+    widget = max(found, key=lambda each: (each.isVisible(), over is not None and over.isAncestorOf(each)))
     if not widget.isVisible():
         return {"there": True, "visible": False}
     seen = widget.visibleRegion().boundingRect()
@@ -109,7 +128,7 @@ def _widget(name: str) -> dict[str, Any]:
         "rect": _on_screen(widget, seen),
         "checked": _said(widget, "isChecked"),
         "focus": widget.hasFocus(),
-        "text": _said(widget, "text") or _said(widget, "currentText") or "",
+        "text": _text(widget),
     }
 
 
@@ -137,16 +156,31 @@ def _tab_of(tabs: QTabBar, text: str) -> list[int] | None:
     return None
 
 
-def _cell(name: str, text: str) -> list[int] | None:
-    """Where the first row of a table, tree or list is whose first column reads ``text``."""
-    view = _find(QAbstractItemView, name)
-    model = view.model()
-    for row in range(model.rowCount()):
-        index = model.index(row, 0)
-        if index.data() == text:
-            seen = view.visualRect(index) & view.viewport().rect()
-            return _on_screen(view.viewport(), seen) if not seen.isEmpty() else None
-    return None
+def _row(name: str, path: list[str]) -> list[int] | None:
+    """Where a row of a table, tree or list is, by what the first column reads from the root on.
+
+    ``name`` is the view's object name, or that of what holds it: QGIS names not all of its views.
+    """
+    view = _view(name)
+    if view is None:
+        return None
+    index = QModelIndex()
+    for text in path:
+        rows = range(view.model().rowCount(index))
+        children = (view.model().index(row, 0, index) for row in rows)
+        found = next((child for child in children if str(child.data()).strip() == text), None)
+        if found is None:
+            return None
+        index = found
+    seen = view.visualRect(index) & view.viewport().rect()
+    return _on_screen(view.viewport(), seen) if not seen.isEmpty() else None
+
+
+def _view(name: str) -> QAbstractItemView | None:
+    """Return the view that is called so or lies in what is called so, None while it is not to be seen."""
+    holder = _find(QWidget, name)
+    views = [holder, *holder.findChildren(QAbstractItemView)]
+    return next((one for one in views if isinstance(one, QAbstractItemView) and one.isVisible()), None)
 
 
 def _panel(name: str) -> dict[str, Any]:
@@ -172,10 +206,27 @@ def _place(x: float, y: float, crs: str) -> dict[str, Any]:
 
 
 def _map() -> dict[str, Any]:
-    """How the map stands: whether it is being drawn, and how many times smaller than the world it is."""
+    """The map: whether it is there and being drawn, how many times smaller than the world, and where."""
     canvas = iface.mapCanvas()
     bars = iface.mainWindow().statusBar().findChildren(QProgressBar)
-    return {"drawing": canvas.isDrawing() or any(bar.isVisible() for bar in bars), "scale": canvas.scale()}
+    return {
+        "visible": canvas.isVisible(),
+        "drawing": canvas.isDrawing() or any(bar.isVisible() for bar in bars),
+        "scale": canvas.scale(),
+        "rect": _on_screen(canvas, canvas.rect()),
+    }
+
+
+def _labels() -> list[str]:
+    """What the labels on the map read, those of the live map left out."""
+    results = iface.mapCanvas().labelingResults()
+    return [label.labelText for label in results.allLabels()] if results is not None else []
+
+
+def _drag() -> bool:
+    """Whether something is dragged, over something that takes it: the mouse's picture says so."""
+    cursor = QApplication.overrideCursor()
+    return cursor is not None and cursor.shape() in DROPPED
 
 
 def _time() -> dict[str, Any]:
@@ -184,6 +235,12 @@ def _time() -> dict[str, Any]:
     begin = controller.dateTimeRangeForFrameNumber(controller.currentFrameNumber()).begin()
     plays = controller.animationState() != QgsTemporalNavigationObject.AnimationState.Idle
     return {"at": begin.toMSecsSinceEpoch() / 1000.0, "plays": plays}
+
+
+def _layers() -> dict[str, int]:
+    """The vector layers of the project by name, with how many of their features are selected."""
+    layers = QgsProject.instance().mapLayers().values()
+    return {one.name(): one.selectedFeatureCount() for one in layers if isinstance(one, QgsVectorLayer)}
 
 
 def _desk() -> dict[str, Any]:
@@ -201,11 +258,17 @@ def _desk() -> dict[str, Any]:
 
 
 def _find(kind: type, name: str):
-    found = [widget for widget in QApplication.allWidgets() if widget.objectName() == name]
-    found = [widget for widget in found if isinstance(widget, kind)]
+    """Return a widget by its object name; QGIS gives none to some, which are found by their C++ class."""
+    widgets = [widget for widget in QApplication.allWidgets() if isinstance(widget, kind)]
+    found = [widget for widget in widgets if name in (widget.objectName(), widget.metaObject().className())]
     if not found:
         raise NotHappenedError(f"the window has no {kind.__name__} named {name}")
     return next((widget for widget in found if widget.isVisible()), found[0])
+
+
+def _text(widget: QWidget) -> str:
+    """What a widget says, whatever kind it is."""
+    return next(filter(None, (_said(widget, ask) for ask in ("text", "currentText", "toPlainText"))), "")
 
 
 def _said(widget: QWidget, question: str) -> Any:

@@ -6,8 +6,6 @@ PYTHONPATH=scripts python -m pictures.supervisors [docs/images]
 from __future__ import annotations
 
 import shutil
-import subprocess
-import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterator
@@ -16,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from stage.errors import StageError
-from stage.fleet import start_gateway
+from stage.fleet import account, start_gateway
 from stage.picture import reduce_colours
 from stage.processes import Processes
 
@@ -55,13 +53,6 @@ def main() -> None:
         with connected(f"{address}/desk", tokens) as (desk, window):
             draw_sites(desk, window, folder / "sites.png")
             draw_accounts(desk, window, folder)
-
-
-def account(database: Path, *words: str) -> str:
-    """Do something to an account, and return what that prints."""
-    command = [sys.executable, "-m", "robot_bridge", "operators", *words]
-    command += ["--database", f"sqlite:///{database}"]
-    return subprocess.run(command, check=True, capture_output=True, text=True).stdout.strip()
 
 
 def publish(folder: Path) -> Path:

@@ -7,7 +7,7 @@ import json
 from collections.abc import Mapping
 from typing import Any
 
-from websockets.sync.client import connect
+from websockets.sync.client import ClientConnection, connect
 
 from .errors import StageError
 
@@ -15,21 +15,29 @@ TIMEOUT_S = 5.0
 HELLO = {"operator": "demo check"}
 
 
-def ask(address: str, *questions: tuple[str, Mapping[str, Any]]) -> list[dict[str, Any]]:
+def ask(address: str, *questions: tuple[str, Mapping[str, Any]], token: str = "") -> list[dict[str, Any]]:
     """Say hello to the gateway at ``address`` as an operator and return its answer to each question.
 
+    :param token: the operator's, where the gateway has accounts.
     :raises StageError: when it refuses one.
     """
-    with connect(f"{address}/desk", open_timeout=TIMEOUT_S, close_timeout=TIMEOUT_S) as wire:
+    with _wire(address, token) as wire:
         numbers = itertools.count(1)
         _answer(wire, next(numbers), "hello", HELLO)
         return [_answer(wire, next(numbers), method, params) for method, params in questions]
 
 
-def greet(address: str) -> dict[str, Any]:
+def greet(address: str, token: str = "") -> dict[str, Any]:
     """Return how the gateway at ``address`` answers an operator's hello: site, role, emergency stop."""
-    with connect(f"{address}/desk", open_timeout=TIMEOUT_S, close_timeout=TIMEOUT_S) as wire:
+    with _wire(address, token) as wire:
         return _answer(wire, 1, "hello", HELLO)
+
+
+def _wire(address: str, token: str) -> ClientConnection:
+    headers = {"Authorization": f"Bearer {token}"} if token else {}
+    return connect(
+        f"{address}/desk", open_timeout=TIMEOUT_S, close_timeout=TIMEOUT_S, additional_headers=headers
+    )
 
 
 def _answer(wire: Any, number: int, method: str, params: Mapping[str, Any]) -> dict[str, Any]:

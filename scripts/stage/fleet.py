@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import subprocess
 import sys
 from dataclasses import dataclass
 from pathlib import Path
@@ -60,3 +61,10 @@ def start_robots(processes: Processes, address: str, database: Path, speed: floa
             str(speed),
         ]
         processes.start(start.name, [sys.executable, "-m", "robot_bridge", *robot])
+
+
+def account(database: Path, *words: str) -> str:
+    """Do something to an operator's account, such as ``add Ada --role viewer``; return what that prints."""
+    command = [sys.executable, "-m", "robot_bridge", "operators", *words]
+    command += ["--database", f"sqlite:///{database}"]
+    return subprocess.run(command, check=True, capture_output=True, text=True).stdout.strip()

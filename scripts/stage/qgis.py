@@ -30,6 +30,9 @@ networkAndProxy\\networkTimeout=1000
 [fonts]
 downloadMissingFonts=false
 
+[auth]
+use_password_helper=false
+
 [UI]
 Customization\\enabled=false
 """
@@ -46,14 +49,16 @@ class Profile:
 
     :param link: link the repository instead of copying the plugin as a release holds it.
     :param greeted: the plugin has offered its tour already, as it does once in a profile.
+    :param theme: how QGIS looks, empty for the usual way.
     """
 
-    def __init__(self, folder: Path, *, link: bool, greeted: bool = True):
+    def __init__(self, folder: Path, *, link: bool, greeted: bool = True, theme: str = ""):
         self._folder = folder
         shutil.rmtree(folder, ignore_errors=True)
         profile = folder / "profiles" / "default"
         (profile / "QGIS").mkdir(parents=True)
-        (profile / "QGIS" / "QGIS3.ini").write_text(SETTINGS + (GREETED if greeted else ""), encoding="utf-8")
+        settings = SETTINGS + (f"UITheme={theme}\n" if theme else "") + (GREETED if greeted else "")
+        (profile / "QGIS" / "QGIS3.ini").write_text(settings, encoding="utf-8")
         (folder / "run").mkdir(mode=0o700)
         self.plugin = install(profile, link=link)
 

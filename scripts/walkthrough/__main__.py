@@ -1,35 +1,34 @@
-"""Work QGIS Desktop under Xvfb by mouse and keyboard, as an operator does: the tour, then a real fleet.
+"""Work QGIS Desktop under Xvfb by mouse and keyboard, as an operator does.
 
-PYTHONPATH=scripts python -m walkthrough [--pictures docs/images]
+PYTHONPATH=scripts python -m walkthrough [operator|qgis] [--pictures docs/images]
+
+The walk *operator* takes the tour and leads a fleet; *qgis* uses what the plugin adds to QGIS itself, in its
+dark theme. Without a name both are taken.
 """
 
 from __future__ import annotations
 
 import argparse
 import os
+import shutil
 import sys
 from pathlib import Path
 
 from plugin_files import ROOT
 from stage.errors import StageError
-from stage.fleet import SITE, start_gateway, start_robots
+from stage.fleet import SITE, account, start_gateway, start_robots
 from stage.processes import Processes, leave_on_signals
 from stage.qgis import Profile, virtual_screen
 from stage.session import follow, start_qgis
 
 from robot_bridge.sites.publication import read_site
 
-from .cone_target import send_cone
-from .connecting import connect
 from .film import Film
 from .gateway import Gateway
 from .operator_at_screen import OperatorAtScreen
-from .replay import play_again
-from .route import send_route
-from .scene import Scene
+from .scene import NAME, Scene
 from .screen import Screen
-from .stopping import stop_and_clear
-from .tour import take_tour
+from .walks import WALKS, Walk
 from .window import Window
 
 FOLDER = Path(os.environ.get("FLEET_WALKTHROUGH_FOLDER") or ROOT / "build" / "walkthrough")
@@ -39,28 +38,29 @@ SIZE = (1280, 800)
 SPEED = 2.5
 """m/s: fast enough that nobody waits long."""
 OPENING_S = 120.0
-ACTS = (take_tour, connect, send_cone, send_route, stop_and_clear, play_again)
 
 
-def run(pictures: Path) -> None:
+def run(walk: Walk, pictures: Path) -> None:
     """Play every act.
 
     :raises StageError: at the first step that does not happen, or does not look right.
     """
-    FOLDER.mkdir(parents=True, exist_ok=True)
+    database, home = FOLDER / "fleet.db", make_home()
     for old in FOLDER.glob("fleet.db*"):
         old.unlink()
     with Processes(FOLDER / "logs") as processes:
         display = virtual_screen(processes, *SIZE)
-        address = start_gateway(processes, FOLDER / "fleet.db")
-        start_robots(processes, address, FOLDER / "fleet.db", SPEED)
-        window = open_qgis(processes, display)
+        token = account(database, "add", NAME, "--role", "supervisor") if walk.accounts else ""
+        address = start_gateway(processes, database)
+        start_robots(processes, address, database, SPEED)
+        window = open_qgis(processes, display, walk, home)
         screen = Screen(display)
         operator = OperatorAtScreen(screen, window, read_site(SITE).frame)
         operator.take_the_screen()
-        scene = Scene(operator, Film(screen, operator, pictures), Gateway(address))
+        film = Film(screen, operator, pictures, walk.name)
+        scene = Scene(operator, film, Gateway(address, token), home)
         try:
-            for act in ACTS:
+            for act in walk.acts:
                 act(scene)
                 processes.require_running()
         except StageError:
@@ -69,28 +69,47 @@ def run(pictures: Path) -> None:
         window.close()
 
 
-def open_qgis(processes: Processes, display: str) -> Window:
+def make_home() -> Path:
+    """Make the operator's home folder, with a published site in it, and return it."""
+    home = FOLDER / "home"
+    shutil.rmtree(home, ignore_errors=True)
+    site = home / SITE.name
+    site.mkdir(parents=True)
+    (home / "Documents").mkdir()
+    for name in ("site.toml", "site.gpkg"):
+        shutil.copy(SITE / name, site)
+    return home
+
+
+def open_qgis(processes: Processes, display: str, walk: Walk, home: Path) -> Window:
     """Open QGIS with a new profile and return how to look at it."""
     plan = {"journal": str(FOLDER / "journal.jsonl"), "socket": str(FOLDER / "reporter")}
     Path(plan["socket"]).unlink(missing_ok=True)
-    profile = Profile(FOLDER / "profile", link=False, greeted=False)
+    profile = Profile(FOLDER / "profile", link=False, greeted=walk.greeted, theme=walk.theme)
     # The practice fleet of the tour is looked for there.
     path = os.pathsep.join((str(Path(sys.executable).parent), os.environ["PATH"]))
-    qgis = start_qgis(processes, profile, "reporter_session.py", plan, display, path=path)
+    settings = {"HOME": str(home)}
+    qgis = start_qgis(processes, profile, "reporter_session.py", plan, display, path=path, settings=settings)
     next(follow(processes, qgis, Path(plan["journal"]), OPENING_S))
     return Window(Path(plan["socket"]))
 
 
 def main() -> int:
     parser = argparse.ArgumentParser(prog="walkthrough", description=__doc__.splitlines()[0])
+    names = [walk.name for walk in WALKS]
+    parser.add_argument("walks", nargs="*", metavar="walk", help=" or ".join(names))
     default = FOLDER / "pictures"
     parser.add_argument(
         "--pictures", type=Path, default=default, metavar="FOLDER", help="where the pictures go"
     )
-    pictures = parser.parse_args().pictures.resolve()
+    arguments = parser.parse_args()
+    if unknown := set(arguments.walks) - set(names):
+        parser.error(f"there is no walk {', '.join(sorted(unknown))}; there are {' and '.join(names)}")
     leave_on_signals()
     try:
-        run(pictures)
+        for walk in WALKS:
+            if walk.name in (arguments.walks or names):
+                run(walk, arguments.pictures.resolve())
     except StageError as error:
         print(f"walkthrough: error: {error}\n(logs: {FOLDER / 'logs'}, screen: {FAILED})", file=sys.stderr)
         return 1

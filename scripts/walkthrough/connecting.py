@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from .scene import Scene
+from .scene import NAME, Scene
 
-NAME = "anna"
 ZOOM_AT = (23.5, 13.0)
 """Where the wheel is turned so that the robots and their roads fill the map; site frame, metres."""
 

@@ -8,17 +8,17 @@ from pathlib import Path
 from stage.errors import StageError
 
 from .operator_at_screen import OperatorAtScreen
-from .screen import Screen
+from .screen import Screen, keep
 
 
 class Film:
-    """Numbers its pictures, ``operator-01-NAME.png``, in ``folder``; those of an earlier film go."""
+    """Numbers its pictures, ``FILM-01-NAME.png``, in ``folder``; those of an earlier time go."""
 
-    def __init__(self, screen: Screen, operator: OperatorAtScreen, folder: Path):
-        self._screen, self._operator, self._folder = screen, operator, folder
+    def __init__(self, screen: Screen, operator: OperatorAtScreen, folder: Path, name: str):
+        self._screen, self._operator, self._folder, self._name = screen, operator, folder, name
         self._began = time.monotonic()
         self._shots = 0
-        for old in folder.glob("operator-*.png"):
+        for old in folder.glob(f"{name}-*.png"):
             old.unlink()
 
     def happened(self, text: str) -> None:
@@ -35,11 +35,14 @@ class Film:
         self._operator.keep_to_the_screen()
         if faults := [*self._operator.out_of_sight(), *self._operator.complaints()]:
             raise StageError(f"in the picture {name!r}: " + "; ".join(faults))
-        self._shots += 1
-        path = self._folder / f"operator-{self._shots:02d}-{name}.png"
-        self._screen.photograph(path)
+        path, seen = self._next(name), self._screen.look()
         while not self._operator.is_map_drawn():
             # QGIS began to draw again meanwhile, as it does each second for the live layers.
             self._operator.wait_for_map()
-            self._screen.photograph(path)
+            seen = self._screen.look()
+        keep(seen, path)
         self.happened(f"{text}: {path.name}")
+
+    def _next(self, name: str) -> Path:
+        self._shots += 1
+        return self._folder / f"{self._name}-{self._shots:02d}-{name}.png"

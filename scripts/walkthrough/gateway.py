@@ -14,13 +14,14 @@ Place = tuple[float, float]
 
 @dataclass(frozen=True)
 class Gateway:
-    """The gateway at ``address``, ``ws://host:port``."""
+    """The gateway at ``address``, ``ws://host:port``; ``token`` is an operator's, where it has accounts."""
 
     address: str
+    token: str = ""
 
     def place_of(self, robot: str) -> Place:
         """Return where a robot is."""
-        (positions,) = ask(self.address, ("get_positions", {}))
+        (positions,) = ask(self.address, ("get_positions", {}), token=self.token)
         found = next(each for each in positions["robots"] if each["robot"] == robot)
         return found["x"], found["y"]
 
@@ -29,7 +30,7 @@ class Gateway:
 
         :raises StageError: when it was given none.
         """
-        (answer,) = ask(self.address, ("get_commands", {}))
+        (answer,) = ask(self.address, ("get_commands", {}), token=self.token)
         mine = [each for each in answer["commands"] if each["robot"] == robot and each["op"] != "Abort"]
         if not mine:
             raise StageError(f"the gateway knows no command for {robot}")
@@ -43,4 +44,4 @@ class Gateway:
 
     def emergency(self) -> dict[str, Any]:
         """Return the emergency stop in force, or the last one."""
-        return dict(greet(self.address)["emergency"])
+        return dict(greet(self.address, self.token)["emergency"])

@@ -30,7 +30,7 @@ class OperatorAtScreen:
     """Knows the window by what it shows, and changes it by mouse and keyboard only."""
 
     def __init__(self, screen: Screen, window: Window, frame: SiteFrame):
-        self._screen, self._window, self._frame = screen, window, frame
+        self._screen, self._window, self.frame = screen, window, frame
 
     # --- looking ---
 
@@ -78,9 +78,26 @@ class OperatorAtScreen:
         """Look until the map has been drawn."""
         self.wait("drawing the map", self.is_map_drawn)
 
+    def wait_for_new_map(self) -> None:
+        """Look until there is a map in place of the welcome page, and it has been drawn."""
+        self.wait("the map being there", lambda: self._window.ask("map")["visible"])
+        self.wait_for_map()
+
+    def is_shown(self, place: Place) -> bool:
+        """Tell whether a place of the site is on the part of the map that is shown."""
+        return bool(self._where(place)["shown"])
+
     def is_map_drawn(self) -> bool:
         """Tell whether the map is drawn at this moment, to its end."""
         return not self._window.ask("map")["drawing"]
+
+    def layers(self) -> dict[str, int]:
+        """Return the project's vector layers, with how many of their features are selected."""
+        return dict(self._window.ask("layers"))
+
+    def labels(self) -> list[str]:
+        """Return the labels that are drawn on the map."""
+        return list(self._window.ask("labels"))
 
     def replayed(self) -> dict[str, Any]:
         """Return what QGIS's temporal controller shows, and whether it plays."""
@@ -109,10 +126,36 @@ class OperatorAtScreen:
         """Click a tab by what it begins with."""
         self._click_seen(f"the tab {text!r}", lambda: self._window.ask("tab", name=name, text=text))
 
-    def click_row(self, name: str, text: str) -> None:
-        """Click a row of a table by what it begins with."""
-        self._click_seen(
-            f"the row {text!r} of {name}", lambda: self._window.ask("cell", name=name, text=text)
+    def click_row(self, name: str, *path: str) -> None:
+        """Click a row of a table or tree by what its first column reads, from the root on."""
+        self._screen.click(_middle(self._row(name, *path)))
+
+    def drag_row_to_map(self, name: str, *path: str) -> None:
+        """Drag a row of a tree onto the map, and let go over its middle."""
+        start = _middle(self._row(name, *path))
+        end = _middle(self._window.ask("map")["rect"])
+        with self._screen.dragging(start, end):
+            self.wait("the map taking what is dragged", lambda: self._would_be_dropped(end))
+
+    def open_row(self, name: str, *path: str) -> None:
+        """Open a row of a tree by the keyboard, so that what is in it is to be seen."""
+        self.click_row(name, *path)
+        self._screen.press("Right")
+
+    def wait_for_row(self, name: str, *path: str) -> None:
+        """Look until a row is to be seen."""
+        self._row(name, *path)
+
+    def _would_be_dropped(self, at: Pixel) -> bool:
+        # QGIS asks what is under the mouse when that moves, and it moved before QGIS began to listen.
+        for x in (at[0] + 1, at[0]):
+            self._screen.move((x, at[1]))
+        return bool(self._window.ask("drag"))
+
+    def _row(self, name: str, *path: str) -> list[int]:
+        return self._at_rest(
+            f"the row {' > '.join(path)} of {name} being there",
+            lambda: self._window.ask("row", name=name, path=path),
         )
 
     def choose_from_menu(self, *entries: str) -> None:
@@ -129,7 +172,9 @@ class OperatorAtScreen:
 
     def widen_panel(self, name: str, width: int) -> None:
         """Drag the edge of a panel at the left of the map until it is ``width`` pixels wide."""
-        x, y, now, height = self._window.ask("panel", name=name)["rect"]
+        x, y, now, height = self._at_rest(
+            f"the panel {name}", lambda: self._window.ask("panel", name=name)["rect"]
+        )
         edge = (x + now + 2, y + height // 2)
         with self._screen.dragging(edge, (edge[0] + width - now, edge[1])):
             # Let go at once, QGIS would forget the last of the way.
@@ -163,6 +208,10 @@ class OperatorAtScreen:
         """Press a key, with others held down: ``F8``, ``Ctrl+Shift+Z``."""
         self._screen.press(keys)
 
+    def type(self, text: str) -> None:
+        """Type a text where the keyboard is."""
+        self._screen.type(text)
+
     def write(self, name: str, text: str) -> None:
         """Click a field and type ``text`` in place of what stands there."""
         self.click(name)
@@ -184,11 +233,18 @@ class OperatorAtScreen:
         self._screen.fill(self._window.ask("window")["main"])
 
     def wait_for_dialog(self, name: str) -> None:
-        """Look until a dialog is there, framed and with the keyboard."""
+        """Look until a dialog, or a part of one, is there: the dialog is framed and has the keyboard."""
         self.wait(f"the dialog {name}", lambda: self.widget(name)["visible"])
         dialog = self.wait("the dialog being over the window", lambda: self._window.ask("window")["dialog"])
         self._screen.frame(dialog)
         self._screen.focus(dialog)
+
+    def close_dialog(self) -> None:
+        """Close the window over the main one by Esc."""
+        over = self.wait("a window over the main one", lambda: self._window.ask("window")["dialog"])
+        self._screen.focus(over)
+        self._screen.press("Esc")
+        self.wait_for_no_dialog()
 
     def wait_for_no_dialog(self) -> None:
         """Look until no dialog is there; the QGIS window has the keyboard again."""
@@ -225,11 +281,14 @@ class OperatorAtScreen:
         return list(self.wait(what, same_again))
 
     def _pixel(self, place: Place) -> Pixel:
-        x, y = self._frame.to_crs(np.array([place]))[0].tolist()
-        found = self._window.ask("place", x=x, y=y, crs=self._frame.crs)
+        found = self._where(place)
         if not found["shown"]:
             raise StageError(f"the map does not show {place} (metres of the site), so it cannot be clicked")
         return found["at"][0], found["at"][1]
+
+    def _where(self, place: Place) -> dict[str, Any]:
+        x, y = self.frame.to_crs(np.array([place]))[0].tolist()
+        return dict(self._window.ask("place", x=x, y=y, crs=self.frame.crs))
 
 
 def _middle(rect: list[int]) -> Pixel:

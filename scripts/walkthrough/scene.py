@@ -2,22 +2,27 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from pathlib import Path
 
 from .film import Film
 from .gateway import Gateway
 from .operator_at_screen import OperatorAtScreen
 
+NAME = "anna"
+"""The operator's."""
 ROBOTS = ("r1", "r2", "r3")
 
 
 @dataclass(frozen=True)
 class Scene:
-    """One operator before one window on one gateway."""
+    """One operator with a ``home`` folder before one window on one gateway."""
 
     operator: OperatorAtScreen
     film: Film
     gateway: Gateway
+    home: Path
 
     def wait_until_live(self) -> None:
         """Look until the desk is connected and every robot is fresh."""
@@ -37,6 +42,10 @@ class Scene:
     def wait_for_selection(self, robot: str) -> None:
         """Look until that robot alone is selected."""
         self.operator.wait(f"{robot} being selected", lambda: self.operator.desk()["selected"] == [robot])
+
+    def distance(self, robot: str, other: str) -> float:
+        """Return the metres between two robots."""
+        return math.dist(self.gateway.place_of(robot), self.gateway.place_of(other))
 
     def wait_until_driving(self, robot: str) -> None:
         """Look until a robot's row says that it drives."""

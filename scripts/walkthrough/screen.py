@@ -7,6 +7,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
+import numpy.typing as npt
 from stage.errors import StageError
 from stage.picture import reduce_colours
 from Xlib import XK, X
@@ -14,6 +15,7 @@ from Xlib.display import Display
 from Xlib.ext import xtest
 
 Pixel = tuple[int, int]
+Pixels = npt.NDArray[np.uint8]
 LEFT, WHEEL_UP = 1, 4
 """Buttons, as X numbers them; a turn of the wheel is one, too."""
 DRAG_STEPS = 12
@@ -40,6 +42,8 @@ class Screen:
         self._root = self._display.screen().root
         if not self._display.query_extension("XTEST"):
             raise StageError(f"the display {name} has no XTEST, so nobody can type on it; start it with Xvfb")
+        # On a busy computer a key is let go late: of one letter the keyboard would make several.
+        self._display.change_keyboard_control(auto_repeat_mode=X.AutoRepeatModeOff)
 
     # --- mouse ---
 
@@ -69,10 +73,12 @@ class Screen:
         """Press the left button at one pixel, go to another, and let go when the block ends."""
         self.move(start)
         self._send(X.ButtonPress, LEFT)
-        for x, y in np.linspace(start, end, DRAG_STEPS + 1)[1:].round().astype(int).tolist():
-            self.move((x, y))
-        yield
-        self._send(X.ButtonRelease, LEFT)
+        try:
+            for x, y in np.linspace(start, end, DRAG_STEPS + 1)[1:].round().astype(int).tolist():
+                self.move((x, y))
+            yield
+        finally:
+            self._send(X.ButtonRelease, LEFT)
 
     # --- keyboard ---
 
@@ -134,22 +140,30 @@ class Screen:
 
     # --- camera ---
 
-    def photograph(self, path: Path) -> None:
-        """Save what is on the screen as a PNG of few colours."""
-        from osgeo import gdal
-
-        gdal.UseExceptions()
+    def look(self) -> Pixels:
+        """Return what is on the screen, as rows of pixels of blue, green, red and nothing."""
         size = self._root.get_geometry()
         image = self._root.get_image(0, 0, size.width, size.height, X.ZPixmap, 0xFFFFFFFF)
-        pixels = np.frombuffer(image.data, np.uint8).reshape(size.height, size.width, 4)
-        picture = gdal.GetDriverByName("MEM").Create("", size.width, size.height, 3)
-        for band, channel in enumerate((2, 1, 0), start=1):
-            # X has blue first.
-            picture.GetRasterBand(band).WriteArray(pixels[:, :, channel])
-        path.parent.mkdir(parents=True, exist_ok=True)
-        gdal.GetDriverByName("PNG").CreateCopy(str(path), picture)
-        reduce_colours(path)
+        return np.frombuffer(image.data, np.uint8).reshape(size.height, size.width, 4)
+
+    def photograph(self, path: Path) -> None:
+        """Save what is on the screen as a PNG of few colours."""
+        keep(self.look(), path)
 
     def _send(self, kind: int, detail: int = 0, *, x: int = 0, y: int = 0) -> None:
         xtest.fake_input(self._display, kind, detail, x=x, y=y)
         self._display.sync()
+
+
+def keep(pixels: Pixels, path: Path) -> None:
+    """Save what was seen on a screen as a PNG of few colours."""
+    from osgeo import gdal
+
+    gdal.UseExceptions()
+    height, width, _ = pixels.shape
+    picture = gdal.GetDriverByName("MEM").Create("", width, height, 3)
+    for band, channel in enumerate((2, 1, 0), start=1):
+        picture.GetRasterBand(band).WriteArray(pixels[:, :, channel])
+    path.parent.mkdir(parents=True, exist_ok=True)
+    gdal.GetDriverByName("PNG").CreateCopy(str(path), picture)
+    reduce_colours(path)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import signal
+import subprocess
 import sys
 import zipfile
 from pathlib import Path
@@ -38,3 +40,22 @@ def unpacked(release, tmp_path_factory) -> Path:
 def stock_python() -> str:
     """The Python under the virtual environment: it has PyQGIS and none of the environment's packages."""
     return str(Path(sys.base_exec_prefix) / "bin" / "python3")
+
+
+@pytest.fixture
+def walk(tmp_path):
+    """Take a walk through the desk with what is added to the environment; return how it went."""
+    kept = {name: value for name, value in os.environ.items() if name not in ("DISPLAY", "WAYLAND_DISPLAY")}
+    kept |= {"FLEET_WALKTHROUGH_FOLDER": str(tmp_path / "walk"), "PYTHONPATH": str(ROOT / "scripts")}
+
+    def go(name: str, **added: str) -> subprocess.CompletedProcess[str]:
+        return subprocess.run(
+            [sys.executable, "-m", "walkthrough", name, "--pictures", tmp_path / "pictures"],
+            env={**kept, **added},
+            cwd=ROOT,
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+
+    return go

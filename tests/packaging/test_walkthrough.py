@@ -2,11 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import subprocess
-import sys
-
-import pytest
 from osgeo import gdal
 
 STEPS = [
@@ -36,27 +31,8 @@ LARGEST = 400_000
 """Bytes of a picture that goes into the repository."""
 
 
-@pytest.fixture
-def walk(root, tmp_path):
-    """Walk through the desk with what is added to the environment; return how it went."""
-    kept = {name: value for name, value in os.environ.items() if name not in ("DISPLAY", "WAYLAND_DISPLAY")}
-    kept |= {"FLEET_WALKTHROUGH_FOLDER": str(tmp_path / "walk"), "PYTHONPATH": str(root / "scripts")}
-
-    def go(**added: str) -> subprocess.CompletedProcess[str]:
-        return subprocess.run(
-            [sys.executable, "-m", "walkthrough", "--pictures", tmp_path / "pictures"],
-            env={**kept, **added},
-            cwd=root,
-            capture_output=True,
-            text=True,
-            check=False,
-        )
-
-    return go
-
-
 def test_each_step_happens_on_the_screen_and_at_the_gateway_and_nothing_is_cut_off(walk, tmp_path):
-    done = walk()
+    done = walk("operator")
     assert done.returncode == 0, done.stdout + done.stderr
     pictures = sorted((tmp_path / "pictures").iterdir())
     assert [picture.stem for picture in pictures] == [
@@ -69,6 +45,12 @@ def test_each_step_happens_on_the_screen_and_at_the_gateway_and_nothing_is_cut_o
 
 
 def test_it_says_what_is_missing(walk, tmp_path):
-    done = walk(PATH=str(tmp_path))
+    done = walk("operator", PATH=str(tmp_path))
     assert done.returncode == 1
     assert "walkthrough: error: there is no display and no Xvfb to make one; run: make setup" in done.stderr
+
+
+def test_a_walk_that_is_not_there_is_told(walk):
+    done = walk("stroll")
+    assert done.returncode == 2
+    assert "there is no walk stroll; there are operator and qgis" in done.stderr
