@@ -233,7 +233,11 @@ def _read_certificate(file: Path) -> x509.Certificate:
     try:
         return x509.load_pem_x509_certificate(file.read_bytes())
     except (OSError, ValueError) as error:
-        raise AccessError(f"certificate {file} cannot be read: {error}") from error
+        reason = getattr(error, "strerror", None) or error
+        raise AccessError(
+            f"certificate {file} cannot be read: {reason}; correct the path, or make one with "
+            "'robot-bridge tls create'"
+        ) from error
 
 
 def _now() -> datetime.datetime:
