@@ -53,7 +53,7 @@ ALIASES = (
     tr("Accuracy (m)"),
 )
 """What people read for each of :data:`FIELDS`; expressions go by the fields' names."""
-LABEL_OFFSET_MM = 5.0
+LABEL_OFFSET_MM = 6.5
 """How far below a robot a label is: the live map's arrow and name are above that."""
 NAME_AT, STATE_AT, AGE_AT = (FIELDS.index(field) for field in ("robot:string", "state:string", "age:double"))
 
