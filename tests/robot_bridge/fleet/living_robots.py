@@ -1,0 +1,268 @@
+"""Robots that obey and live on while the gateway is gone: they drive, remember, and come back by themselves.
+
+Each keeps a record of what it really did, which no database can be wrong about.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import dataclass, field
+
+from robot_bridge.messages import OpAck, Ready, SendPos, SetObject, Stopped, to_json
+from robot_bridge.wire import parse_params
+
+SPEED = 4.0
+"""metres a second."""
+
+
+@dataclass
+class Task:
+    """What a robot drives: ``points`` ahead of it, in which heading it ends, and what it does there."""
+
+    op: str
+    points: list[tuple[float, float]]
+    theta: float | None = None
+    does: str | None = None
+
+
+@dataclass
+class Record:
+    """What a robot did: the messages it began to drive after, where it put down or took cones, and stops.
+
+    ``ends`` are the places at which it finished a task, ``driven`` those at which it was on its way.
+    ``after_stop`` is what it was sent while nobody may have sent it anywhere.
+    """
+
+    began: list[tuple[str, tuple[float, float]]] = field(default_factory=list)
+    ends: list[tuple[float, float]] = field(default_factory=list)
+    placed: list[tuple[float, float]] = field(default_factory=list)
+    collected: list[tuple[float, float]] = field(default_factory=list)
+    stops: int = 0
+    driven: list[tuple[float, float]] = field(default_factory=list)
+    after_stop: list[str] = field(default_factory=list)
+
+
+class Robot:
+    """A robot, without its wire; cones that it puts down stand at ``offset``: metres ahead, left."""
+
+    link = ""
+
+    def __init__(self, play, name, place, offset=(0.0, 0.0)):
+        self.play, self.name, self.offset = play, name, offset
+        self.x, self.y = place
+        self.theta, self.v = 0.0, 0.0
+        self.magic = 1
+        self.task: Task | None = None
+        self.record = Record()
+        self.away_until = 0.0
+        self.must_stand = False
+        self._database = None
+        self._done: set[int] = set()
+
+    # --- its body ------------------------------------------------------------------------------------------
+
+    def move(self, seconds):
+        """Let time pass."""
+        self.v = 0.0
+        left = SPEED * seconds
+        while self.task is not None:
+            x, y = self.task.points[0]
+            away = math.dist((self.x, self.y), (x, y))
+            if away > left:
+                self.x += (x - self.x) * left / away
+                self.y += (y - self.y) * left / away
+                self.v = SPEED
+                self.record.driven.append((self.x, self.y))
+                return
+            left -= away
+            self.x, self.y = x, y
+            self.task.points.pop(0)
+            if not self.task.points:
+                self._finish(self.task)
+
+    def _finish(self, task):
+        self.task = None
+        self.theta = self.theta if task.theta is None else task.theta
+        self.record.ends.append((self.x, self.y))
+        if task.does is not None:
+            ahead, left = self.offset
+            cos, sin = math.cos(self.theta), math.sin(self.theta)
+            cone = self.x + ahead * cos - left * sin, self.y + ahead * sin + left * cos
+            (self.record.placed if task.does == "place" else self.record.collected).append(cone)
+
+    def lose_link(self):
+        """The gateway is gone, or cannot be reached."""
+
+    def start_anew(self):
+        """Start as a program that knows nothing of before; the robot stands where it was."""
+        self.lose_link()
+        self.magic += 1
+        self.task, self.v = None, 0.0
+        self._done.clear()
+        self._database = None
+
+    # --- what it is told ------------------------------------------------------------------------------------
+
+    def hear(self, id, op, params):
+        """Take in a message of the gateway; what it did before it does not do again."""
+        if id in self._done:
+            return
+        self._done.add(id)
+        if op == "Abort":
+            self.stop()
+        elif op in ("SetPath", "SetPosEnd"):
+            self._begin(op, params)
+
+    def stop(self):
+        """Stand."""
+        self.task = None
+        self.v = 0.0
+        self.record.stops += 1
+
+    def count_ids_of(self, database):
+        """Forget what was done when ids begin anew."""
+        if database != self._database:
+            self._done.clear()
+            self._database = database
+
+    def _begin(self, op, params):
+        if self.must_stand:
+            self.record.after_stop.append(f"{op} {params}")
+        theta = params.get("theta")
+        if op == "SetPath":
+            points = [(x, y) for x, y in params["points"]]
+            self.task = Task(op, points, theta)
+        else:
+            points = [(params["x"], params["y"])]
+            does = "place" if params.get("cone") else "collect" if params.get("collect") else None
+            self.task = Task(op, points, theta, does)
+        self.record.began.append((op, points[-1]))
+
+    def position(self):
+        """Return where it is, as it says it."""
+        return SendPos(self.x, self.y, self.theta, self.v)
+
+
+class WebSocketRobot(Robot):
+    """A robot at the other end of a WebSocket, taken as calls of the fleet in the order of its session's."""
+
+    link = "websocket"
+
+    def __init__(self, *how, **more):
+        super().__init__(*how, **more)
+        self._connected = False
+        self._last = {False: 0, True: 0}
+        self._untold: list[SetObject] = []
+        self._call = 0
+
+    def lose_link(self):
+        self._connected = False
+
+    def see(self, told):
+        """Have the gateway told of an object, until it says that it has stored it."""
+        self._untold.append(told)
+
+    def stop_now(self, call_id):
+        """Take the direct call of an emergency stop."""
+        if self._connected:
+            self.stop()
+            self.play.fleet.emergency.answered(self.name, call_id, refused=False)
+
+    async def exchange(self):
+        """Say and hear what there is to say and to hear."""
+        fleet = self.play.fleet
+        if self.play.now < self.away_until:
+            self._connected = False
+            return
+        if not self._connected and not await self._connect():
+            return
+        while self._untold:
+            outcome = await fleet.receive(self.name, self.link, self._untold[0], self._next_call())
+            assert outcome.ack.ok
+            self._untold.pop(0)
+        if (rest := fleet.take_pose(self.name, self.link, self.position())) is not None:
+            await rest
+        for row in await fleet.outbox(self.name, self._last[False], self._last[True]):
+            self.hear(row.id, row.op, parse_params(row.op, row.params) or {})
+            self._last[row.urgent] = row.id
+            await fleet.delivered([row.id])
+            await fleet.receive(self.name, self.link, OpAck(id=row.id), None)
+
+    async def _connect(self):
+        fleet = self.play.fleet
+        self.count_ids_of(fleet.greeting().database)
+        if fleet.emergency.call_id is not None:
+            self.stop()
+        outcome = await fleet.receive(self.name, self.link, Ready(self.magic), self._next_call())
+        if outcome.answer is not None:
+            await fleet.finish([outcome], [], acks=False)
+        self._connected, self._last = outcome.admitted, {False: 0, True: 0}
+        return self._connected
+
+    def _next_call(self):
+        self._call += 1
+        return self._call
+
+
+class SqlRobot(Robot):
+    """A robot that writes into RR and reads and deletes its rows of SA, whether a gateway runs or not."""
+
+    link = "sql"
+
+    def __init__(self, *how, **more):
+        super().__init__(*how, **more)
+        self._admitted = False
+        self._greet_at = 0.0
+        self._told_stopped = True
+
+    def see(self, told):
+        """Write that it saw an object."""
+        self._write(told)
+
+    def start_anew(self):
+        super().start_anew()
+        self._admitted, self._greet_at = False, 0.0
+
+    async def exchange(self):
+        """Read and write what there is to read and to write."""
+        self.turn()
+
+    def turn(self):
+        """As :meth:`exchange`; it needs no gateway."""
+        if self.play.now < self.away_until:
+            return
+        if not self._admitted and self.play.now >= self._greet_at:
+            self._greet_at = self.play.now + 2.0
+            self._write(Ready(self.magic))
+        rows = self.play.sql(
+            "select id, op, params from sa where robot = ? order by urgent desc, id", self.name
+        )
+        for id, op, text in rows:
+            self._read(id, op, parse_params(op, text) or {})
+        if self._admitted:
+            self._write(self.position())
+            if self.task is None and not self._told_stopped:
+                self._write(Stopped())
+            self._told_stopped = self.task is None
+
+    def _read(self, id, op, params):
+        if op == "Start":
+            self.count_ids_of(params.get("database"))
+            self._write(Ready(self.magic))
+        elif op == "OpAck" and params.get("magic") is not None:
+            if params["magic"] != self.magic:
+                return
+            self._admitted = params.get("ok", True)
+            self.count_ids_of(params.get("database"))
+        elif not self._admitted:
+            return
+        elif op != "OpAck":
+            self.hear(id, op, params)
+        self.play.sql("delete from sa where id = ?", id)
+        if op != "OpAck":
+            self._write(OpAck(id=id))
+
+    def _write(self, request):
+        values = self.name, type(request).__name__, json.dumps(to_json(request))
+        self.play.sql("insert into rr (robot, op, params) values (?, ?, ?)", *values)

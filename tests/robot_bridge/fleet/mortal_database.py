@@ -1,0 +1,107 @@
+"""A database whose gateway dies at one of its transactions, as by SIGKILL: before the commit, or after it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from robot_bridge.store.address import shown
+from robot_bridge.store.database import Database
+from robot_bridge.store.engines.dialect import PATIENCE_S
+from robot_bridge.store.worker import Worker
+
+_ENGINES: dict = {}
+"""One for each address: to compile statements anew takes SQLAlchemy longer than the database to do them."""
+
+
+class Killed(BaseException):
+    """The gateway's process is gone; no Exception, so that nothing in it can live on."""
+
+
+@dataclass
+class Death:
+    """When the gateway dies: at the transaction number ``at`` (from 1), its commit ``done`` or not.
+
+    Over several gateways the transactions are counted on; it comes once. With ``at`` 0 it never comes.
+    ``writing`` are those that changed something, as far as that can be told; to die of others is nothing new.
+    """
+
+    at: int = 0
+    done: bool = False
+    count: int = 0
+    writing: set[int] = field(default_factory=set)
+
+    def comes(self) -> bool:
+        """Count a transaction, and tell whether it is the one."""
+        self.count += 1
+        return self.count == self.at
+
+    @property
+    def has_come(self) -> bool:
+        """Whether the gateway has died."""
+        return 0 < self.at <= self.count
+
+
+class WorkerInPlace(Worker):
+    """Does each job at once, in the thread that asks for it: plays are many, and wait for no other thread."""
+
+    def submit(self, job):
+        """Do ``job``."""
+        self._do_in_order([job])
+
+    def close(self, timeout):
+        """Close the connection."""
+        self._drop()
+        super().close(timeout)
+
+
+class MortalDatabase(Database):
+    """The database of one gateway; when that has died nothing is written or read any more."""
+
+    def __init__(self, address: str, death: Death):
+        super().__init__(address)
+        self._engine, self.dialect = _ENGINES.setdefault(address, (self._engine, self.dialect))
+        self._worker = WorkerInPlace(self._engine, self.dialect, shown(self.url), PATIENCE_S)
+        self.death = death
+        self.dead = False
+
+    async def run(self, work, *arguments):
+        """Run ``work``, unless the gateway dies of it, or is dead."""
+        return await self._live_through(super().run, work, *arguments)
+
+    async def jot(self, work, *arguments):
+        """As :meth:`run`."""
+        return await self._live_through(super().jot, work, *arguments)
+
+    async def read(self, work, *arguments):
+        """Read, unless the gateway is dead: reading changes nothing, so that it does not die here."""
+        self._check()
+        return await super().read(work, *arguments)
+
+    async def version(self):
+        """As :meth:`read`."""
+        self._check()
+        return await super().version()
+
+    async def _live_through(self, transaction, work, *arguments):
+        self._check()
+        dies = self.death.comes()
+        number = self.death.count
+
+        def noted(connection, *arguments):
+            driver = connection.connection.driver_connection
+            before = getattr(driver, "total_changes", 0)
+            result = work(connection, *arguments)
+            if getattr(driver, "total_changes", 1) != before:
+                self.death.writing.add(number)
+            return result
+
+        if dies:
+            self.dead = True
+            if self.death.done:
+                await transaction(noted, *arguments)
+            raise Killed
+        return await transaction(noted, *arguments)
+
+    def _check(self):
+        if self.dead:
+            raise Killed
