@@ -281,6 +281,8 @@ class OperatorAtScreen:
         return list(self.wait(what, same_again))
 
     def _pixel(self, place: Place) -> Pixel:
+        # A panel that has just opened or closed moves the map.
+        self._at_rest("the map being at rest", lambda: self._where(place)["at"])
         found = self._where(place)
         if not found["shown"]:
             raise StageError(f"the map does not show {place} (metres of the site), so it cannot be clicked")

@@ -15,15 +15,26 @@ MASTER_PASSWORD = "kept in nobody's head"
 
 def keep_connection(scene: Scene) -> None:
     """Make a connection, export, remove and import it, and give it the token that QGIS has kept."""
+    open_options(scene)
+    make(scene)
+    hand_on(scene)
+    close_options(scene)
+    # Opened anew it says no more where this computer has the file.
+    open_options(scene)
+    edit(scene)
+    close_options(scene)
+
+
+def open_options(scene: Scene) -> None:
     operator = scene.operator
     operator.choose_from_menu("Settings", "Options…")
     operator.wait_for_dialog("mOptionsTreeView")
     operator.click_row("mOptionsTreeView", "Fleet Supervisor")
-    make(scene)
-    hand_on(scene)
-    edit(scene)
-    operator.press("Enter")
-    operator.wait_for_no_dialog()
+
+
+def close_options(scene: Scene) -> None:
+    scene.operator.press("Enter")
+    scene.operator.wait_for_no_dialog()
 
 
 def make(scene: Scene) -> None:

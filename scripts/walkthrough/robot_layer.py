@@ -16,6 +16,7 @@ def look_at_layer(scene: Scene) -> None:
     operator = scene.operator
     operator.press("F9")
     operator.wait("the fleet panel closing", lambda: not operator.widget("fleet_dock")["visible"])
+    operator.wait_for_map()
     operator.click_row("Layers", "Fleet", LAYER)
     identify(scene)
     open_table(scene)
