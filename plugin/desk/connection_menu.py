@@ -1,4 +1,4 @@
-"""The menu beside the gateway's URL: the connections that are kept, and what can be done with them."""
+"""The menu beside the button that connects: the connections that are kept, and what can be done with them."""
 
 from __future__ import annotations
 

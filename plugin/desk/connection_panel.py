@@ -9,12 +9,14 @@ from qgis.core import QgsSettings
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtWidgets import (
     QAction,
+    QApplication,
     QGridLayout,
     QHBoxLayout,
     QLabel,
     QLineEdit,
     QSizePolicy,
     QToolButton,
+    QVBoxLayout,
     QWidget,
 )
 
@@ -40,10 +42,15 @@ MARKS = {
 
 
 class ConnectionPanel(QWidget):
-    """URL, operator, the button, and a line that tells the link's state with its reason."""
+    """URL, operator, and a line that tells the link's state with its reason, with the button.
+
+    While there is a link the fields are folded away: nothing can be changed in them, and the robots need the
+    room. A link that broke leaves them so, until the operator disconnects or the gateway refuses.
+    """
 
     def __init__(self, connect: QAction, parent: QWidget | None = None):
         super().__init__(parent)
+        self.setObjectName("fleet_connection_panel")
         self._shown: LinkStatus | None = None
         self._connections = Connections()
         self._chosen: GatewayConnection | None = None
@@ -61,6 +68,7 @@ class ConnectionPanel(QWidget):
         self._more = _more_button()
         self._more.toggled.connect(self._access.setVisible)
         self._state = _state_label()
+        self._fields = QWidget()
         self._lay_out(_connect_button(connect))
         self._url.textChanged.connect(self._url_changed)
         last = self._connections.get(self._connections.last)
@@ -109,7 +117,9 @@ class ConnectionPanel(QWidget):
         text = _in_words(link, site, now)
         if text != self._state.text():
             self._state.setText(text)
+            self._state.setToolTip(self._which(site))
         wanted = link.phase not in (Phase.CLOSED, Phase.FAILED)
+        self._fold(link.phase is Phase.CONNECTED or (wanted and self._fields.isHidden()))
         for field in (self._url, self._operator):
             if field.isReadOnly() != wanted:
                 field.setReadOnly(wanted)
@@ -118,6 +128,19 @@ class ConnectionPanel(QWidget):
         if link.wants_token and link != self._shown:
             self._more.setChecked(True)
         self._shown = link
+
+    def _fold(self, folded: bool) -> None:
+        if folded == self._fields.isHidden():
+            return
+        held = QApplication.focusWidget()
+        if folded and held is not None and self._fields.isAncestorOf(held):
+            # Else the next in line would have the keyboard, which is the button that ends the link.
+            self._state.setFocus()
+        self._fields.setHidden(folded)
+
+    def _which(self, site: SiteReport | None) -> str:
+        which = [self.url(), *([] if site is None else [site.name, site.crs])]
+        return "\n".join(which)
 
     def _as_it_stands(self) -> GatewayConnection:
         """What the fields say, as a connection that has no name yet."""
@@ -137,7 +160,7 @@ class ConnectionPanel(QWidget):
             self._more.setChecked(True)
 
     def _lay_out(self, connect: QToolButton) -> None:
-        grid = QGridLayout(self)
+        grid = QGridLayout(self._fields)
         grid.setContentsMargins(0, 0, 0, 0)
         grid.setHorizontalSpacing(6)
         grid.setVerticalSpacing(4)
@@ -145,17 +168,21 @@ class ConnectionPanel(QWidget):
             label = QLabel(text)
             label.setBuddy(field)
             grid.addWidget(label, row, 0)
-        where = QHBoxLayout()
-        where.setSpacing(2)
-        where.addWidget(self._url)
-        where.addWidget(self.menu.button)
-        grid.addLayout(where, 0, 1)
+        grid.addWidget(self._url, 0, 1)
         grid.addWidget(self._more, 0, 2)
-        grid.addWidget(self._operator, 1, 1)
-        grid.addWidget(connect, 1, 2)
+        grid.addWidget(self._operator, 1, 1, 1, 2)
         grid.addWidget(self._access, 2, 0, 1, 3)
-        grid.addWidget(self._state, 3, 0, 1, 3)
-        in_order = (self._url, self.menu.button, self._more, self._operator, connect, self._access)
+        line = QHBoxLayout()
+        line.setSpacing(2)
+        line.addWidget(self._state, 1)
+        for button in (self.menu.button, connect):
+            line.addWidget(button, 0, Qt.AlignmentFlag.AlignTop)
+        rows = QVBoxLayout(self)
+        rows.setContentsMargins(0, 0, 0, 0)
+        rows.setSpacing(4)
+        rows.addWidget(self._fields)
+        rows.addLayout(line)
+        in_order = (self._url, self._more, self._operator, self._access, connect, self.menu.button)
         for before, after in pairwise(in_order):
             self.setTabOrder(before, after)
 
@@ -194,7 +221,7 @@ def _in_words(link: LinkStatus, site: SiteReport | None, now: float) -> str:
     detail = _escaped(link.reason)
     if link.phase is Phase.CONNECTED and site is not None:
         who = f" · {_escaped(link.reason)}" if link.reason else ""
-        detail = f"{_escaped(site.name)}, {_escaped(site.crs)}{who}"
+        detail = f"{_escaped(site.name)}{who}"
     if link.phase is Phase.RETRYING:
         word = tr("Retrying in {wait:.0f} s", wait=link.wait(now))
     dot = f'<span style="color:{colour}">⬤</span>'

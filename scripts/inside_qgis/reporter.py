@@ -129,6 +129,7 @@ def _widget(name: str) -> dict[str, Any]:
         "checked": _said(widget, "isChecked"),
         "focus": widget.hasFocus(),
         "text": _text(widget),
+        "tip": widget.toolTip(),
     }
 
 

@@ -58,6 +58,10 @@ class OperatorAtScreen:
         """Return what a widget says, nothing while it is not to be seen."""
         return str(self.widget(name).get("text", ""))
 
+    def tip(self, name: str) -> str:
+        """Return what a widget says to who holds the mouse over it."""
+        return str(self.widget(name).get("tip", ""))
+
     def state_of(self, robot: str) -> str:
         """Return the state that the log shows for the newest command of ``robot``."""
         rows = self.desk()["commands"]

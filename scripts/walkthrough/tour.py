@@ -42,7 +42,8 @@ def practise(scene: Scene) -> None:
     operator.click("fleet_tour_offer")
     scene.wait_until_live()
     # Each tour starts a gateway of its own; the panel shows where.
-    practice = replace(scene, gateway=Gateway(operator.text("fleet_url").removesuffix("/desk")))
+    address = operator.tip("fleet_link_state").splitlines()[0]
+    practice = replace(scene, gateway=Gateway(address.removesuffix("/desk")))
     film.shoot("tour-link", "the practice fleet runs, and the desk is connected to it")
     operator.click("fleet_tour_next")
     scene.select_in_table("r1")

@@ -51,7 +51,7 @@ STEPS = (
             "Here stand the gateway's address and your name, which every log shows. For a real fleet write "
             "them and press Connect. For the tour, start the practice fleet: it connects by itself."
         ),
-        "fleet_url",
+        "fleet_connection_panel",
         FLEET,
         tr("Start the practice fleet"),
     ),

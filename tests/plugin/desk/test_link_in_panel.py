@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 from qgis.core import QgsSettings
+from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
-from qgis.PyQt.QtWidgets import (
-    QLineEdit,
-    QToolButton,
-)
+from qgis.PyQt.QtWidgets import QLabel, QLineEdit, QToolButton
 
 from tests.plugin.desk.fleet_panel import press, state_line, table
 
@@ -20,8 +18,33 @@ def test_typing_an_address_and_pressing_connect_shows_the_site(plugin, gateway, 
         QTest.keyClicks(field, text)
     press(window, QToolButton, "fleet_connect_button")
     wait(lambda: "Connected" in state_line(window))
-    assert "Yard, EPSG:32633" in state_line(window)
+    assert "Yard" in state_line(window)
     assert gateway.asked("hello") == [{"operator": "anna", "protocol": 1}]
+
+
+def test_while_there_is_a_link_the_fields_make_room_for_the_robots(plugin, gateway, wait):
+    dock = plugin.window.dock
+    url, operator = (dock.findChild(QLineEdit, name) for name in ("fleet_url", "fleet_operator"))
+    dock.show()
+    dock.activateWindow()
+    url.setText(gateway.url)
+    operator.setText("anna")
+    url.setFocus()
+    wait(url.hasFocus, what="the keyboard in the field")
+    QTest.keyClick(url, Qt.Key.Key_Return)
+    wait(lambda: "Connected" in state_line(plugin.window))
+    assert not url.isVisible() and not operator.isVisible()
+    # A space in a button that has the keyboard would press it, and end the link.
+    button = dock.findChild(QToolButton, "fleet_connect_button")
+    assert button.isVisible() and not button.hasFocus()
+    state = dock.findChild(QLabel, "fleet_link_state")
+    assert state.toolTip().splitlines() == [gateway.url, "Yard", "EPSG:32633"]
+    gateway.stop()
+    wait(lambda: "Retrying" in state_line(plugin.window), 10)
+    assert not url.isVisible()
+    button.click()
+    wait(url.isVisible, what="the fields of a link that was ended")
+    assert url.text() == gateway.url
 
 
 def test_url_and_operator_are_remembered(at_desk, gateway):
