@@ -29,7 +29,7 @@ class ConnectionMenu(QObject):
         self._connections, self._as_it_stands = connections, as_it_stands
         self._window, self._marked, self._is_held = parent, "", False
         self._more: list[QAction] = []
-        self.button = QToolButton(parent)
+        self.button = QToolButton()
         self.button.setObjectName("fleet_connections_button")
         self.button.setIcon(QgsApplication.getThemeIcon("/mIconConnect.svg"))
         self.button.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import getpass
-from itertools import pairwise
 
 from qgis.core import QgsSettings
 from qgis.PyQt.QtCore import Qt
@@ -175,16 +174,13 @@ class ConnectionPanel(QWidget):
         line = QHBoxLayout()
         line.setSpacing(2)
         line.addWidget(self._state, 1)
-        for button in (self.menu.button, connect):
+        for button in (connect, self.menu.button):
             line.addWidget(button, 0, Qt.AlignmentFlag.AlignTop)
         rows = QVBoxLayout(self)
         rows.setContentsMargins(0, 0, 0, 0)
         rows.setSpacing(4)
         rows.addWidget(self._fields)
         rows.addLayout(line)
-        in_order = (self._url, self._more, self._operator, self._access, connect, self.menu.button)
-        for before, after in pairwise(in_order):
-            self.setTabOrder(before, after)
 
 
 def _connect_button(connect: QAction) -> QToolButton:

@@ -23,12 +23,14 @@ def work_by_keyboard(scene: Scene) -> None:
 
 
 def connect(scene: Scene) -> None:
-    """Choose the connection in the menu beside the URL, and open it."""
+    """Choose the connection in the menu beside Connect, and open it."""
     operator = scene.operator
-    operator.press("Alt+G")
-    operator.wait("the URL having the keyboard", lambda: operator.widget("fleet_url")["focus"])
-    operator.press("Tab")
-    operator.press("Space")
+    operator.press("Alt+O")
+    for name, key in (("operator", "Tab"), ("connect_button", "Tab"), ("connections_button", "Space")):
+        operator.wait(
+            f"{name} with the keyboard", lambda name=name: operator.widget(f"fleet_{name}")["focus"]
+        )
+        operator.press(key)
     operator.wait(
         "the connections being listed", lambda: operator.widget("fleet_connections_menu")["visible"]
     )
