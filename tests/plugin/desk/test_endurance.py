@@ -8,7 +8,7 @@ import time
 
 import pytest
 from benchmarks import endurance
-from benchmarks.endurance import Run, Sample, Unloaded, endure, faults, growth, kept_of_a_version
+from benchmarks.endurance import Run, Sample, Unloaded, endure, faults, grown, growth, kept_of_a_version
 from inside_qgis.endurance.play import Player
 from inside_qgis.endurance.pulse import LATE, Pulse
 
@@ -51,6 +51,20 @@ def test_memory_that_grows_is_seen():
     assert growth(samples, 600.0, "megabytes") == pytest.approx(360.0)
     assert growth(samples, 600.0, "in_use") == pytest.approx(0.0, abs=1e-6)
     assert growth(samples, 600.0, "blocks") == pytest.approx(360_000.0)
+
+
+def test_memory_that_grows_is_a_fault():
+    """Each of them, and not a picture that comes and goes."""
+    grow = [Sample(10.0 * k, 500.0 + k, 200.0, 100.0 + 0.2 * k, 16.0, 0, 0, 10, 2, 24, 0) for k in range(180)]
+    assert grown(grow, 1800.0) == [
+        "what is in use grew by 72 MB an hour, 40 at most",
+        "the process had 120 MB more at the end than at the begin, 60 at most",
+    ]
+    flat = [
+        Sample(10.0 * k, 500.0 + 50 * (k % 7), 200.0, 100.0, 16.0, 0, 0, 10, 2, 24, 0) for k in range(180)
+    ]
+    assert grown(flat, 1800.0) == []
+    assert len(grown(flat[:2], 1800.0)) == 2, "too few to tell"
 
 
 def test_a_warm_up_does_not_count_as_growth():
