@@ -85,12 +85,14 @@ def cancels_at(qgis_app):
     return make
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def provider(qgis_app, qgis_processing):
-    """The provider, registered as the plugin registers it."""
+    """The provider, registered as the plugin registers it; tests of the plugin itself may come after."""
     made = FleetProvider()
-    assert QgsApplication.processingRegistry().addProvider(made)
-    return made
+    registry = QgsApplication.processingRegistry()
+    assert registry.addProvider(made)
+    yield made
+    assert registry.removeProvider(made)
 
 
 @pytest.fixture
