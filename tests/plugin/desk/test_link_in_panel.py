@@ -5,7 +5,7 @@ from __future__ import annotations
 from qgis.core import QgsSettings
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
-from qgis.PyQt.QtWidgets import QApplication, QLabel, QLineEdit, QToolButton
+from qgis.PyQt.QtWidgets import QLabel, QLineEdit, QToolButton
 
 from tests.plugin.desk.fleet_panel import press, state_line, table
 
@@ -45,21 +45,6 @@ def test_while_there_is_a_link_the_fields_make_room_for_the_robots(plugin, gatew
     button.click()
     wait(url.isVisible, what="the fields of a link that was ended")
     assert url.text() == gateway.url
-
-
-def test_tab_leads_from_field_to_field_and_to_the_buttons(plugin, wait):
-    dock = plugin.window.dock
-    dock.show()
-    dock.activateWindow()
-    field = dock.findChild(QLineEdit, "fleet_url")
-    field.setFocus()
-    wait(field.hasFocus, what="the keyboard in the field")
-    met = [field.objectName()]
-    for _ in range(4):
-        QTest.keyClick(QApplication.focusWidget(), Qt.Key.Key_Tab)
-        met.append(QApplication.focusWidget().objectName())
-    names = ("url", "access_button", "operator", "connect_button", "connections_button")
-    assert met == [f"fleet_{name}" for name in names]
 
 
 def test_url_and_operator_are_remembered(at_desk, gateway):

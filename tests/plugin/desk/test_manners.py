@@ -362,7 +362,7 @@ def test_tab_leads_through_the_connection_in_its_order(plugin, iface):
     for _ in range(4):
         QTest.keyClick(QApplication.focusWidget(), Qt.Key.Key_Tab)
         names.append(QApplication.focusWidget().objectName())
-    order = ["connections_button", "access_button", "operator", "connect_button"]
+    order = ["access_button", "operator", "connect_button", "connections_button"]
     assert names == [f"fleet_{name}" for name in order]
 
 
