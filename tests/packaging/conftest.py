@@ -10,8 +10,11 @@ import zipfile
 from pathlib import Path
 
 import pytest
+from osgeo import gdal
 
 ROOT = Path(__file__).resolve().parents[2]
+LARGEST = 400_000
+"""Bytes of a picture that goes into the repository."""
 sys.path.insert(0, str(ROOT / "scripts"))
 
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
@@ -57,5 +60,24 @@ def walk(tmp_path):
             text=True,
             check=False,
         )
+
+    return go
+
+
+@pytest.fixture
+def take_pictures(walk, tmp_path):
+    """Take a walk to its end and check that it took a picture of each of its steps, of ``least`` bytes."""
+
+    def go(name: str, steps: list[str], least: int) -> None:
+        done = walk(name)
+        assert done.returncode == 0, done.stdout + done.stderr
+        pictures = sorted((tmp_path / "pictures").iterdir())
+        assert [picture.stem for picture in pictures] == [
+            f"{name}-{number:02d}-{step}" for number, step in enumerate(steps, start=1)
+        ]
+        for picture in pictures:
+            image = gdal.Open(str(picture))
+            assert (image.RasterXSize, image.RasterYSize) == (1280, 800)
+            assert least < picture.stat().st_size <= LARGEST, picture.name
 
     return go
