@@ -16,6 +16,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+from syntax import tree_of
+
 ROOT = Path(__file__).resolve().parents[1]
 FOLDER = ROOT / "resources" / "translations"
 CONTEXT = "FleetSupervisor"
@@ -53,7 +55,7 @@ def texts(root: Path = ROOT) -> dict[str, Text]:
 
 
 def _texts_of(path: Path, name: str) -> Iterator[Text]:
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    for node in ast.walk(tree_of(path.read_text(encoding="utf-8"))):
         called = getattr(node.func, "id", "") if isinstance(node, ast.Call) else ""
         if called not in CALLS:
             continue

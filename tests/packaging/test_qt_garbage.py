@@ -12,12 +12,13 @@ import ast
 from collections.abc import Iterator
 
 import pytest
+from syntax import tree_of
 
 
 def held_by_their_own_signals(code: str) -> list[tuple[int, str]]:
     """The lines and names of objects that may be garbage together with what is connected to them."""
     found = set()
-    for node in ast.walk(ast.parse(code)):
+    for node in ast.walk(tree_of(code)):
         if isinstance(node, ast.FunctionDef | ast.Lambda):
             found |= set(_held_in(node))
     return sorted(found)

@@ -10,6 +10,7 @@ import pytest
 from fleet_supervisor.plugin.desk.actions import EMERGENCY_KEYS
 from fleet_supervisor.plugin.desk.shortcuts import KEYS
 from qgis.PyQt.QtWidgets import QAction
+from syntax import tree_of
 
 ROOT = Path(__file__).parents[3]
 KEY = re.compile(r"[\w+]*\bF\d+|Ctrl\+K|Pause")
@@ -76,7 +77,7 @@ def test_each_entry_of_the_menu_that_is_named_is_there(plugin, iface, guide):
 
 def test_what_is_in_bold_stands_at_the_desk(guide):
     sources = [file.read_text(encoding="utf-8") for file in (ROOT / "plugin").rglob("*.py")]
-    nodes = (node for source in sources for node in ast.walk(ast.parse(source)))
+    nodes = (node for source in sources for node in ast.walk(tree_of(source)))
     texts = {str(node.value) for node in nodes if isinstance(node, ast.Constant)}
     bold = set(re.findall(r"\*\*([^*]+)\*\*", guide))
     assert len(bold) > 80

@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from syntax import tree_of
 
 ROOT = Path(__file__).parents[3]
 TRANSLATED = ("tr", "tr_count", "tr_page")
@@ -68,7 +69,7 @@ def sources() -> list[Path]:
 
 def forgotten(source: str) -> list[tuple[int, str]]:
     """Return line and text of what people read in ``source`` and is not translated."""
-    tree = ast.parse(source)
+    tree = tree_of(source)
     passed_over = set(_ids_passed_over(tree))
     shown = {id(text) for call in _calls(tree) for text in _texts_of(call)}
     shown |= set(_ids_beside_translated(tree))
@@ -186,7 +187,7 @@ def test_every_text_that_people_read_is_translated():
 
 
 def test_no_exception_is_for_what_is_gone():
-    trees = [ast.parse(path.read_text(encoding="utf-8")) for path in sources()]
+    trees = [tree_of(path.read_text(encoding="utf-8")) for path in sources()]
     known = {node.value for tree in trees for node in ast.walk(tree) if isinstance(node, ast.Constant)}
     assert {one for one in TEXTS if one not in known} == set()
 
@@ -195,7 +196,7 @@ def test_every_placeholder_is_given_its_value():
     """A text that is shown once in a blue moon must not fail then."""
     wrong = []
     for path in sources():
-        for call in _translations(ast.parse(path.read_text(encoding="utf-8"))):
+        for call in _translations(tree_of(path.read_text(encoding="utf-8"))):
             given = {keyword.arg for keyword in call.keywords}
             if None in given:
                 # Values that come as a dictionary are not told from the source.
