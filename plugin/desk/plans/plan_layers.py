@@ -17,7 +17,7 @@ from qgis.core import (
     QgsVectorLayer,
 )
 
-from ....robot_bridge.messages import PlacementReport
+from ....robot_bridge.messages import PlacementReport, TaskState
 from ...language import tr
 from ..desk import Desk
 from ..road_board import time_of_day
@@ -26,7 +26,8 @@ from .draft import Draft
 from .plan_rows import StopRow, colour_of
 
 STOP_FIELDS = (
-    "robot:string,number:integer,trip:integer,kind:string,id:string,arrives:string,state:string,colour:string"
+    "robot:string,number:integer,trip:integer,kind:string,id:string,arrives:string,state:string,why:string,"
+    "colour:string"
 )
 WAY_FIELDS = "robot:string,number:integer,to_stop:string,metres:double,arrives:string,colour:string"
 PLACED_FIELDS = (
@@ -58,9 +59,8 @@ class PlanLayers:
             colour = colour_of(draft.plan, robot)
             for row in theirs:
                 stop = row.stop
-                values = [robot, row.number, row.trip, stop.kind, stop.id, row.arrives, row.state, colour]
-                stops.append(([(stop.x, stop.y)], values))
-                if row.state != "done":
+                stops.append(([(stop.x, stop.y)], _stop_values(row, colour)))
+                if row.state is not TaskState.DONE:
                     values = [robot, row.number, stop.id, round(stop.metres, 2), row.arrives, colour]
                     ways.append((stop.path, values))
         self.ways.show(ways, self._desk.site)
@@ -74,6 +74,12 @@ class PlanLayers:
         """Take all of them out of the project."""
         for layer in (self.ways, self.stops, self.placed):
             layer.remove()
+
+
+def _stop_values(row: StopRow, colour: str) -> list[Any]:
+    """Return the values of ``STOP_FIELDS``; the state as the protocol has it, whatever QGIS speaks."""
+    stop, state = row.stop, "" if row.state is None else row.state.value
+    return [row.robot, row.number, row.trip, stop.kind, stop.id, row.arrives, state, row.why, colour]
 
 
 def _placed_values(one: PlacementReport) -> list[Any]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from ....robot_bridge.assignment.editing import trips_of
 from ....robot_bridge.assignment.plan import Plan, Stop
@@ -23,21 +23,29 @@ _WORDS = {
     TaskState.SKIPPED: tr("skipped"),
     TaskState.REMOVED: tr("taken out"),
 }
-NOT_DONE = (_WORDS[TaskState.FAILED], _WORDS[TaskState.SKIPPED])
-"""What the words of a stop begin with that was not done."""
+NOT_DONE = (TaskState.FAILED, TaskState.SKIPPED)
 
 
 @dataclass(frozen=True)
 class StopRow:
-    """One stop as it is shown. ``number`` counts the stops of its robot, from 1, those behind it first."""
+    """One stop as it is shown. ``number`` counts the stops of its robot, from 1, those behind it first.
+
+    ``state`` is what became of a cone that was sent, ``why`` what is said of it; ``deviation`` is metres.
+    """
 
     robot: str
     number: int
     trip: int
     stop: Stop
     arrives: str
-    state: str
+    state: TaskState | None = None
+    why: str = ""
     deviation: float | None = None
+
+    def in_words(self) -> str:
+        """Return state and reason for the operator, nothing for what was not sent."""
+        words = "" if self.state is None else _WORDS[self.state]
+        return f"{words}: {self.why}" if self.why else words
 
 
 def colour_of(plan: Plan, robot: str) -> str:
@@ -125,17 +133,16 @@ def end_of(plan: Plan, target: str, robot: str) -> tuple[str, int, int] | None:
 def _row(
     robot: str, number: int, trip: int, stop: Stop, began: float | None, progress: Progress | None
 ) -> StopRow:
-    state, deviation = "", None
-    if progress is not None and stop.is_target:
-        found = progress.state_of(stop.id)
-        state = "" if found is None else _WORDS[found]
-        if found in (TaskState.FAILED, TaskState.SKIPPED) and progress.why_not(stop.id):
-            state += f": {progress.why_not(stop.id)}"
-        if found is TaskState.WAITING and progress.waits_for(stop.id):
-            state += f": {progress.waits_for(stop.id)}"
-        placed = progress.placed.get(stop.id)
-        deviation = None if placed is None else placed.deviation
-    return StopRow(robot, number, trip, stop, clock(stop.arrival_s, began), state, deviation)
+    row = StopRow(robot, number, trip, stop, clock(stop.arrival_s, began))
+    if progress is None or not stop.is_target:
+        return row
+    placed = progress.placed.get(stop.id)
+    return replace(
+        row,
+        state=progress.state_of(stop.id),
+        why=progress.remark_on(stop.id),
+        deviation=None if placed is None else placed.deviation,
+    )
 
 
 def _span(seconds: float) -> str:

@@ -9,6 +9,7 @@ from qgis.PyQt.QtGui import QColor, QDropEvent, QIcon, QKeyEvent, QPixmap
 from qgis.PyQt.QtWidgets import QAbstractItemView, QMenu, QTreeWidget, QTreeWidgetItem, QWidget
 
 from ....robot_bridge.assignment.plan import Plan
+from ....robot_bridge.messages import TaskState
 from ...language import tr
 from ..colours import WRONG, for_letters
 from ..column_heads import fit_heads
@@ -164,16 +165,16 @@ class PlanTree(QTreeWidget):
 def _fill(item: QTreeWidgetItem, row: StopRow) -> None:
     off = "" if row.deviation is None else f"{row.deviation:.2f}"
     name = f"{row.number}  {_KINDS[row.stop.kind]}{row.stop.id}"
-    for column, text in enumerate((name, row.arrives, row.state, off)):
+    for column, text in enumerate((name, row.arrives, row.in_words(), off)):
         if item.text(column) != text:
             item.setText(column, text)
-    if row.state.startswith(NOT_DONE):
+    if row.state in NOT_DONE:
         item.setForeground(2, for_letters(WRONG))
 
 
 def _robot_in_words(rows: Sequence[StopRow], lost: bool) -> str:
     cones = [row for row in rows if row.stop.is_target]
-    done = sum(row.state == "done" for row in cones)
+    done = sum(row.state is TaskState.DONE for row in cones)
     text = (
         tr(
             "{done} of {cones} cones",

@@ -84,10 +84,13 @@ class Progress:
         found = self._newest(target)
         return (found.reason or "") if found is not None and found.state in _GIVEN_UP else ""
 
-    def waits_for(self, target: str) -> str:
-        """Return why a cone that is in a queue is not begun yet, nothing where it is only not its turn."""
+    def remark_on(self, target: str) -> str:
+        """Return what is said of a cone: why it failed, was given up, or is not begun yet."""
+        if target in self.done:
+            return ""
         found = self._newest(target)
-        return (found.reason or "") if found is not None and found.state is TaskState.WAITING else ""
+        said = found is not None and found.state in (*_GIVEN_UP, TaskState.WAITING)
+        return (found.reason or "") if said else ""
 
     def is_finished(self, plan: Plan) -> bool:
         """Tell whether every cone of ``plan`` is done or left out."""

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from fleet_supervisor.robot_bridge.messages import to_json
+from fleet_supervisor.plugin.desk.plans import plan_rows
+from fleet_supervisor.robot_bridge.messages import TaskState, to_json
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
 
@@ -16,6 +17,7 @@ from tests.plugin.desk.plans.panel_parts import (
     planned,
     press,
     question,
+    queue,
 )
 
 
@@ -91,3 +93,16 @@ def test_a_site_that_is_published_anew_keeps_the_plan_and_another_site_does_not(
     assert under_way.driven.driven is driven
     gateway.tell("site", to_json(replace(site, id="elsewhere")))
     wait(lambda: under_way.driven.driven is None, 5)
+
+
+def test_what_is_done_is_counted_and_off_the_map_in_every_language(under_way, gateway, wait, monkeypatch):
+    monkeypatch.setattr(plan_rows, "_WORDS", {state: f"«{state.value}»" for state in TaskState})
+    first, *others = cones_of(under_way.driven.driven.plan)["r1"]
+    gateway.tell("queue", queue(under_way, "r1", ["done", "failed", "waiting"]))
+    wait(lambda: first in under_way.driven.progress.done, 5)
+    cone = child(under_way, "r1", first)
+    assert cone.text(2) == "«done»" and cone.parent().text(2) == "1 of 3 cones"
+    stops = {one["id"]: one["state"] for one in under_way.layers.stops.layer.getFeatures()}
+    assert [stops[one] for one in (first, *others)] == ["done", "failed", "waiting"]
+    drawn = {one["to_stop"] for one in under_way.layers.ways.layer.getFeatures()}
+    assert first not in drawn and set(others) <= drawn

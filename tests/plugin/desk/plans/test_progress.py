@@ -227,9 +227,9 @@ def test_the_table_says_what_a_cone_waits_for():
     assert report.task == waiting.task
     staged.progress.take_queue(QueueReport("r1", 1, QueueState.RUNNING, RobotState.FRESH, [report], []))
     draft = Draft(staged.plan, None, staged.facts, "plan-1")
-    states = {row.stop.id: row.state for row in rows_of(draft, staged.progress)["r1"]}
-    assert states["c3"] == "in the queue: waits for cone d1 of r2"
-    assert states["c1"] == ""
+    words = {row.stop.id: row.in_words() for row in rows_of(draft, staged.progress)["r1"]}
+    assert words["c3"] == "in the queue: waits for cone d1 of r2"
+    assert words["c1"] == ""
 
 
 def test_of_a_cone_that_was_sent_again_the_newest_task_counts(driven):
