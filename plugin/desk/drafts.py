@@ -234,4 +234,4 @@ def in_brief(texts: tuple[str, ...], most: int = 3) -> str:
 
 
 def _place(point: Point) -> str:
-    return tr("{point:.2f}, {point2:.2f} m", point=point[0], point2=point[1])
+    return tr("{x:.2f}, {y:.2f} m", x=point[0], y=point[1])

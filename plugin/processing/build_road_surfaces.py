@@ -132,7 +132,7 @@ class BuildRoadSurfaces(FleetAlgorithm):
         areas = areas_of(edges_of(surfaces), len(surfaces))
         for label in sorted({one.label for one in surfaces}):
             own = sum(area for area, one in zip(areas, surfaces, strict=True) if one.label == label)
-            feedback.pushInfo(tr("{value}: {own:.1f} m²", value=label or tr("without a class"), own=own))
+            feedback.pushInfo(tr("{label}: {area:.1f} m²", label=label or tr("without a class"), area=own))
         figures = (
             len(surfaces),
             len(made),

@@ -157,9 +157,9 @@ class JobSource:
             if len(points) != 1 or not all(math.isfinite(v) for v in (points[0].x(), points[0].y())):
                 raise ParameterError(
                     tr(
-                        "{layer} is not one point with a place in {authid}: correct it.",
+                        "{layer} is not one point with a place in {crs}: correct it.",
                         layer=layer,
-                        authid=crs.authid(),
+                        crs=crs.authid(),
                     )
                 )
             values = {

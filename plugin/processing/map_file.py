@@ -223,11 +223,11 @@ def _numbers(meta: Mapping[str, str], key: str, count: int) -> tuple[float, ...]
         raise ParameterError(
             tr(
                 "The leading line '%{key} {meta}' of the map should hold {wanted}: correct it there, or "
-                "give {upper}.",
+                "give {parameter}.",
                 key=key,
                 meta=meta[key],
                 wanted=wanted,
-                upper=key.upper(),
+                parameter=key.upper(),
             )
         )
     return numbers

@@ -58,9 +58,9 @@ class PlacedMap:
         except QgsCsException as error:
             raise ParameterError(
                 tr(
-                    "The map's positions cannot be transformed from {authid} to longitudes and latitudes "
+                    "The map's positions cannot be transformed from {crs} to longitudes and latitudes "
                     "({error}): check the map's lines crs, origin and rotation.",
-                    authid=self.place.crs.authid(),
+                    crs=self.place.crs.authid(),
                     error=error,
                 )
             ) from error

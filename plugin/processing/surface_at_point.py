@@ -130,9 +130,9 @@ class SurfaceAtPoint(FleetAlgorithm):
             return {}
         feedback.pushInfo(
             tr(
-                "{counts} points are on a surface, {counts2} on none.",
-                counts=counts[True],
-                counts2=counts[False],
+                "{on} points are on a surface, {off} on none.",
+                on=counts[True],
+                off=counts[False],
             )
         )
         return {OUTPUT: made, **dict(zip(NUMBERS, (counts[True], counts[False], warnings), strict=True))}

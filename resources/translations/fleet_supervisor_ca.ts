@@ -1186,9 +1186,9 @@
         </message>
         <message>
             <location filename="../../plugin/desk/commands/coordinates_dialog.py" />
-            <source>Write {order} in {authid}.
+            <source>Write {order} in {crs}.
 {path}</source>
-            <translation>Escriviu {order} en {authid}.
+            <translation>Escriviu {order} en {crs}.
 {path}</translation>
         </message>
         <message>
@@ -1203,15 +1203,15 @@
         </message>
         <message>
             <location filename="../../plugin/desk/commands/coordinates_dialog.py" />
-            <source>{place:.2f}, {place2:.2f} m on the site</source>
-            <translation>{place:.2f}, {place2:.2f} m al recinte</translation>
+            <source>{site}; {east:.2f}, {north:.2f} in {crs}.
+{path}</source>
+            <translation>{site}; {east:.2f}, {north:.2f} en {crs}.
+{path}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/commands/coordinates_dialog.py" />
-            <source>{site}; {east:.2f}, {north:.2f} in {authid}.
-{path}</source>
-            <translation>{site}; {east:.2f}, {north:.2f} en {authid}.
-{path}</translation>
+            <source>{x:.2f}, {y:.2f} m on the site</source>
+            <translation>{x:.2f}, {y:.2f} m al recinte</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/commands/draft_commands.py" />
@@ -1295,8 +1295,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/commands/layer_drafts.py" />
-            <source>The layer {layer} has {featurecount} features and a queue takes {longest_queue}: select those that are meant.</source>
-            <translation>La capa {layer} té {featurecount} entitats i una cua n'admet {longest_queue}: seleccioneu les que voleu.</translation>
+            <source>The layer {layer} has {count} features and a queue takes {longest_queue}: select those that are meant.</source>
+            <translation>La capa {layer} té {count} entitats i una cua n'admet {longest_queue}: seleccioneu les que voleu.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/commands/layer_drafts.py" />
@@ -1315,8 +1315,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/commands/layer_drafts.py" />
-            <source>The line that is selected in {layer} has {partcount} parts, and a robot cannot leap from one to the next: make it one line.</source>
-            <translation>La línia seleccionada a {layer} té {partcount} parts, i un robot no pot saltar d'una a l'altra: feu-ne una sola línia.</translation>
+            <source>The line that is selected in {layer} has {parts} parts, and a robot cannot leap from one to the next: make it one line.</source>
+            <translation>La línia seleccionada a {layer} té {parts} parts, i un robot no pot saltar d'una a l'altra: feu-ne una sola línia.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/commands/override_dialog.py" />
@@ -1340,8 +1340,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/commands/override_dialog.py" />
-            <source>because: {strip}</source>
-            <translation>perquè: {strip}</translation>
+            <source>because: {reason}</source>
+            <translation>perquè: {reason}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/cone_store.py" />
@@ -1590,8 +1590,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/drafting/datum_path.py" />
-            <source>By {name} ({exact}).{value}</source>
-            <translation>Per {name} ({exact}).{value}</translation>
+            <source>By {name} ({exact}).{warning}</source>
+            <translation>Per {name} ({exact}).{warning}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/drafting/datum_path.py" />
@@ -1607,6 +1607,11 @@
             <location filename="../../plugin/desk/drafting/datum_path.py" />
             <source>accurate to {accuracy:g} m</source>
             <translation>exactitud de {accuracy:g} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/datum_path.py" />
+            <source>exact</source>
+            <translation>exacte</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/drafting/datum_path.py" />
@@ -1675,8 +1680,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/drafting/place_text.py" />
-            <source>{strip!r}: latitude {lat:g} and longitude {lon:g} are not on the earth; write latitude first, or choose the CRS that the numbers are in.</source>
-            <translation>{strip!r}: la latitud {lat:g} i la longitud {lon:g} no són a la Terra; escriviu abans la latitud, o trieu el SRC en què són els nombres.</translation>
+            <source>{text!r}: latitude {lat:g} and longitude {lon:g} are not on the earth; write latitude first, or choose the CRS that the numbers are in.</source>
+            <translation>{text!r}: la latitud {lat:g} i la longitud {lon:g} no són a la Terra; escriviu abans la latitud, o trieu el SRC en què són els nombres.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/drafting/route_editing.py" />
@@ -1730,8 +1735,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/drafting/tracks.py" />
-            <source>({point:.2f}, {point2:.2f}) m</source>
-            <translation>({point:.2f}, {point2:.2f}) m</translation>
+            <source>({x:.2f}, {y:.2f}) m</source>
+            <translation>({x:.2f}, {y:.2f}) m</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/drafts.py" />
@@ -1775,13 +1780,13 @@
         </message>
         <message>
             <location filename="../../plugin/desk/drafts.py" />
-            <source>{point:.2f}, {point2:.2f} m</source>
-            <translation>{point:.2f}, {point2:.2f} m</translation>
+            <source>{points} cones for {robot}</source>
+            <translation>{points} cons per a {robot}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/drafts.py" />
-            <source>{points} cones for {robot}</source>
-            <translation>{points} cons per a {robot}</translation>
+            <source>{x:.2f}, {y:.2f} m</source>
+            <translation>{x:.2f}, {y:.2f} m</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/emergency_banner.py" />
@@ -2410,6 +2415,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/as_placed_page.py" />
+            <source>everything</source>
+            <translation>tot</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed_page.py" />
             <source>layout {name}</source>
             <translation>disposició {name}</translation>
         </message>
@@ -2435,8 +2445,13 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/collecting.py" />
-            <source>No cone stands {what} that could be collected{also}.</source>
-            <translation>No hi ha cap con {what} que es pugui recollir{also}.</translation>
+            <source>No cone of layout {layout} stands that could be collected{also}.</source>
+            <translation>No hi ha cap con de la disposició {layout} que es pugui recollir{also}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/collecting.py" />
+            <source>No cone stands that could be collected{also}.</source>
+            <translation>No hi ha cap con que es pugui recollir{also}.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/collecting.py" />
@@ -2444,24 +2459,14 @@
             <translation>Què cal recollir</translation>
         </message>
         <message>
-            <location filename="../../plugin/desk/plans/collecting.py" />
-            <source>of layout {layout}</source>
-            <translation>de la disposició {layout}</translation>
+            <location filename="../../plugin/desk/plans/cone_source.py" />
+            <source>No layer of cones is chosen. Choose one, or place a cone layout first.</source>
+            <translation>No s'ha triat cap capa de cons. Trieu-ne una, o col·loqueu abans una disposició de cons.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/cone_source.py" />
-            <source>Choose another, or none.</source>
-            <translation>Trieu-ne una altra, o cap.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/cone_source.py" />
-            <source>Choose one, or place a cone layout first.</source>
-            <translation>Trieu-ne una, o col·loqueu abans una disposició de cons.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/cone_source.py" />
-            <source>No layer of {what} is chosen. {help_text}</source>
-            <translation>No s'ha triat cap capa de {what}. {help_text}</translation>
+            <source>The layer of stores is not in the project any more. Choose another, or none.</source>
+            <translation>La capa de magatzems ja no és al projecte. Trieu-ne una altra, o cap.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/cone_source.py" />
@@ -2615,8 +2620,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driving_bar.py" />
-            <source>Done: {done} of {all_of_them} cones</source>
-            <translation>Fet: {done} de {all_of_them} cons</translation>
+            <source>Done: {done} of {cones} cones</source>
+            <translation>Fet: {done} de {cones} cons</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driving_bar.py" />
@@ -2660,8 +2665,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driving_bar.py" />
-            <source>Under way: {done} of {all_of_them} cones</source>
-            <translation>En curs: {done} de {all_of_them} cons</translation>
+            <source>Under way: {done} of {cones} cones</source>
+            <translation>En curs: {done} de {cones} cons</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driving_bar.py" />
@@ -2796,9 +2801,9 @@
         <message>
             <location filename="../../plugin/desk/plans/plan_task.py" />
             <source>The plan could not be made. Please report this:
-{format_exc}</source>
+{traceback}</source>
             <translation>El pla no s'ha pogut fer. Comuniqueu això:
-{format_exc}</translation>
+{traceback}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/plan_tree.py" />
@@ -2907,8 +2912,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/robots_model.py" />
-            <source>{heads} of {rows} is {text!r}: give {least:g} or more.</source>
-            <translation>{heads} de {rows} és {text!r}: doneu {least:g} o més.</translation>
+            <source>{column} of {robot} is {text!r}: give {least:g} or more.</source>
+            <translation>{column} de {robot} és {text!r}: doneu {least:g} o més.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/robots_model.py" />
@@ -2992,8 +2997,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/sending_check.py" />
-            <source>{id}: {sum} cones</source>
-            <translation>{id}: {sum} cons</translation>
+            <source>{robot}: {cones} cones</source>
+            <translation>{robot}: {cones} cons</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/sending_check.py" />
@@ -5102,13 +5107,13 @@
         </message>
         <message>
             <location filename="../../plugin/processing/build_road_surfaces.py" />
-            <source>{old} of the surfaces that are given as drawn say that they were generated (field origin); they are left out and made anew</source>
-            <translation>{old} de les superfícies donades com a dibuixades diuen que es van generar (camp origin); s'ometen i es tornen a fer</translation>
+            <source>{label}: {area:.1f} m²</source>
+            <translation>{label}: {area:.1f} m²</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/build_road_surfaces.py" />
-            <source>{value}: {own:.1f} m²</source>
-            <translation>{value}: {own:.1f} m²</translation>
+            <source>{old} of the surfaces that are given as drawn say that they were generated (field origin); they are left out and made anew</source>
+            <translation>{old} de les superfícies donades com a dibuixades diuen que es van generar (camp origin); s'ometen i es tornen a fer</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/check_road_network.py" />
@@ -5857,6 +5862,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/histogram_svg.py" />
+            <source>cones</source>
+            <translation>cons</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/histogram_svg.py" />
             <source>deviation in cm</source>
             <translation>desviació en cm</translation>
         </message>
@@ -6032,8 +6042,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/job_source.py" />
-            <source>{layer} is not one point with a place in {authid}: correct it.</source>
-            <translation>{layer} no és un sol punt amb lloc a {authid}: corregiu-lo.</translation>
+            <source>{layer} is not one point with a place in {crs}: correct it.</source>
+            <translation>{layer} no és un sol punt amb lloc a {crs}: corregiu-lo.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/job_source.py" />
@@ -6182,8 +6192,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/map_file.py" />
-            <source>The leading line '%{key} {meta}' of the map should hold {wanted}: correct it there, or give {upper}.</source>
-            <translation>La línia inicial '%{key} {meta}' del mapa hauria de contenir {wanted}: corregiu-la allà, o doneu {upper}.</translation>
+            <source>The leading line '%{key} {meta}' of the map should hold {wanted}: correct it there, or give {parameter}.</source>
+            <translation>La línia inicial '%{key} {meta}' del mapa hauria de contenir {wanted}: corregiu-la allà, o doneu {parameter}.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/map_file.py" />
@@ -6247,8 +6257,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/map_place.py" />
-            <source>The map's positions cannot be transformed from {authid} to longitudes and latitudes ({error}): check the map's lines crs, origin and rotation.</source>
-            <translation>Les posicions del mapa no es poden transformar de {authid} a longituds i latituds ({error}): comproveu les línies crs, origin i rotation del mapa.</translation>
+            <source>The map's positions cannot be transformed from {crs} to longitudes and latitudes ({error}): check the map's lines crs, origin and rotation.</source>
+            <translation>Les posicions del mapa no es poden transformar de {crs} a longituds i latituds ({error}): comproveu les línies crs, origin i rotation del mapa.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/map_profile.py" />
@@ -6677,6 +6687,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/report_layout.py" />
+            <source>E and N in metres of {crs}; {mark} beyond the tolerance of {tolerance:g} cm</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/report_layout.py" />
             <source>Mean {mean}, RMS {rms}, 95 % within {p95}, largest {most}.</source>
             <translation>Mitjana {mean}, RMS {rms}, 95 % dins de {p95}, màxima {most}.</translation>
         </message>
@@ -6684,6 +6699,11 @@
             <location filename="../../plugin/processing/report_layout.py" />
             <source>QGIS cannot make the report (layout export {number}): check the free space, and the background layers by leaving them out.</source>
             <translation>El QGIS no pot fer l'informe (exportació de la composició: {number}): comproveu l'espai lliure, i les capes de fons traient-les.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/report_layout.py" />
+            <source>Robots: {names}</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/processing/report_layout.py" />
@@ -6697,18 +6717,23 @@
         </message>
         <message>
             <location filename="../../plugin/processing/report_layout.py" />
-            <source>robots: {names}</source>
-            <translation>robots: {names}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/report_layout.py" />
             <source>{first} to {last} UTC</source>
             <translation>de {first} a {last} UTC</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/report_layout.py" />
+            <source>{time} UTC</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/report_layout.py" />
             <source>{within} of {count} cones ({share:.0f} %) stand within {tolerance:g} cm of their plan.</source>
             <translation>{within} de {count} cons ({share:.0f} %) són a menys de {tolerance:g} cm del pla.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/report_layout.py" />
+            <source>× planned   ● placed (red: beyond the tolerance)   orange: deviation</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/processing/report_layout.py" />
@@ -6892,8 +6917,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/surface_at_point.py" />
-            <source>{counts} points are on a surface, {counts2} on none.</source>
-            <translation>{counts} punts són sobre una superfície, {counts2} sobre cap.</translation>
+            <source>{on} points are on a surface, {off} on none.</source>
+            <translation>{on} punts són sobre una superfície, {off} sobre cap.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/svg_picture.py" />

@@ -1186,9 +1186,9 @@
         </message>
         <message>
             <location filename="../../plugin/desk/commands/coordinates_dialog.py" />
-            <source>Write {order} in {authid}.
+            <source>Write {order} in {crs}.
 {path}</source>
-            <translation>Escriba {order} en {authid}.
+            <translation>Escriba {order} en {crs}.
 {path}</translation>
         </message>
         <message>
@@ -1203,15 +1203,15 @@
         </message>
         <message>
             <location filename="../../plugin/desk/commands/coordinates_dialog.py" />
-            <source>{place:.2f}, {place2:.2f} m on the site</source>
-            <translation>{place:.2f}, {place2:.2f} m en el recinto</translation>
+            <source>{site}; {east:.2f}, {north:.2f} in {crs}.
+{path}</source>
+            <translation>{site}; {east:.2f}, {north:.2f} en {crs}.
+{path}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/commands/coordinates_dialog.py" />
-            <source>{site}; {east:.2f}, {north:.2f} in {authid}.
-{path}</source>
-            <translation>{site}; {east:.2f}, {north:.2f} en {authid}.
-{path}</translation>
+            <source>{x:.2f}, {y:.2f} m on the site</source>
+            <translation>{x:.2f}, {y:.2f} m en el recinto</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/commands/draft_commands.py" />
@@ -1295,8 +1295,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/commands/layer_drafts.py" />
-            <source>The layer {layer} has {featurecount} features and a queue takes {longest_queue}: select those that are meant.</source>
-            <translation>La capa {layer} tiene {featurecount} objetos y una cola admite {longest_queue}: seleccione los que quiere.</translation>
+            <source>The layer {layer} has {count} features and a queue takes {longest_queue}: select those that are meant.</source>
+            <translation>La capa {layer} tiene {count} objetos y una cola admite {longest_queue}: seleccione los que quiere.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/commands/layer_drafts.py" />
@@ -1315,8 +1315,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/commands/layer_drafts.py" />
-            <source>The line that is selected in {layer} has {partcount} parts, and a robot cannot leap from one to the next: make it one line.</source>
-            <translation>La línea seleccionada en {layer} tiene {partcount} partes, y un robot no puede saltar de una a otra: haga una sola línea.</translation>
+            <source>The line that is selected in {layer} has {parts} parts, and a robot cannot leap from one to the next: make it one line.</source>
+            <translation>La línea seleccionada en {layer} tiene {parts} partes, y un robot no puede saltar de una a otra: haga una sola línea.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/commands/override_dialog.py" />
@@ -1340,8 +1340,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/commands/override_dialog.py" />
-            <source>because: {strip}</source>
-            <translation>porque: {strip}</translation>
+            <source>because: {reason}</source>
+            <translation>porque: {reason}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/cone_store.py" />
@@ -1590,8 +1590,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/drafting/datum_path.py" />
-            <source>By {name} ({exact}).{value}</source>
-            <translation>Por {name} ({exact}).{value}</translation>
+            <source>By {name} ({exact}).{warning}</source>
+            <translation>Por {name} ({exact}).{warning}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/drafting/datum_path.py" />
@@ -1607,6 +1607,11 @@
             <location filename="../../plugin/desk/drafting/datum_path.py" />
             <source>accurate to {accuracy:g} m</source>
             <translation>exactitud de {accuracy:g} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/datum_path.py" />
+            <source>exact</source>
+            <translation>exacto</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/drafting/datum_path.py" />
@@ -1675,8 +1680,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/drafting/place_text.py" />
-            <source>{strip!r}: latitude {lat:g} and longitude {lon:g} are not on the earth; write latitude first, or choose the CRS that the numbers are in.</source>
-            <translation>{strip!r}: la latitud {lat:g} y la longitud {lon:g} no están en la Tierra; escriba antes la latitud, o elija el SRC en que están los números.</translation>
+            <source>{text!r}: latitude {lat:g} and longitude {lon:g} are not on the earth; write latitude first, or choose the CRS that the numbers are in.</source>
+            <translation>{text!r}: la latitud {lat:g} y la longitud {lon:g} no están en la Tierra; escriba antes la latitud, o elija el SRC en que están los números.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/drafting/route_editing.py" />
@@ -1730,8 +1735,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/drafting/tracks.py" />
-            <source>({point:.2f}, {point2:.2f}) m</source>
-            <translation>({point:.2f}, {point2:.2f}) m</translation>
+            <source>({x:.2f}, {y:.2f}) m</source>
+            <translation>({x:.2f}, {y:.2f}) m</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/drafts.py" />
@@ -1775,13 +1780,13 @@
         </message>
         <message>
             <location filename="../../plugin/desk/drafts.py" />
-            <source>{point:.2f}, {point2:.2f} m</source>
-            <translation>{point:.2f}, {point2:.2f} m</translation>
+            <source>{points} cones for {robot}</source>
+            <translation>{points} conos para {robot}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/drafts.py" />
-            <source>{points} cones for {robot}</source>
-            <translation>{points} conos para {robot}</translation>
+            <source>{x:.2f}, {y:.2f} m</source>
+            <translation>{x:.2f}, {y:.2f} m</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/emergency_banner.py" />
@@ -2410,6 +2415,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/as_placed_page.py" />
+            <source>everything</source>
+            <translation>todo</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed_page.py" />
             <source>layout {name}</source>
             <translation>disposición {name}</translation>
         </message>
@@ -2435,8 +2445,13 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/collecting.py" />
-            <source>No cone stands {what} that could be collected{also}.</source>
-            <translation>No hay ningún cono {what} que se pueda recoger{also}.</translation>
+            <source>No cone of layout {layout} stands that could be collected{also}.</source>
+            <translation>No hay ningún cono de la disposición {layout} que se pueda recoger{also}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/collecting.py" />
+            <source>No cone stands that could be collected{also}.</source>
+            <translation>No hay ningún cono que se pueda recoger{also}.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/collecting.py" />
@@ -2444,24 +2459,14 @@
             <translation>Qué hay que recoger</translation>
         </message>
         <message>
-            <location filename="../../plugin/desk/plans/collecting.py" />
-            <source>of layout {layout}</source>
-            <translation>de la disposición {layout}</translation>
+            <location filename="../../plugin/desk/plans/cone_source.py" />
+            <source>No layer of cones is chosen. Choose one, or place a cone layout first.</source>
+            <translation>No se ha elegido ninguna capa de conos. Elija una, o coloque antes una disposición de conos.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/cone_source.py" />
-            <source>Choose another, or none.</source>
-            <translation>Elija otra, o ninguna.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/cone_source.py" />
-            <source>Choose one, or place a cone layout first.</source>
-            <translation>Elija una, o coloque antes una disposición de conos.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/cone_source.py" />
-            <source>No layer of {what} is chosen. {help_text}</source>
-            <translation>No se ha elegido ninguna capa de {what}. {help_text}</translation>
+            <source>The layer of stores is not in the project any more. Choose another, or none.</source>
+            <translation>La capa de almacenes ya no está en el proyecto. Elija otra, o ninguna.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/cone_source.py" />
@@ -2615,8 +2620,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driving_bar.py" />
-            <source>Done: {done} of {all_of_them} cones</source>
-            <translation>Hecho: {done} de {all_of_them} conos</translation>
+            <source>Done: {done} of {cones} cones</source>
+            <translation>Hecho: {done} de {cones} conos</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driving_bar.py" />
@@ -2660,8 +2665,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driving_bar.py" />
-            <source>Under way: {done} of {all_of_them} cones</source>
-            <translation>En curso: {done} de {all_of_them} conos</translation>
+            <source>Under way: {done} of {cones} cones</source>
+            <translation>En curso: {done} de {cones} conos</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driving_bar.py" />
@@ -2796,9 +2801,9 @@
         <message>
             <location filename="../../plugin/desk/plans/plan_task.py" />
             <source>The plan could not be made. Please report this:
-{format_exc}</source>
+{traceback}</source>
             <translation>El plan no se pudo hacer. Comunique esto:
-{format_exc}</translation>
+{traceback}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/plan_tree.py" />
@@ -2907,8 +2912,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/robots_model.py" />
-            <source>{heads} of {rows} is {text!r}: give {least:g} or more.</source>
-            <translation>{heads} de {rows} es {text!r}: dé {least:g} o más.</translation>
+            <source>{column} of {robot} is {text!r}: give {least:g} or more.</source>
+            <translation>{column} de {robot} es {text!r}: dé {least:g} o más.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/robots_model.py" />
@@ -2992,8 +2997,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/sending_check.py" />
-            <source>{id}: {sum} cones</source>
-            <translation>{id}: {sum} conos</translation>
+            <source>{robot}: {cones} cones</source>
+            <translation>{robot}: {cones} conos</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/sending_check.py" />
@@ -5102,13 +5107,13 @@
         </message>
         <message>
             <location filename="../../plugin/processing/build_road_surfaces.py" />
-            <source>{old} of the surfaces that are given as drawn say that they were generated (field origin); they are left out and made anew</source>
-            <translation>{old} de las superficies dadas como dibujadas dicen que se generaron (campo origin); se omiten y se vuelven a hacer</translation>
+            <source>{label}: {area:.1f} m²</source>
+            <translation>{label}: {area:.1f} m²</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/build_road_surfaces.py" />
-            <source>{value}: {own:.1f} m²</source>
-            <translation>{value}: {own:.1f} m²</translation>
+            <source>{old} of the surfaces that are given as drawn say that they were generated (field origin); they are left out and made anew</source>
+            <translation>{old} de las superficies dadas como dibujadas dicen que se generaron (campo origin); se omiten y se vuelven a hacer</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/check_road_network.py" />
@@ -5857,6 +5862,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/histogram_svg.py" />
+            <source>cones</source>
+            <translation>conos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/histogram_svg.py" />
             <source>deviation in cm</source>
             <translation>desviación en cm</translation>
         </message>
@@ -6032,8 +6042,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/job_source.py" />
-            <source>{layer} is not one point with a place in {authid}: correct it.</source>
-            <translation>{layer} no es un solo punto con lugar en {authid}: corríjalo.</translation>
+            <source>{layer} is not one point with a place in {crs}: correct it.</source>
+            <translation>{layer} no es un solo punto con lugar en {crs}: corríjalo.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/job_source.py" />
@@ -6182,8 +6192,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/map_file.py" />
-            <source>The leading line '%{key} {meta}' of the map should hold {wanted}: correct it there, or give {upper}.</source>
-            <translation>La línea inicial '%{key} {meta}' del mapa debería contener {wanted}: corríjala allí, o dé {upper}.</translation>
+            <source>The leading line '%{key} {meta}' of the map should hold {wanted}: correct it there, or give {parameter}.</source>
+            <translation>La línea inicial '%{key} {meta}' del mapa debería contener {wanted}: corríjala allí, o dé {parameter}.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/map_file.py" />
@@ -6247,8 +6257,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/map_place.py" />
-            <source>The map's positions cannot be transformed from {authid} to longitudes and latitudes ({error}): check the map's lines crs, origin and rotation.</source>
-            <translation>Las posiciones del mapa no se pueden transformar de {authid} a longitudes y latitudes ({error}): compruebe las líneas crs, origin y rotation del mapa.</translation>
+            <source>The map's positions cannot be transformed from {crs} to longitudes and latitudes ({error}): check the map's lines crs, origin and rotation.</source>
+            <translation>Las posiciones del mapa no se pueden transformar de {crs} a longitudes y latitudes ({error}): compruebe las líneas crs, origin y rotation del mapa.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/map_profile.py" />
@@ -6677,6 +6687,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/report_layout.py" />
+            <source>E and N in metres of {crs}; {mark} beyond the tolerance of {tolerance:g} cm</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/report_layout.py" />
             <source>Mean {mean}, RMS {rms}, 95 % within {p95}, largest {most}.</source>
             <translation>Media {mean}, RMS {rms}, 95 % dentro de {p95}, máxima {most}.</translation>
         </message>
@@ -6684,6 +6699,11 @@
             <location filename="../../plugin/processing/report_layout.py" />
             <source>QGIS cannot make the report (layout export {number}): check the free space, and the background layers by leaving them out.</source>
             <translation>QGIS no puede hacer el informe (exportación de la composición: {number}): compruebe el espacio libre, y las capas de fondo quitándolas.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/report_layout.py" />
+            <source>Robots: {names}</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/processing/report_layout.py" />
@@ -6697,18 +6717,23 @@
         </message>
         <message>
             <location filename="../../plugin/processing/report_layout.py" />
-            <source>robots: {names}</source>
-            <translation>robots: {names}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/report_layout.py" />
             <source>{first} to {last} UTC</source>
             <translation>de {first} a {last} UTC</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/report_layout.py" />
+            <source>{time} UTC</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/report_layout.py" />
             <source>{within} of {count} cones ({share:.0f} %) stand within {tolerance:g} cm of their plan.</source>
             <translation>{within} de {count} conos ({share:.0f} %) están a menos de {tolerance:g} cm del plan.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/report_layout.py" />
+            <source>× planned   ● placed (red: beyond the tolerance)   orange: deviation</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/processing/report_layout.py" />
@@ -6892,8 +6917,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/surface_at_point.py" />
-            <source>{counts} points are on a surface, {counts2} on none.</source>
-            <translation>{counts} puntos están sobre una superficie, {counts2} sobre ninguna.</translation>
+            <source>{on} points are on a surface, {off} on none.</source>
+            <translation>{on} puntos están sobre una superficie, {off} sobre ninguna.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/svg_picture.py" />

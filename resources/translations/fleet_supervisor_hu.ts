@@ -1184,9 +1184,9 @@
         </message>
         <message>
             <location filename="../../plugin/desk/commands/coordinates_dialog.py" />
-            <source>Write {order} in {authid}.
+            <source>Write {order} in {crs}.
 {path}</source>
-            <translation>Írja be: {order} itt: {authid}.
+            <translation>Írja be: {order} itt: {crs}.
 {path}</translation>
         </message>
         <message>
@@ -1201,15 +1201,15 @@
         </message>
         <message>
             <location filename="../../plugin/desk/commands/coordinates_dialog.py" />
-            <source>{place:.2f}, {place2:.2f} m on the site</source>
-            <translation>{place:.2f}, {place2:.2f} m a telephelyen</translation>
+            <source>{site}; {east:.2f}, {north:.2f} in {crs}.
+{path}</source>
+            <translation>{site}; {east:.2f}, {north:.2f} itt: {crs}.
+{path}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/commands/coordinates_dialog.py" />
-            <source>{site}; {east:.2f}, {north:.2f} in {authid}.
-{path}</source>
-            <translation>{site}; {east:.2f}, {north:.2f} itt: {authid}.
-{path}</translation>
+            <source>{x:.2f}, {y:.2f} m on the site</source>
+            <translation>{x:.2f}, {y:.2f} m a telephelyen</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/commands/draft_commands.py" />
@@ -1293,8 +1293,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/commands/layer_drafts.py" />
-            <source>The layer {layer} has {featurecount} features and a queue takes {longest_queue}: select those that are meant.</source>
-            <translation>A(z) {layer} rétegnek {featurecount} eleme van, és egy várólista {longest_queue} darabot fogad: jelölje ki, amelyekről szó van.</translation>
+            <source>The layer {layer} has {count} features and a queue takes {longest_queue}: select those that are meant.</source>
+            <translation>A(z) {layer} rétegnek {count} eleme van, és egy várólista {longest_queue} darabot fogad: jelölje ki, amelyekről szó van.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/commands/layer_drafts.py" />
@@ -1313,8 +1313,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/commands/layer_drafts.py" />
-            <source>The line that is selected in {layer} has {partcount} parts, and a robot cannot leap from one to the next: make it one line.</source>
-            <translation>A(z) {layer} rétegen kijelölt vonal {partcount} részből áll, és egy robot nem ugorhat egyikről a másikra: legyen egy vonal.</translation>
+            <source>The line that is selected in {layer} has {parts} parts, and a robot cannot leap from one to the next: make it one line.</source>
+            <translation>A(z) {layer} rétegen kijelölt vonal {parts} részből áll, és egy robot nem ugorhat egyikről a másikra: legyen egy vonal.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/commands/override_dialog.py" />
@@ -1338,8 +1338,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/commands/override_dialog.py" />
-            <source>because: {strip}</source>
-            <translation>mert: {strip}</translation>
+            <source>because: {reason}</source>
+            <translation>mert: {reason}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/cone_store.py" />
@@ -1588,8 +1588,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/drafting/datum_path.py" />
-            <source>By {name} ({exact}).{value}</source>
-            <translation>Művelet: {name} ({exact}).{value}</translation>
+            <source>By {name} ({exact}).{warning}</source>
+            <translation>Művelet: {name} ({exact}).{warning}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/drafting/datum_path.py" />
@@ -1605,6 +1605,11 @@
             <location filename="../../plugin/desk/drafting/datum_path.py" />
             <source>accurate to {accuracy:g} m</source>
             <translation>pontossága {accuracy:g} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/datum_path.py" />
+            <source>exact</source>
+            <translation>pontos</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/drafting/datum_path.py" />
@@ -1673,8 +1678,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/drafting/place_text.py" />
-            <source>{strip!r}: latitude {lat:g} and longitude {lon:g} are not on the earth; write latitude first, or choose the CRS that the numbers are in.</source>
-            <translation>{strip!r}: a {lat:g} szélesség és {lon:g} hosszúság nincs a Földön; a szélességet írja előbb, vagy válassza a számok vetületét.</translation>
+            <source>{text!r}: latitude {lat:g} and longitude {lon:g} are not on the earth; write latitude first, or choose the CRS that the numbers are in.</source>
+            <translation>{text!r}: a {lat:g} szélesség és {lon:g} hosszúság nincs a Földön; a szélességet írja előbb, vagy válassza a számok vetületét.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/drafting/route_editing.py" />
@@ -1728,8 +1733,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/drafting/tracks.py" />
-            <source>({point:.2f}, {point2:.2f}) m</source>
-            <translation>({point:.2f}, {point2:.2f}) m</translation>
+            <source>({x:.2f}, {y:.2f}) m</source>
+            <translation>({x:.2f}, {y:.2f}) m</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/drafts.py" />
@@ -1773,13 +1778,13 @@
         </message>
         <message>
             <location filename="../../plugin/desk/drafts.py" />
-            <source>{point:.2f}, {point2:.2f} m</source>
-            <translation>{point:.2f}, {point2:.2f} m</translation>
+            <source>{points} cones for {robot}</source>
+            <translation>{points} bója ennek: {robot}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/drafts.py" />
-            <source>{points} cones for {robot}</source>
-            <translation>{points} bója ennek: {robot}</translation>
+            <source>{x:.2f}, {y:.2f} m</source>
+            <translation>{x:.2f}, {y:.2f} m</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/emergency_banner.py" />
@@ -2408,6 +2413,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/as_placed_page.py" />
+            <source>everything</source>
+            <translation>minden</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed_page.py" />
             <source>layout {name}</source>
             <translation>{name} elrendezés</translation>
         </message>
@@ -2433,8 +2443,13 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/collecting.py" />
-            <source>No cone stands {what} that could be collected{also}.</source>
-            <translation>Nincs begyűjthető bója {what}{also}.</translation>
+            <source>No cone of layout {layout} stands that could be collected{also}.</source>
+            <translation>A(z) {layout} elrendezésnek nincs begyűjthető bójája{also}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/collecting.py" />
+            <source>No cone stands that could be collected{also}.</source>
+            <translation>Nincs begyűjthető bója{also}.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/collecting.py" />
@@ -2442,24 +2457,14 @@
             <translation>Mit kell begyűjteni</translation>
         </message>
         <message>
-            <location filename="../../plugin/desk/plans/collecting.py" />
-            <source>of layout {layout}</source>
-            <translation>({layout} elrendezés)</translation>
+            <location filename="../../plugin/desk/plans/cone_source.py" />
+            <source>No layer of cones is chosen. Choose one, or place a cone layout first.</source>
+            <translation>Nincs kiválasztva bójaréteg. Válasszon egyet, vagy előbb helyezzen el bójaelrendezést.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/cone_source.py" />
-            <source>Choose another, or none.</source>
-            <translation>Válasszon másikat, vagy egyiket se.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/cone_source.py" />
-            <source>Choose one, or place a cone layout first.</source>
-            <translation>Válasszon egyet, vagy előbb helyezzen el bójaelrendezést.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/cone_source.py" />
-            <source>No layer of {what} is chosen. {help_text}</source>
-            <translation>Nincs kiválasztott réteg ehhez: {what}. {help_text}</translation>
+            <source>The layer of stores is not in the project any more. Choose another, or none.</source>
+            <translation>A raktárak rétege már nincs a projektben. Válasszon másikat, vagy egyiket se.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/cone_source.py" />
@@ -2613,8 +2618,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driving_bar.py" />
-            <source>Done: {done} of {all_of_them} cones</source>
-            <translation>Kész: {all_of_them} bójából {done}</translation>
+            <source>Done: {done} of {cones} cones</source>
+            <translation>Kész: {cones} bójából {done}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driving_bar.py" />
@@ -2658,8 +2663,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driving_bar.py" />
-            <source>Under way: {done} of {all_of_them} cones</source>
-            <translation>Folyamatban: {all_of_them} bójából {done}</translation>
+            <source>Under way: {done} of {cones} cones</source>
+            <translation>Folyamatban: {cones} bójából {done}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driving_bar.py" />
@@ -2794,9 +2799,9 @@
         <message>
             <location filename="../../plugin/desk/plans/plan_task.py" />
             <source>The plan could not be made. Please report this:
-{format_exc}</source>
+{traceback}</source>
             <translation>A tervet nem sikerült elkészíteni. Kérjük, jelentse ezt:
-{format_exc}</translation>
+{traceback}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/plan_tree.py" />
@@ -2905,8 +2910,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/robots_model.py" />
-            <source>{heads} of {rows} is {text!r}: give {least:g} or more.</source>
-            <translation>{rows} {heads} értéke {text!r}: adjon meg legalább {least:g} értéket.</translation>
+            <source>{column} of {robot} is {text!r}: give {least:g} or more.</source>
+            <translation>{robot} {column} értéke {text!r}: adjon meg legalább {least:g} értéket.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/robots_model.py" />
@@ -2990,8 +2995,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/sending_check.py" />
-            <source>{id}: {sum} cones</source>
-            <translation>{id}: {sum} bója</translation>
+            <source>{robot}: {cones} cones</source>
+            <translation>{robot}: {cones} bója</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/sending_check.py" />
@@ -5098,13 +5103,13 @@
         </message>
         <message>
             <location filename="../../plugin/processing/build_road_surfaces.py" />
-            <source>{old} of the surfaces that are given as drawn say that they were generated (field origin); they are left out and made anew</source>
-            <translation>{old} rajzoltként megadott felület azt mondja magáról, hogy előállított (origin mező); ezek kimaradnak és újra elkészülnek</translation>
+            <source>{label}: {area:.1f} m²</source>
+            <translation>{label}: {area:.1f} m²</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/build_road_surfaces.py" />
-            <source>{value}: {own:.1f} m²</source>
-            <translation>{value}: {own:.1f} m²</translation>
+            <source>{old} of the surfaces that are given as drawn say that they were generated (field origin); they are left out and made anew</source>
+            <translation>{old} rajzoltként megadott felület azt mondja magáról, hogy előállított (origin mező); ezek kimaradnak és újra elkészülnek</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/check_road_network.py" />
@@ -5853,6 +5858,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/histogram_svg.py" />
+            <source>cones</source>
+            <translation>bóják</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/histogram_svg.py" />
             <source>deviation in cm</source>
             <translation>eltérés cm-ben</translation>
         </message>
@@ -6028,8 +6038,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/job_source.py" />
-            <source>{layer} is not one point with a place in {authid}: correct it.</source>
-            <translation>{layer} nem egyetlen pont, amelynek helye van itt: {authid}. Javítsa ki.</translation>
+            <source>{layer} is not one point with a place in {crs}: correct it.</source>
+            <translation>{layer} nem egyetlen pont, amelynek helye van itt: {crs}. Javítsa ki.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/job_source.py" />
@@ -6178,8 +6188,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/map_file.py" />
-            <source>The leading line '%{key} {meta}' of the map should hold {wanted}: correct it there, or give {upper}.</source>
-            <translation>A térkép '%{key} {meta}' bevezető sorában ennek kell állnia: {wanted}. Javítsa ki ott, vagy adja meg: {upper}.</translation>
+            <source>The leading line '%{key} {meta}' of the map should hold {wanted}: correct it there, or give {parameter}.</source>
+            <translation>A térkép '%{key} {meta}' bevezető sorában ennek kell állnia: {wanted}. Javítsa ki ott, vagy adja meg: {parameter}.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/map_file.py" />
@@ -6243,8 +6253,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/map_place.py" />
-            <source>The map's positions cannot be transformed from {authid} to longitudes and latitudes ({error}): check the map's lines crs, origin and rotation.</source>
-            <translation>A térkép helyzetei nem számíthatók át innen: {authid}, hosszúságra és szélességre ({error}): ellenőrizze a térkép crs, origin és rotation sorát.</translation>
+            <source>The map's positions cannot be transformed from {crs} to longitudes and latitudes ({error}): check the map's lines crs, origin and rotation.</source>
+            <translation>A térkép helyzetei nem számíthatók át innen: {crs}, hosszúságra és szélességre ({error}): ellenőrizze a térkép crs, origin és rotation sorát.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/map_profile.py" />
@@ -6673,6 +6683,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/report_layout.py" />
+            <source>E and N in metres of {crs}; {mark} beyond the tolerance of {tolerance:g} cm</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/report_layout.py" />
             <source>Mean {mean}, RMS {rms}, 95 % within {p95}, largest {most}.</source>
             <translation>Átlag {mean}, négyzetes közép {rms}, 95 % ezen belül: {p95}, legnagyobb {most}.</translation>
         </message>
@@ -6680,6 +6695,11 @@
             <location filename="../../plugin/processing/report_layout.py" />
             <source>QGIS cannot make the report (layout export {number}): check the free space, and the background layers by leaving them out.</source>
             <translation>A QGIS nem tudja elkészíteni a jelentést (elrendezés exportálása: {number}): ellenőrizze a szabad helyet, és a háttérrétegeket elhagyásukkal.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/report_layout.py" />
+            <source>Robots: {names}</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/processing/report_layout.py" />
@@ -6693,18 +6713,23 @@
         </message>
         <message>
             <location filename="../../plugin/processing/report_layout.py" />
-            <source>robots: {names}</source>
-            <translation>robotok: {names}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/report_layout.py" />
             <source>{first} to {last} UTC</source>
             <translation>{first} – {last} UTC</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/report_layout.py" />
+            <source>{time} UTC</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/report_layout.py" />
             <source>{within} of {count} cones ({share:.0f} %) stand within {tolerance:g} cm of their plan.</source>
             <translation>{count} bójából {within} ({share:.0f} %) áll {tolerance:g} cm-en belül a tervhez képest.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/report_layout.py" />
+            <source>× planned   ● placed (red: beyond the tolerance)   orange: deviation</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/processing/report_layout.py" />
@@ -6888,8 +6913,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/surface_at_point.py" />
-            <source>{counts} points are on a surface, {counts2} on none.</source>
-            <translation>{counts} pont van felületen, {counts2} egyiken sem.</translation>
+            <source>{on} points are on a surface, {off} on none.</source>
+            <translation>{on} pont van felületen, {off} egyiken sem.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/svg_picture.py" />

@@ -107,18 +107,18 @@ class CoordinatesDialog(QDialog):
         path = datum_path(crs, site_crs, context).in_words()
         if not self._text.text().strip():
             order = tr("latitude, longitude") if crs.isGeographic() else tr("x, y")
-            return tr("Write {order} in {authid}.\n{path}", order=order, authid=crs.authid(), path=path)
+            return tr("Write {order} in {crs}.\n{path}", order=order, crs=crs.authid(), path=path)
         x, y = read_place(self._text.text(), geographic=crs.isGeographic())
         placement = Placement(self._desk.site, crs, context)
         self._place = placement.to_site(QgsPointXY(x, y))
-        site = tr("{place:.2f}, {place2:.2f} m on the site", place=self._place[0], place2=self._place[1])
+        site = tr("{x:.2f}, {y:.2f} m on the site", x=self._place[0], y=self._place[1])
         ((east, north),) = placement.frame.to_crs([self._place])
         return tr(
-            "{site}; {east:.2f}, {north:.2f} in {authid}.\n{path}",
+            "{site}; {east:.2f}, {north:.2f} in {crs}.\n{path}",
             site=site,
             east=east,
             north=north,
-            authid=site_crs.authid(),
+            crs=site_crs.authid(),
             path=path,
         )
 

@@ -63,10 +63,10 @@ def _features(layer: QgsVectorLayer) -> list[QgsFeature]:
     if not chosen and layer.featureCount() > LONGEST_QUEUE:
         raise LayerDraftError(
             tr(
-                "The layer {layer} has {featurecount} features and a queue takes {longest_queue}: select "
+                "The layer {layer} has {count} features and a queue takes {longest_queue}: select "
                 "those that are meant.",
                 layer=layer.name(),
-                featurecount=layer.featureCount(),
+                count=layer.featureCount(),
                 longest_queue=LONGEST_QUEUE,
             )
         )
@@ -121,10 +121,10 @@ def _route(layer: QgsVectorLayer, features: Sequence[QgsFeature], desk: Desk) ->
     if line.partCount() != 1:
         raise LayerDraftError(
             tr(
-                "The line that is selected in {layer} has {partcount} parts, and a robot cannot leap from "
+                "The line that is selected in {layer} has {parts} parts, and a robot cannot leap from "
                 "one to the next: make it one line.",
                 layer=layer.name(),
-                partcount=line.partCount(),
+                parts=line.partCount(),
             )
         )
     places = [(vertex.x(), vertex.y()) for vertex in line.vertices()]

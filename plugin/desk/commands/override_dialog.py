@@ -40,7 +40,7 @@ class OverrideDialog(QuestionDialog):
         self.accepted.connect(self._confirm)
 
     def _confirm(self) -> None:
-        why = tr("because: {strip}", strip=self._why.text().strip())
+        why = tr("because: {reason}", reason=self._why.text().strip())
         found = in_brief(self._draft.findings.overridable, MOST_SHOWN)[: LONGEST - len(why) - 1]
         text = "".join(c if c.isprintable() else " " for c in f"{found} {why}")
         self.confirmed.emit(self._draft, text)

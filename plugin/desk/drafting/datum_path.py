@@ -26,12 +26,12 @@ class DatumPath:
         """Return one or two sentences."""
         exact = tr("accuracy not known")
         if self.accuracy is not None:
-            exact = tr("accurate to {accuracy:g} m", accuracy=self.accuracy) if self.accuracy else "exact"
+            exact = tr("accurate to {accuracy:g} m", accuracy=self.accuracy) if self.accuracy else tr("exact")
         return tr(
-            "By {name} ({exact}).{value}",
+            "By {name} ({exact}).{warning}",
             name=self.name,
             exact=exact,
-            value=f" {self.warning}" if self.warning else "",
+            warning=f" {self.warning}" if self.warning else "",
         )
 
 

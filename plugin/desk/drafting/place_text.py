@@ -47,9 +47,9 @@ def read_place(text: str, *, geographic: bool) -> tuple[float, float]:
     if not (-90 <= lat <= 90 and -180 <= lon <= 180):
         raise PlaceTextError(
             tr(
-                "{strip!r}: latitude {lat:g} and longitude {lon:g} are not on the earth; write latitude "
+                "{text!r}: latitude {lat:g} and longitude {lon:g} are not on the earth; write latitude "
                 "first, or choose the CRS that the numbers are in.",
-                strip=text.strip(),
+                text=text.strip(),
                 lat=lat,
                 lon=lon,
             )

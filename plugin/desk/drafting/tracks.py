@@ -96,7 +96,7 @@ def boxes_of(lines: Sequence[QgsGeometry], around: float) -> Steps[list[QgsRecta
 def place_in_words(track: Track) -> str:
     """Return the end of a track as operators read it."""
     x, y = track[-1]
-    return tr("({point:.2f}, {point2:.2f}) m", point=x, point2=y)
+    return tr("({x:.2f}, {y:.2f}) m", x=x, y=y)
 
 
 def _places(draft: Draft) -> Iterator[Track]:

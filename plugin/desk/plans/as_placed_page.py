@@ -105,7 +105,7 @@ class AsPlacedPage(QWidget):
 
     def _fill_choices(self) -> None:
         layouts = sorted({one.layout for one in self._desk.placements if one.layout})
-        wanted = [(tr("the plan that is driven"), THIS_PLAN), ("everything", EVERYTHING)]
+        wanted = [(tr("the plan that is driven"), THIS_PLAN), (tr("everything"), EVERYTHING)]
         wanted += [(tr("layout {name}", name=name), ("layout", name)) for name in layouts]
         if [self.which.itemData(k) for k in range(self.which.count())] == [data for _, data in wanted]:
             return

@@ -48,9 +48,12 @@ class Collecting(QObject):
 
 
 def _nothing(layout: str | None, queued: int) -> str:
-    what = tr("of layout {layout}", layout=layout) if layout else "anywhere"
     also = tr("; {queued} are in queues already", queued=queued) if queued else ""
-    return tr("No cone stands {what} that could be collected{also}.", what=what, also=also)
+    if layout:
+        return tr(
+            "No cone of layout {layout} stands that could be collected{also}.", layout=layout, also=also
+        )
+    return tr("No cone stands that could be collected{also}.", also=also)
 
 
 def _task(values: dict[str, Any]) -> QueueTask:

@@ -67,7 +67,9 @@ def read_cones(
 
     :raises ConeLayerError: when the layer is not there, empty, or a feature cannot be placed.
     """
-    layer = _layer(project, settings.cones, "cones", tr("Choose one, or place a cone layout first."))
+    layer = project.mapLayer(settings.cones)
+    if layer is None:
+        raise ConeLayerError(tr("No layer of cones is chosen. Choose one, or place a cone layout first."))
     targets, facts = [], {}
     for row in _rows(layer, project, frame, settings.selected_only):
         theta = frame.heading_to_site(theta_of(row.number("heading", 90.0)))
@@ -94,18 +96,15 @@ def read_stores(project: QgsProject, settings: PlanSettings, frame: SiteFrame) -
     """Return the stores in the site frame, nothing where no layer is chosen; raises as :func:`read_cones`."""
     if not settings.stores:
         return ()
-    layer = _layer(project, settings.stores, "stores", tr("Choose another, or none."))
+    layer = project.mapLayer(settings.stores)
+    if layer is None:
+        raise ConeLayerError(
+            tr("The layer of stores is not in the project any more. Choose another, or none.")
+        )
     return tuple(
         Store(row.name, row.x, row.y, row.number("service_s", settings.store_s))
         for row in _rows(layer, project, frame, False)
     )
-
-
-def _layer(project: QgsProject, wanted: str, what: str, help_text: str) -> QgsVectorLayer:
-    layer = project.mapLayer(wanted) if wanted else None
-    if layer is None:
-        raise ConeLayerError(tr("No layer of {what} is chosen. {help_text}", what=what, help_text=help_text))
-    return layer
 
 
 @dataclass(frozen=True)

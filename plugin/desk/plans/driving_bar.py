@@ -89,8 +89,8 @@ class DrivingBar(QWidget):
         if driven.driven is not None and driven.progress is not None:
             done, all_of_them = len(driven.progress.done), len(driven.driven.plan.targets)
             if driven.progress.is_finished(driven.driven.plan):
-                return tr("Done: {done} of {all_of_them} cones", done=done, all_of_them=all_of_them)
-            return tr("Under way: {done} of {all_of_them} cones", done=done, all_of_them=all_of_them)
+                return tr("Done: {done} of {cones} cones", done=done, cones=all_of_them)
+            return tr("Under way: {done} of {cones} cones", done=done, cones=all_of_them)
         if drafts.draft is not None:
             return tr("Not sent yet: {summary}", summary=summary(drafts.draft))
         return tr("No plan. Choose cones and robots, then Preview or Solve.")

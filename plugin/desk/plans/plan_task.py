@@ -42,8 +42,8 @@ class PlanTask(QgsTask):
             self._why = str(error)
         except Exception:
             self._why = tr(
-                "The plan could not be made. Please report this:\n{format_exc}",
-                format_exc=traceback.format_exc(),
+                "The plan could not be made. Please report this:\n{traceback}",
+                traceback=traceback.format_exc(),
             )
         finally:
             self.left.set()

@@ -130,9 +130,9 @@ class RobotsModel(QAbstractTableModel):
         except ValueError:
             self.refused.emit(
                 tr(
-                    "{heads} of {rows} is {text!r}: give {least:g} or more.",
-                    heads=HEADS[column],
-                    rows=self._names[row],
+                    "{column} of {robot} is {text!r}: give {least:g} or more.",
+                    column=HEADS[column],
+                    robot=self._names[row],
                     text=text.strip(),
                     least=_LEAST[field],
                 )

@@ -24,9 +24,9 @@ def before_sending(desk: Desk, draft: Draft) -> str:
     lines = [summary(draft) + ".", ""]
     lines += [
         tr(
-            "{id}: {sum} cones",
-            id=one.robot.id,
-            sum=sum(stop.is_target for stop in one.stops),
+            "{robot}: {cones} cones",
+            robot=one.robot.id,
+            cones=sum(stop.is_target for stop in one.stops),
         )
         for one in driving
     ]

@@ -114,7 +114,7 @@ class SettingsForm(QWidget):
         layers = point_layers(self._project)
         for combo, wanted, none in (
             (self.cones, self.cones.currentData() or self._settings.cones, tr("choose a layer of points")),
-            (self.stores, self.stores.currentData() or self._settings.stores, "none"),
+            (self.stores, self.stores.currentData() or self._settings.stores, tr("none")),
         ):
             combo.clear()
             combo.addItem(none, "")

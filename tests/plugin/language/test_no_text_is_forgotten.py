@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import ast
+import itertools
 import re
 import string
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import pytest
@@ -98,10 +99,23 @@ def _ids_passed_over(tree: ast.AST) -> Iterator[int]:
 
 
 def _ids_beside_translated(tree: ast.AST) -> Iterator[int]:
-    """Yield the literals that a dictionary has beside translated texts."""
+    """Yield what stands in place of a translated text: in a dictionary, a choice, or a column of rows."""
     for node in ast.walk(tree):
-        if isinstance(node, ast.Dict) and any(_is_translation(value) for value in node.values):
-            yield from (id(value) for value in node.values)
+        for alternatives in _alternatives(node):
+            if any(_is_translation(one) for one in alternatives):
+                yield from map(id, alternatives)
+
+
+def _alternatives(node: ast.AST) -> Iterator[Sequence[ast.AST]]:
+    """Yield expressions of ``node`` of which one is taken as well as another."""
+    if isinstance(node, ast.Dict):
+        yield node.values
+    elif isinstance(node, ast.IfExp):
+        yield node.body, node.orelse
+    elif isinstance(node, (ast.List, ast.Tuple)):
+        rows = [row.elts for row in node.elts if isinstance(row, ast.Tuple)]
+        if len(rows) == len(node.elts):
+            yield from itertools.zip_longest(*rows)
 
 
 def _is_translation(node: ast.AST) -> bool:
@@ -154,6 +168,8 @@ def _name(node: ast.AST) -> str:
         'DockAction(iface, text="Replay")',
         'tr("{robots} robots", robots="no" if none else count)',
         'WORDS = {DONE: "done", OPEN: tr("open")}',
+        'where = tr("on the map") if place else "anywhere"',
+        'for data, text in ((HERE, tr("here")), (ALL, "everything")): fill(data, text)',
     ],
 )
 def test_a_text_that_is_not_translated_is_found(line):
