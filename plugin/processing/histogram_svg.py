@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from xml.sax.saxutils import escape
 
@@ -38,7 +39,7 @@ def histogram(values: npt.NDArray[np.float64], tolerance: float) -> str:
     per = (HEIGHT - TOP - BOTTOM) / most
     floor = HEIGHT - BOTTOM
     parts = [_head()]
-    for height in _ticks(most):
+    for height in ticks(most):
         y = floor - height * per
         parts.append(f'<path d="M{LEFT} {y:.1f}H{WIDTH - RIGHT}" stroke="#ced4da" stroke-width="1"/>')
         parts.append(_text(LEFT - 8, y + 6, str(height), "end"))
@@ -67,6 +68,8 @@ def histogram(values: npt.NDArray[np.float64], tolerance: float) -> str:
         f'<path d="M{LEFT} {TOP}V{floor}H{WIDTH - RIGHT}" fill="none" stroke="#212529" stroke-width="1.6"/>'
     )
     parts.append(_text((LEFT + WIDTH - RIGHT) / 2, HEIGHT - 10, tr("deviation in cm"), "middle"))
+    upwards = f'<g transform="translate(18 {(TOP + floor) / 2:.1f}) rotate(-90)">'
+    parts.append(f"{upwards}{_text(0, 0, tr('cones'), 'middle')}</g>")
     return "\n".join([*parts, "</svg>"])
 
 
@@ -87,6 +90,8 @@ def _round(step: float) -> float:
     return next(power * digit for digit in (1, 2, 5, 10) if power * digit >= max(step, 0.001) - 1e-12)
 
 
-def _ticks(most: int) -> list[int]:
-    step = max(1, math.ceil(most / 5))
-    return list(range(step, most + 1, step))
+def ticks(most: int) -> list[int]:
+    """Return round numbers of cones from 0 to ``most``, at most six."""
+    steps = (digit * 10**power for power in itertools.count() for digit in (1, 2, 5))
+    step = next(step for step in steps if most < 6 * step)
+    return list(range(0, most + 1, step))

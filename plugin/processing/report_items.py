@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from qgis.core import (
     QgsLayoutItem,
     QgsLayoutItemLabel,
     QgsLayoutItemPage,
     QgsLayoutPoint,
     QgsLayoutSize,
+    QgsLayoutUtils,
     QgsPrintLayout,
     QgsTextFormat,
+    QgsTextRenderer,
     QgsUnitTypes,
 )
 
@@ -59,6 +63,13 @@ def text_format(size: float, *, bold: bool) -> QgsTextFormat:
     letters.setSize(size)
     letters.setSizeUnit(QgsUnitTypes.RenderUnit.RenderPoints)
     return letters
+
+
+def widths_of(layout: QgsPrintLayout, letters: QgsTextFormat) -> Callable[[str], float]:
+    """Return what tells how wide a text is in ``letters``, in millimetres."""
+    context = QgsLayoutUtils.createRenderContextForLayout(layout, None)
+    millimetre = context.convertToPainterUnits(1.0, QgsUnitTypes.RenderUnit.RenderMillimeters)
+    return lambda text: QgsTextRenderer.textWidth(context, letters, [text]) / millimetre
 
 
 def put(item: QgsLayoutItem, area: tuple[float, float, float, float], page: int = 0) -> None:

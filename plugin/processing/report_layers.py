@@ -91,7 +91,7 @@ def _points(
     if named:
         settings = QgsPalLayerSettings()
         settings.fieldName = "cone"
-        settings.placement, settings.dist = QgsPalLayerSettings.Placement.OrderedPositionsAroundPoint, 0.8
+        settings.placement, settings.dist = QgsPalLayerSettings.Placement.OrderedPositionsAroundPoint, 1.8
         letters = settings.format()
         letters.setSize(7)
         halo = letters.buffer()

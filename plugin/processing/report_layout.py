@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -12,6 +13,7 @@ from qgis.core import (
     QgsCoordinateReferenceSystem,
     QgsCoordinateTransformContext,
     QgsLayoutExporter,
+    QgsLayoutItem,
     QgsLayoutItemMap,
     QgsLayoutItemPage,
     QgsLayoutItemPicture,
@@ -27,9 +29,9 @@ from qgis.PyQt.QtCore import Qt
 from ..language import tr
 from .histogram_svg import HEIGHT, WIDTH, histogram
 from .placed_cones import Deviations, PlacedCone, values_of
-from .report_items import MARGIN, TEXT_WIDTH, add_text, corner, put
+from .report_items import MARGIN, TEXT_WIDTH, add_text, corner, put, text_format
 from .report_layers import extent_of, factor_of, map_layers
-from .report_table import add_table, time_in_words
+from .report_table import BEYOND, add_table, time_in_words
 from .whole_file import OutputError
 
 
@@ -110,47 +112,73 @@ def laid_out(report: Report, project: QgsProject, folder: Path) -> QgsPrintLayou
     layout.initializeDefaults()
     layout.pageCollection().page(0).setPageSize("A4", QgsLayoutItemPage.Orientation.Portrait)
     add_text(layout, report.title, (MARGIN, 12, TEXT_WIDTH, 10), 17, bold=True)
-    add_text(layout, _told(report), (MARGIN, 23, TEXT_WIDTH, 16), 10)
+    add_text(layout, _told(report), (MARGIN, 22, TEXT_WIDTH, 20), 9.5)
     _picture(layout, report, folder)
     _map(layout, report, project)
     add_table(layout, report.cones, report.tolerance)
-    for page in range(layout.pageCollection().pageCount()):
-        text = f"{page + 1} / {layout.pageCollection().pageCount()}"
-        label = add_text(layout, text, (MARGIN, 285, TEXT_WIDTH, 6), 8, page=page)
-        label.setHAlign(Qt.AlignmentFlag.AlignRight)
+    _feet(layout, report)
     return layout
+
+
+def _feet(layout: QgsPrintLayout, report: Report) -> None:
+    """Number the pages, and say on those of the table what its columns are."""
+    key = tr(
+        "E and N in metres of {crs}; {mark} beyond the tolerance of {tolerance:g} cm",
+        crs=report.crs.authid() or report.crs.description(),
+        mark=BEYOND,
+        tolerance=report.tolerance * 100,
+    )
+    count = layout.pageCollection().pageCount()
+    for page in range(count):
+        if page:
+            add_text(layout, key, (MARGIN, 282, TEXT_WIDTH, 5), 8, page=page)
+        text = f"{report.title} · {page + 1} / {count}"
+        label = add_text(layout, text, (MARGIN, 287, TEXT_WIDTH, 5), 8, page=page)
+        label.setHAlign(Qt.AlignmentFlag.AlignRight)
 
 
 def _told(report: Report) -> str:
     figures = report.figures
-    robots = sorted({cone.robot for cone in report.cones if cone.robot})
-    times = [cone.at for cone in report.cones if cone.at is not None]
-    share = 100.0 * figures.within / figures.count
     lines = [
         tr(
             "{within} of {count} cones ({share:.0f} %) stand within {tolerance:g} cm of their plan.",
             within=figures.within,
             count=figures.count,
-            share=share,
+            share=100.0 * figures.within / figures.count,
             tolerance=report.tolerance * 100,
         ),
         tr(
             "Mean {mean}, RMS {rms}, 95 % within {p95}, largest {most}.",
-            mean=_cm(figures.mean),
-            rms=_cm(figures.rms),
-            p95=_cm(figures.p95),
-            most=_cm(figures.most),
+            mean=_length(figures.mean),
+            rms=_length(figures.rms),
+            p95=_length(figures.p95),
+            most=_length(figures.most),
         ),
+        "; ".join([*_times(report), report.crs.userFriendlyIdentifier()]),
     ]
-    facts = []
+    robots = sorted({cone.robot for cone in report.cones if cone.robot}, key=_natural)
     if robots:
         names = ", ".join(robots[:8]) + (" …" if len(robots) > 8 else "")
-        facts.append(tr("robots: {names}", names=names))
-    if times:
-        first, last = time_in_words(min(times)), time_in_words(max(times))
-        facts.append(tr("{first} to {last} UTC", first=first, last=last))
-    lines.append("; ".join([*facts, report.crs.authid() or report.crs.description()]))
+        lines.insert(2, tr("Robots: {names}", names=names))
     return "\n".join(lines)
+
+
+def _times(report: Report) -> list[str]:
+    """Return when the first and the last cone were placed; nothing where that is not known."""
+    times = [cone.at for cone in report.cones if cone.at is not None]
+    if not times:
+        return []
+    first, last = time_in_words(min(times)), time_in_words(max(times))
+    if first == last:
+        return [tr("{time} UTC", time=first)]
+    if first[:10] == last[:10]:
+        last = last[11:]
+    return [tr("{first} to {last} UTC", first=first, last=last)]
+
+
+def _natural(name: str) -> list[tuple[int, str]]:
+    """Return what sorts names by the numbers in them: r2 comes before r10."""
+    return [(int(part), "") if part.isdecimal() else (-1, part) for part in re.split(r"(\d+)", name)]
 
 
 def _picture(layout: QgsPrintLayout, report: Report, folder: Path) -> None:
@@ -184,14 +212,22 @@ def _map(layout: QgsPrintLayout, report: Report, project: QgsProject) -> None:
     bar.setUnitLabel("m")
     bar.setMapUnitsPerScaleBarUnit(1.0)
     bar.setBackgroundEnabled(True)
-    bar.attemptMove(corner(MARGIN + 2, 259))
+    bar.setTextFormat(text_format(8, bold=False))
+    bar.setHeight(2.0)
+    bar.resizeToMinimumWidth()
+    bar.setReferencePoint(QgsLayoutItem.ReferencePoint.LowerLeft)
+    bar.attemptMove(corner(MARGIN + 2, 272))
     layout.addLayoutItem(bar)
-    words = tr(
-        "× planned   ● placed (red: beyond the tolerance)   orange: deviation, {factor} times as long",
-        factor=factor,
+    words = (
+        tr("× planned   ● placed (red: beyond the tolerance)   orange: deviation")
+        if factor == 1
+        else tr(
+            "× planned   ● placed (red: beyond the tolerance)   orange: deviation, {factor} times as long",
+            factor=factor,
+        )
     )
     add_text(layout, words, (MARGIN, 275.5, TEXT_WIDTH, 6), 8)
 
 
-def _cm(metres: float) -> str:
-    return f"{metres * 100:.1f} cm"
+def _length(metres: float) -> str:
+    return f"{metres:.2f} m" if metres >= 1.0 else f"{metres * 100:.1f} cm"

@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from datetime import datetime, timezone
 
 from qgis.core import (
     QgsLayoutFrame,
     QgsLayoutItemTextTable,
     QgsLayoutMultiFrame,
+    QgsLayoutTable,
     QgsLayoutTableColumn,
     QgsPrintLayout,
 )
 from qgis.PyQt.QtCore import Qt
+from qgis.PyQt.QtGui import QColor
 
 from ..language import tr
+from .column_room import shared, shortened
 from .placed_cones import PlacedCone
-from .report_items import MARGIN, TEXT_WIDTH, a4_page, put, text_format
+from .report_items import MARGIN, TEXT_WIDTH, a4_page, put, text_format, widths_of
 
 COLUMNS = (
     (tr("Cone"), 22, False),
@@ -31,27 +34,48 @@ COLUMNS = (
     ("", 3, False),
 )
 """Of each its head, its width in millimetres without the margins of its cells, and whether it has numbers."""
+NAMES = 3
+"""Columns of names, the first ones: they share their room as their names are long."""
+LETTERS = 7.5
+"""Points."""
+BEYOND = "!"
+"""Stands beside a cone that is beyond the tolerance."""
 
 
 def add_table(layout: QgsPrintLayout, cones: Sequence[PlacedCone], tolerance: float) -> None:
-    """Put the table on the second page, and on as many more as it takes."""
+    """Put the table on the second page, and on as many more as it takes, each with its heads."""
     table = QgsLayoutItemTextTable(layout)
     layout.addMultiFrame(table)
-    table.setColumns([_column(*column) for column in COLUMNS])
-    table.setContents([_row(cone, tolerance) for cone in cones])
-    for set_format, size, bold in (
-        (table.setContentTextFormat, 7.5, False),
-        (table.setHeaderTextFormat, 7.5, True),
-    ):
-        set_format(text_format(size, bold=bold))
+    head = text_format(LETTERS, bold=True)
+    table.setHeaderTextFormat(head)
+    table.setContentTextFormat(text_format(LETTERS, bold=False))
+    # Bold letters are the wider ones: what fits in them fits.
+    _fill(table, [_row(cone, tolerance) for cone in cones], widths_of(layout, head))
+    table.setHeaderMode(QgsLayoutTable.HeaderMode.AllFrames)
     table.setCellMargin(0.7)
     table.setGridStrokeWidth(0.1)
+    table.setGridColor(QColor(173, 181, 189))
     layout.pageCollection().addPage(a4_page(layout))
     frame = QgsLayoutFrame(layout, table)
-    put(frame, (MARGIN, MARGIN, TEXT_WIDTH, 266), page=1)
+    put(frame, (MARGIN, MARGIN, TEXT_WIDTH, 264), page=1)
     table.addFrame(frame)
     table.setResizeMode(QgsLayoutMultiFrame.ResizeMode.RepeatUntilFinished)
     table.recalculateFrameSizes()
+
+
+def _fill(table: QgsLayoutItemTextTable, rows: Sequence[list[str]], width_of: Callable[[str], float]) -> None:
+    """Give the table its rows, and columns in which the names fit as far as there is room."""
+    heads, widths, numbers = zip(*COLUMNS)  # noqa: B905
+    texts = [{head, *(row[k] for row in rows)} for k, head in enumerate(heads[:NAMES])]
+    room = shared(sum(widths[:NAMES]), [max(map(width_of, column)) for column in texts])
+    fitting = [
+        {text: shortened(text, width, width_of) for text in column}
+        for column, width in zip(texts, room)  # noqa: B905
+    ]
+    for row in rows:
+        row[:NAMES] = [short[text] for short, text in zip(fitting, row)]  # noqa: B905
+    table.setColumns([_column(*column) for column in zip(heads, [*room, *widths[NAMES:]], numbers)])  # noqa: B905
+    table.setContents(rows)
 
 
 def _column(head: str, width: float, numbers: bool) -> QgsLayoutTableColumn:
@@ -74,7 +98,7 @@ def _row(cone: PlacedCone, tolerance: float) -> list[str]:
         f"{east * 100:+.1f}",
         f"{north * 100:+.1f}",
         f"{cone.deviation * 100:.1f}",
-        "!" if cone.deviation > tolerance else "",
+        BEYOND if cone.deviation > tolerance else "",
     ]
 
 

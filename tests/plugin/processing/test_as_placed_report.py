@@ -5,11 +5,14 @@ from __future__ import annotations
 import re
 import subprocess
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
-from fleet_supervisor.plugin.processing.histogram_svg import bars, histogram
+from fleet_supervisor.plugin.processing.column_room import shared, shortened
+from fleet_supervisor.plugin.processing.histogram_svg import bars, histogram, ticks
 from fleet_supervisor.plugin.processing.placed_cones import PlacedCone, deviations
+from fleet_supervisor.plugin.processing.report_items import widths_of
 from fleet_supervisor.plugin.processing.report_layers import extent_of, factor_of, map_layers
 from fleet_supervisor.plugin.processing.report_layout import Report, laid_out
 from qgis.core import (
@@ -17,6 +20,7 @@ from qgis.core import (
     QgsLayoutItemLabel,
     QgsLayoutItemMap,
     QgsLayoutItemTextTable,
+    QgsLayoutTable,
     QgsProcessingContext,
     QgsProcessingException,
     QgsProject,
@@ -93,6 +97,9 @@ def test_the_layout_says_it_all(qgis_app, tmp_path):
     texts = "\n".join(item.text() for item in layout.items() if isinstance(item, QgsLayoutItemLabel))
     assert "Slalom" in texts
     assert "2 of 3 cones (67 %) stand within 20 cm" in texts
+    assert "EPSG:32633 - WGS 84 / UTM zone 33N" in texts
+    assert "! beyond the tolerance of 20 cm" in texts
+    assert "Slalom · 2 / 2" in texts
     assert "largest 30.0 cm" in texts
     (table,) = (frame for frame in layout.multiFrames() if isinstance(frame, QgsLayoutItemTextTable))
     contents = [
@@ -105,6 +112,84 @@ def test_the_layout_says_it_all(qgis_app, tmp_path):
     assert [layer.name() for layer in shown.layers()] == ["Deviations", "Planned", "Beyond", "Within"]
     # Nothing of the table beyond the paper's margins.
     assert table.totalSize().width() <= 180.0
+
+
+def text_of(given, tmp_path):
+    project = QgsProject()
+    project.setCrs(QgsCoordinateReferenceSystem(UTM))
+    layout = laid_out(Report("Slalom", given, deviations(given, 0.2), 0.2, project.crs()), project, tmp_path)
+    return "\n".join(item.text() for item in layout.items() if isinstance(item, QgsLayoutItemLabel))
+
+
+def test_robots_stand_in_the_order_of_their_numbers_and_a_day_is_named_once(qgis_app, tmp_path):
+    begin = 1_790_000_000.0
+    given = [
+        PlacedCone(f"c{k}", f"r{k}", "", (E, N), (E + 0.01 * k, N), begin + 60 * k) for k in (10, 9, 2, 1)
+    ]
+    told = text_of(given, tmp_path)
+    assert "Robots: r1, r2, r9, r10" in told
+    assert "2026-09-21 14:14:20 to 14:23:20 UTC" in told
+    assert "2026-09-21 14:14:20 UTC;" in text_of(given[-1:], tmp_path)
+    later = replace(given[0], at=begin + 86_400)
+    assert "2026-09-21 14:14:20 to 2026-09-22 14:13:20 UTC" in text_of([later, given[-1]], tmp_path)
+
+
+def test_a_metre_is_told_in_metres_and_a_line_of_true_length_as_such(qgis_app, tmp_path):
+    told = text_of(cones((0.0, 0.0), (7.0, 0.0)), tmp_path)
+    assert "largest 7.00 m" in told
+    assert "times as long" not in told
+    assert "10 times as long" in text_of(cones((0.0, 0.0), (0.1, 0.0)), tmp_path)
+
+
+def test_long_names_are_told_apart_on_every_page_of_the_table(qgis_app, tmp_path):
+    names = [f"constant-radius-circle-{k:03d}" for k in range(100)]
+    given = [replace(cones((0.01, 0.0))[0], name=name, layout="circle-of-a-hundred-metres") for name in names]
+    project = QgsProject()
+    report = Report("Circle", given, deviations(given, 0.2), 0.2, QgsCoordinateReferenceSystem(UTM))
+    layout = laid_out(report, project, tmp_path)
+    (table,) = (frame for frame in layout.multiFrames() if isinstance(frame, QgsLayoutItemTextTable))
+    letters = widths_of(layout, table.contentTextFormat())
+    contents = [
+        [cell.content() if hasattr(cell, "content") else cell for cell in row] for row in table.contents()
+    ]
+    for row in contents:
+        assert all(letters(text) <= column.width() for text, column in zip(row, table.columns(), strict=True))
+    assert [row[0][-3:] for row in contents] == [name[-3:] for name in names]
+    assert sum(column.width() for column in table.columns()) == pytest.approx(164.0)
+    assert table.headerMode() == QgsLayoutTable.HeaderMode.AllFrames
+
+
+@pytest.mark.parametrize(
+    ("needs", "given"),
+    [
+        ([10, 10, 10], [10, 10, 40]),
+        ([10, 50, 50], [10, 25, 25]),
+        ([90, 5, 15], [40, 5, 15]),
+        ([0, 0, 0], [0, 0, 60]),
+    ],
+)
+def test_what_a_column_does_not_need_the_longest_gets(needs, given):
+    assert shared(60, needs) == given
+
+
+def test_a_text_loses_its_middle():
+    assert shortened("slalom-12", 9, len) == "slalom-12"
+    assert shortened("slalom-12", 7, len) == "sla…-12"
+    assert shortened("slalom-12", 1, len) == "…"
+
+
+@pytest.mark.parametrize(
+    ("most", "marks"),
+    [
+        (1, [0, 1]),
+        (4, [0, 1, 2, 3, 4]),
+        (7, [0, 2, 4, 6]),
+        (29, [0, 5, 10, 15, 20, 25]),
+        (61, [0, 20, 40, 60]),
+    ],
+)
+def test_the_axis_of_cones_has_round_numbers(most, marks):
+    assert ticks(most) == marks
 
 
 def test_the_map_tells_good_from_bad_and_draws_deviations_longer(qgis_app):
