@@ -90,6 +90,8 @@ class Desk(QObject):
         self.link = LinkStatus(Phase.CLOSED)
         self.site: SiteReport | None = None
         self._url, self._is_other_gateway = "", False
+        self._not_sent_yet = ""
+        """What was told of a stop that waits for the link."""
         self.emergency: EmergencyReport | None = None
         self.selection: tuple[str, ...] = ()
         self._placement: Placement | None = None
@@ -101,6 +103,7 @@ class Desk(QObject):
         self.orders.refused.connect(self._refused)
         self.orders.accepted.connect(self.remarked)
         self.orders.slow.connect(self.failed)
+        self.orders.settled.connect(self.settled)
         self.roads.failed.connect(self.failed)
         self.roads.remarked.connect(self.remarked)
         self.preview.refused.connect(self.complained)
@@ -141,6 +144,8 @@ class Desk(QObject):
         if news.link != self.link:
             self.link = news.link
             self.link_changed.emit()
+            if self.link.phase is Phase.CONNECTED:
+                self.settled.emit(self._not_sent_yet)
         if news.site is not None:
             self._take_site(news.site)
         self._take_news(news)
@@ -385,12 +390,11 @@ class Desk(QObject):
                 )
             )
         self.connection.submit(order)
-        self.failed.emit(
-            tr(
-                "EMERGENCY STOP is NOT sent yet: the link is down. It is sent as soon as that is back; use "
-                "the robots' own emergency stops now."
-            )
+        self._not_sent_yet = tr(
+            "EMERGENCY STOP is NOT sent yet: the link is down. It is sent as soon as that is back; use "
+            "the robots' own emergency stops now."
         )
+        self.failed.emit(self._not_sent_yet)
 
     def _refused(self, text: str, draft: Draft | None) -> None:
         self.failed.emit(text)

@@ -25,7 +25,7 @@ class Pending:
     asked_at: float
     draft: Draft | None = None
     stops: bool = False
-    told_slow: bool = False
+    told_slow: str = ""
 
 
 class Orders(QObject):
@@ -35,6 +35,8 @@ class Orders(QObject):
     """An order was not carried out: the text, and the draft it came from or None."""
     accepted = pyqtSignal(str)
     slow = pyqtSignal(str)
+    settled = pyqtSignal(str)
+    """An order that ``slow`` told of with this text has been answered."""
 
     def __init__(
         self, submit: Callable[[Order], None], clock: Callable[[], float], parent: QObject | None = None
@@ -117,6 +119,8 @@ class Orders(QObject):
         pending = self._pending.pop(answer.order.key, None)
         if pending is None:
             return
+        if pending.told_slow:
+            self.settled.emit(pending.told_slow)
         if answer.error is not None:
             self.refused.emit(f"{pending.words}: {answer.error}", pending.draft)
             return
@@ -146,15 +150,13 @@ class Orders(QObject):
         now = self._clock()
         for pending in self._pending.values():
             if not pending.told_slow and now - pending.asked_at > SLOW_AFTER:
-                pending.told_slow = True
-                self.slow.emit(
-                    tr(
-                        "{words}: the gateway has not answered for {seconds:g} s, so it may not have "
-                        "arrived. It is repeated when the link is back; it is never done twice.",
-                        words=pending.words,
-                        seconds=SLOW_AFTER,
-                    )
+                pending.told_slow = tr(
+                    "{words}: the gateway has not answered for {seconds:g} s, so it may not have "
+                    "arrived. It is repeated when the link is back; it is never done twice.",
+                    words=pending.words,
+                    seconds=SLOW_AFTER,
                 )
+                self.slow.emit(pending.told_slow)
 
     def _command(
         self,

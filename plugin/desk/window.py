@@ -41,6 +41,8 @@ class DeskWindow(QObject):
         super().__init__(iface.mainWindow())
         self._iface = iface
         self._told = ""
+        self._told_of_link: set[str] = set()
+        """What hangs in the message bar, at most, of a link that broke or never came up."""
         canvas = iface.mapCanvas()
         self.desk = Desk(canvas, QgsProject.instance(), self)
         self.actions = Actions(self)
@@ -164,10 +166,20 @@ class DeskWindow(QObject):
         self.actions.connect.setText(tr("Disconnect") if wanted else tr("Connect"))
         if link.phase is Phase.FAILED:
             self.notices.error(link.reason)
+            self._told_of_link.add(link.reason)
         elif link.phase is Phase.RETRYING and link.reason != self._told:
             # The panel goes on showing it; the message bar says it once for each outage.
             self.notices.warning(link.reason)
+            self._told_of_link.add(link.reason)
         self._told = "" if link.phase in (Phase.CONNECTED, Phase.CLOSED) else link.reason
+        if not self._told:
+            self._take_down_what_was_told()
+
+    def _take_down_what_was_told(self) -> None:
+        """Let nothing hang of an outage that is over: a warning waits there while others lie on it."""
+        for text in self._told_of_link:
+            self.notices.take_down(text)
+        self._told_of_link.clear()
 
     def _show_emergency(self) -> None:
         if not self.dock.banner.isHidden() and not self.dock.isUserVisible():

@@ -62,6 +62,11 @@ def test_an_order_that_is_not_answered_is_told(at_desk, gateway, iface, wait):
     gateway.mute.add("abort_all")
     press(at_desk, QPushButton, "fleet_abort_all_button")
     wait(lambda: any("has not answered for 5 s" in text for text in iface.texts()), 7)
+    gateway.mute.clear()
+    gateway.stop()
+    gateway.start()
+    wait(lambda: not any("has not answered for 5 s" in text for text in iface.texts()), 10, "the text going")
+    assert len(at_desk.desk.orders) == 0
 
 
 def test_the_log_shows_each_step_with_time_who_and_how_far_off(at_desk, gateway, iface, wait):

@@ -179,6 +179,8 @@ def test_a_stop_pressed_while_the_link_is_down_is_sent_when_it_is_back_and_says_
     gateway.start()
     wait(lambda: "in force" in banner(at_desk), 10)
     assert len(gateway.asked("emergency_stop")) == 1
+    over = ("NOT sent yet", "The link to the gateway", "Nothing listens")
+    assert [text for text in iface.texts() if any(part in text for part in over)] == []
 
 
 def test_it_is_cleared_by_who_confirms_with_a_reason(stopped, gateway, iface, wait):
