@@ -101,6 +101,7 @@ class Fleet:
             self._consider,
         )
         self._book.seen = self.robots.pose
+        self._book.unseen = lambda robot: self.robots.is_unseen(robot, clock())
         self.ways = Ways(self.robots, self._book)
         self.roads = planner if isinstance(planner, RoadPlanner) else None
         self.orders = Orders(site, self.robots, self._book, database)

@@ -83,6 +83,15 @@ class Robots:
         robot = self._robots.get(name)
         return robot is not None and robot.located and robot.state is RobotState.FRESH
 
+    def is_unseen(self, name: str, now: float) -> bool:
+        """Tell whether a robot may have come further since it said where it is: too long ago, or before its
+        link or the gateway broke.
+        """
+        robot = self._robots.get(name)
+        if robot is None or robot.pose_at is None:
+            return False
+        return not robot.located or now - robot.pose_at >= self._stale_after
+
     def restore(self, robot: Robot, now: float) -> None:
         """Take in a robot that an earlier gateway knew."""
         self._robots[robot.name] = robot

@@ -167,6 +167,17 @@ def ended_by(abort: OpenCommand, mine: list[OpenCommand], now: float, why: str) 
     ]
 
 
+def given_up_by(command: OpenCommand, mine: list[OpenCommand]) -> OpenCommand | None:
+    """Return the Abort that the robot has acknowledged and that ``command`` came before, None without one.
+
+    ``mine`` are the open commands of the robot. Such a command waits for where the robot is seen to be.
+    """
+    if not command.is_motion:
+        return None
+    later = [c for c in mine if c.is_abort and not c.is_on_its_way and c.sa_id > command.sa_id]
+    return later[-1] if later else None
+
+
 def because(what: str, reason: str | None) -> str:
     """Return what happened, with the operator's reason if one was given."""
     return what if not reason else f"{what}: {reason}"

@@ -12,7 +12,16 @@ from typing import Any, TypeVar
 from sqlalchemy import Connection
 
 from ..command_life.arrival import judge
-from ..command_life.open_command import GATEWAY, NOTHING, OpenCommand, Order, drafted, ended_by, voided
+from ..command_life.open_command import (
+    GATEWAY,
+    NOTHING,
+    OpenCommand,
+    Order,
+    drafted,
+    ended_by,
+    given_up_by,
+    voided,
+)
 from ..command_life.open_commands import OpenCommands
 from ..command_life.states import is_open, may_become
 from ..errors import DataRefusedError, RefusedError, StoreError, UncertainError
@@ -40,6 +49,8 @@ DRIVEN_STEP = 0.5
 """metres along a path between two that are stored."""
 NOWHERE = SendPos(x=1e9, y=1e9, theta=0.0, v=0.0)
 """Where a robot was of which that was not stored: far from wherever it is now."""
+ABORTED = "the robot acknowledged the Abort"
+ABORTED_TOO_LATE = "it stood at its end when it was heard again, and the Abort came too late"
 MOST_LATE = 1000
 """acknowledgements of ended commands that wait for the database."""
 
@@ -74,6 +85,8 @@ class CommandBook:
         """Tells whether a robot waits for another: that ends with whatever else it is told."""
         self.seen: Callable[[str], SendPos | None] = lambda _robot: None
         """Tells where a robot was seen last."""
+        self.unseen: Callable[[str], bool] = lambda _robot: False
+        """Tells whether a robot may have come further since it was seen last."""
         self._open = OpenCommands()
         self._locks: dict[str, asyncio.Lock] = {}
         self._doubtful = False
@@ -161,12 +174,14 @@ class CommandBook:
 
         Return what stores those that are done, to be awaited; None where none is.
         """
-        reached = [
+        mine = self._open.of(robot)
+        done = [
             (command, deviation, pose)
-            for command in self._open.of(robot)
-            if command.arrival and (deviation := command.arrival.deviation(pose)) is not None
+            for command in mine
+            if command.arrival
+            and ((deviation := command.arrival.deviation(pose)) is not None or given_up_by(command, mine))
         ]
-        return to_its_end(self._all_reached(reached)) if reached else None
+        return to_its_end(self._all_done(done)) if done else None
 
     async def deliver_again(self, robot: str, reason: str, expire_after: float) -> None:
         """Send once more what a robot that started anew may have forgotten, unless it is too old."""
@@ -275,19 +290,24 @@ class CommandBook:
         if report is not None:
             self._changed(report)
 
-    async def _all_reached(self, reached: list[tuple[OpenCommand, float, SendPos]]) -> None:
-        for command, deviation, pose in reached:
-            await self._reached(command, deviation, pose)
+    async def _all_done(self, done: list[tuple[OpenCommand, float | None, SendPos]]) -> None:
+        for command, deviation, pose in done:
+            await self._done(command, deviation, pose)
 
-    async def _reached(self, command: OpenCommand, deviation: float, pose: SendPos) -> None:
+    async def _done(self, command: OpenCommand, deviation: float | None, pose: SendPos) -> None:
+        """Note that a robot has reached what it was told to, or (no ``deviation``) has given it up unseen."""
         async with self._holding([command.report.robot]):
-            if self._open.get(command.report.command) is command:
+            if self._open.get(command.report.command) is not command:
+                return
+            now, abort = self._clock(), given_up_by(command, self._open.of(command.report.robot))
+            if deviation is not None:
+                reason = None if abort is None else ABORTED_TOO_LATE
                 # An Abort has no place that it could be off.
                 off = None if command.is_abort else deviation
-                stood, now = (pose.x, pose.y, pose.theta), self._clock()
-                await self._save(
-                    [command.step(CommandState.REACHED, now, GATEWAY, deviation=off, stood=stood)]
-                )
+                stood = (pose.x, pose.y, pose.theta)
+                await self._save([command.step(CommandState.REACHED, now, GATEWAY, reason, off, stood)])
+            elif abort is not None:
+                await self._save(ended_by(abort, [command], now, ABORTED))
 
     async def _deliver_again(self, robot: str, reason: str, expire_after: float) -> None:
         async with self._holding([robot]):
@@ -332,12 +352,20 @@ class CommandBook:
                 command = command.step(CommandState.DELIVERED, now, GATEWAY)
                 steps.append(command)
             steps.append(command.step(CommandState.ACKNOWLEDGED, now, robot).judged(self.tolerance))
-            mine = self._open.of(robot)
-            return [*steps, *ended_by(command, mine, now, "the robot acknowledged the Abort")]
+            return [*steps, *ended_by(command, self._ended_with_it(robot), now, ABORTED)]
         if command.arrival is None:
             arrival = judge(command.message, self.tolerance, handed=command.handed)
             return [command.noted(now, robot, "acknowledged again", arrival)]
         return []
+
+    def _ended_with_it(self, robot: str) -> list[OpenCommand]:
+        """Return the commands that end when the robot acknowledges an Abort.
+
+        One that nobody saw lately may have come to the end of what it had taken on before the Abort reached
+        it: that ends with its next position.
+        """
+        mine, unseen = self._open.of(robot), self.unseen(robot)
+        return [command for command in mine if not (unseen and command.arrival)]
 
     def _anew(self, command: OpenCommand, reason: str, now: float) -> OpenCommand:
         """Return a command to be sent once more; one that was never fetched keeps its place behind."""
