@@ -65,8 +65,8 @@ def row(one: PlacementReport) -> list[str]:
         one.layout or "",
         *(f"{value:.3f}" for value in (one.planned_x, one.planned_y, one.x, one.y, one.deviation)),
         one.robot,
-        _utc(one.placed_at),
-        _utc(one.collected_at),
+        utc_in_words(one.placed_at),
+        utc_in_words(one.collected_at),
     ]
 
 
@@ -79,7 +79,8 @@ def as_csv(placements: list[PlacementReport]) -> str:
     return out.getvalue()
 
 
-def _utc(at: float | None) -> str:
+def utc_in_words(at: float | None) -> str:
+    """Return seconds since 1970 as ISO 8601 in UTC, nothing for None."""
     if at is None:
         return ""
     return datetime.fromtimestamp(at, timezone.utc).isoformat(timespec="seconds").replace("+00:00", "Z")

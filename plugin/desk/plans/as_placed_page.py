@@ -1,4 +1,4 @@
-"""The page of the as-placed report: table, figures, layer, CSV; and collecting a layout again."""
+"""The page of the as-placed report: table, figures, layer, CSV, PDF; and collecting a layout again."""
 
 from __future__ import annotations
 
@@ -25,6 +25,7 @@ from ..column_heads import fit_heads
 from ..desk import Desk
 from ..road_board import time_of_day
 from .as_placed import as_csv, chosen, tally
+from .as_placed_pdf import ReportError, open_report_dialog
 
 HEADS = (
     tr("Cone"),
@@ -68,6 +69,7 @@ class AsPlacedPage(QWidget):
         self.table.setSelectionBehavior(QAbstractItemView.SelectionBehavior.SelectRows)
         fit_heads(self.table)
         self.table.cellDoubleClicked.connect(self._go_there)
+        self.report = QPushButton(tr("Report…"))
         self.placements: list[PlacementReport] = []
         self._lay_out()
         self._fill_choices()
@@ -91,6 +93,7 @@ class AsPlacedPage(QWidget):
             for column, text in enumerate(_texts(one)):
                 self.table.setItem(k, column, QTableWidgetItem(text))
         self.table.resizeColumnsToContents()
+        self.report.setEnabled(bool(rows))
         self.shown.emit()
 
     def save(self, path: str) -> None:
@@ -141,6 +144,14 @@ class AsPlacedPage(QWidget):
                 )
             )
 
+    def _open_report(self) -> None:
+        # The user may have taken the layer out of the project.
+        self.show_placed()
+        try:
+            open_report_dialog(self._desk.project)
+        except ReportError as error:
+            self._desk.failed.emit(str(error))
+
     def _go_there(self, row: int, _: int) -> None:
         one = self.placements[-MANY:][row]
         self.place_wanted.emit(one.x, one.y)
@@ -159,6 +170,11 @@ class AsPlacedPage(QWidget):
             button.setObjectName(name)
             button.clicked.connect(lambda _=False, action=action: action())
             row.addWidget(button)
+        self.report.setObjectName("fleet_placed_report")
+        self.report.setToolTip(tr("Figures, histogram, map and table of these cones as a PDF"))
+        self.report.setEnabled(False)
+        self.report.clicked.connect(self._open_report)
+        foot.insertWidget(1, self.report)
         rows.addLayout(top)
         rows.addWidget(self.figures)
         rows.addWidget(self.table, 1)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+import numpy as np
 from qgis.core import (
     QgsLineSymbol,
     QgsMarkerSymbol,
@@ -18,10 +19,12 @@ from qgis.core import (
 )
 
 from ....robot_bridge.messages import PlacementReport, TaskState
+from ....robot_bridge.sites.frame import SiteFrame
 from ...language import tr
 from ..desk import Desk
-from ..road_board import time_of_day
-from ..row_layer import RowLayer, label
+from ..row_layer import Row, RowLayer, label
+from .as_placed import utc_in_words
+from .as_placed_pdf import PLACED
 from .draft import Draft
 from .plan_rows import StopRow, colour_of
 
@@ -32,8 +35,10 @@ STOP_FIELDS = (
 WAY_FIELDS = "robot:string,number:integer,to_stop:string,metres:double,arrives:string,colour:string"
 PLACED_FIELDS = (
     "cone:string,layout:string,robot:string,placed_at:string,deviation:double,planned_x:double,"
-    "planned_y:double,x:double,y:double,theta:double,collected:boolean"
+    "planned_y:double,x:double,y:double,theta:double,collected:boolean,planned_easting:double,"
+    "planned_northing:double,easting:double,northing:double"
 )
+"""As in what ``robot-bridge placements export`` writes, so that the as-placed report takes it."""
 
 
 class PlanLayers:
@@ -48,9 +53,7 @@ class PlanLayers:
         self.stops = RowLayer(
             project, "cone_plan_stops", tr("Cone plan, stops"), "Point", STOP_FIELDS, _style_stops
         )
-        self.placed = RowLayer(
-            project, "cones_as_placed", tr("Cones as placed"), "Point", PLACED_FIELDS, _style_placed
-        )
+        self.placed = RowLayer(project, PLACED, tr("Cones as placed"), "Point", PLACED_FIELDS, _style_placed)
 
     def show(self, draft: Draft | None, rows: Mapping[str, Sequence[StopRow]]) -> None:
         """Show a plan by the rows of each robot; nothing for none."""
@@ -68,7 +71,10 @@ class PlanLayers:
 
     def show_placed(self, placements: list[PlacementReport]) -> None:
         """Show where cones were put down."""
-        self.placed.show([([(one.x, one.y)], _placed_values(one)) for one in placements], self._desk.site)
+        site = self._desk.site
+        if site is not None:
+            frame = SiteFrame(site.crs, site.origin, site.rotation)
+            self.placed.show(_placed_rows(placements, frame), site)
 
     def remove(self) -> None:
         """Take all of them out of the project."""
@@ -82,11 +88,22 @@ def _stop_values(row: StopRow, colour: str) -> list[Any]:
     return [row.robot, row.number, row.trip, stop.kind, stop.id, row.arrives, state, row.why, colour]
 
 
-def _placed_values(one: PlacementReport) -> list[Any]:
-    return [
-        one.cone, one.layout, one.robot, time_of_day(one.placed_at), round(one.deviation, 4), one.planned_x,
-        one.planned_y, one.x, one.y, one.theta, one.collected_at is not None,
-    ]  # fmt: skip
+def _placed_rows(placements: Sequence[PlacementReport], frame: SiteFrame) -> list[Row]:
+    """Return where cones were put down and the values of ``PLACED_FIELDS``, times in UTC."""
+    if not placements:
+        return []
+    places = [(one.planned_x, one.planned_y, one.x, one.y) for one in placements]
+    # Without the noise, below a millimetre, of the way from the site's frame.
+    in_crs = np.round(frame.to_crs(np.reshape(places, (-1, 2))), 3).reshape(-1, 4).tolist()
+    rows: list[Row] = []
+    for one, crs_metres in zip(placements, in_crs, strict=True):
+        values = [
+            one.cone or one.label, one.layout, one.robot, utc_in_words(one.placed_at),
+            round(one.deviation, 4), one.planned_x, one.planned_y, one.x, one.y, one.theta,
+            one.collected_at is not None, *crs_metres,
+        ]  # fmt: skip
+        rows.append(([(one.x, one.y)], values))
+    return rows
 
 
 def _style_ways(layer: QgsVectorLayer) -> None:

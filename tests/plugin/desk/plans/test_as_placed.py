@@ -1,4 +1,4 @@
-"""The as-placed report as rows, figures and CSV."""
+"""The as-placed report as rows, figures, CSV and, by Processing, PDF."""
 
 from __future__ import annotations
 
@@ -7,7 +7,13 @@ import io
 
 import pytest
 from fleet_supervisor.plugin.desk.plans.as_placed import COLUMNS, as_csv, chosen, tally
-from fleet_supervisor.robot_bridge.messages import PlacementReport
+from fleet_supervisor.robot_bridge.messages import PlacementReport, to_json
+from qgis.core import QgsProject
+from qgis.PyQt.QtCore import Qt
+from qgis.PyQt.QtTest import QTest
+from qgis.PyQt.QtWidgets import QDialog
+
+from tests.plugin.desk.plans.panel_parts import press
 
 
 def placed(number, cone="c", at=1_700_000_000.0, deviation=0.05, **more):
@@ -56,3 +62,67 @@ def test_the_csv_reads_back_with_commas_quotes_and_lines_in_names():
         "",
     ]
     assert second[0] == "by hand" and second[-1] == "2023-11-14T22:14:20Z"
+
+
+@pytest.fixture
+def page(panel, gateway, wait):
+    """The page As placed with a cone that has a name and one that has none."""
+    ones = [placed(1, deviation=0.05), placed(2, None, label="by hand", layout=None, plan=None)]
+    gateway.answers["get_placements"] = lambda _: {"result": {"placements": [to_json(one) for one in ones]}}
+    panel.tabs.setCurrentWidget(panel.placed)
+    press(panel, "fleet_placed_refresh")
+    panel.placed.which.setCurrentIndex(panel.placed.which.findText("everything"))
+    wait(lambda: len(panel.placed.placements) == 2, 10, "the placed cones")
+    return panel.placed
+
+
+@pytest.fixture
+def processing(qgis_processing):
+    """QGIS's Processing, which can be imported once QGIS is there."""
+    import processing
+
+    return processing
+
+
+@pytest.fixture
+def dialogs(monkeypatch, processing):
+    """Catch what is asked of Processing's dialogs: the algorithm and its parameters."""
+    asked = []
+
+    def dialog(algorithm, parameters):
+        asked.append((algorithm, parameters))
+        return QDialog()
+
+    monkeypatch.setattr(processing, "createAlgorithmDialog", dialog)
+    return asked
+
+
+def test_the_report_takes_the_layer_of_placed_cones_as_it_is(page, processing, dialogs, tmp_path):
+    QTest.mouseClick(page.report, Qt.MouseButton.LeftButton)
+    ((algorithm, parameters),) = dialogs
+    told = processing.run(algorithm, {**parameters, "OUTPUT": str(tmp_path / "report.pdf")})
+    assert (told["CONE_COUNT"], told["WITHIN_COUNT"], told["WARNING_COUNT"]) == (2, 2, 0)
+    assert told["MAX"] == pytest.approx(0.05)
+    layer = QgsProject.instance().mapLayer(parameters["INPUT"])
+    first, second = (feature.attributeMap() for feature in layer.getFeatures())
+    assert (first["planned_easting"], first["northing"]) == (488010.0, 5190020.0)
+    assert (first["placed_at"], second["cone"]) == ("2023-11-14T22:13:20Z", "by hand")
+
+
+def test_there_is_no_report_of_no_cone(panel, dialogs):
+    panel.tabs.setCurrentWidget(panel.placed)
+    assert panel.placed.report.isVisible() and not panel.placed.report.isEnabled()
+
+
+def test_a_layer_that_was_taken_out_is_there_again(page, dialogs):
+    QTest.mouseClick(page.report, Qt.MouseButton.LeftButton)
+    QgsProject.instance().removeMapLayer(dialogs.pop()[1]["INPUT"])
+    QTest.mouseClick(page.report, Qt.MouseButton.LeftButton)
+    ((_, parameters),) = dialogs
+    assert QgsProject.instance().mapLayer(parameters["INPUT"]).featureCount() == 2
+
+
+def test_without_processing_it_is_said_what_to_do(page, iface, processing, monkeypatch):
+    monkeypatch.delattr(processing, "createAlgorithmDialog")
+    QTest.mouseClick(page.report, Qt.MouseButton.LeftButton)
+    assert any("switch that on in Plugins > Manage" in text for text in iface.texts())
