@@ -5,8 +5,7 @@ The styles are kept in the repository beside this file.
 
 from __future__ import annotations
 
-from pathlib import Path
-
+from labels import around_points, letters
 from qgis.core import (
     QgsApplication,
     QgsLineSymbol,
@@ -16,21 +15,10 @@ from qgis.core import (
     QgsSingleSymbolRenderer,
     QgsSymbol,
     QgsSymbolLayer,
-    QgsTextFormat,
-    QgsUnitTypes,
-    QgsVectorLayer,
-    QgsVectorLayerSimpleLabeling,
 )
-from qgis.PyQt.QtGui import QFont
-from style_file import write_style
+from robot_colour import ROBOT_COLOUR
+from style_file import write_look
 
-HERE = Path(__file__).resolve().parent
-
-# Hues by the golden angle: neighbours in the order of names are far apart.
-COLOUR = (
-    'color_hsl((array_find(array_distinct(array_agg("robot", order_by:="robot")), "robot") * 137 + 210)'
-    " % 360, 75, 42)"
-)
 SHAPE = "if(\"kind\" = 'store', 'square', if(\"kind\" = 'home', 'diamond', 'circle'))"
 FIELDS = "field=robot:string&field=trip:integer&field=sequence:integer&field=kind:string"
 
@@ -40,7 +28,7 @@ def targets() -> QgsSymbol:
     symbol = QgsMarkerSymbol.createSimple({"name": "circle", "size": "3", "outline_color": "255,255,255"})
     layer = symbol.symbolLayer(0)
     layer.setDataDefinedProperty(
-        QgsSymbolLayer.Property.PropertyFillColor, QgsProperty.fromExpression(COLOUR)
+        QgsSymbolLayer.Property.PropertyFillColor, QgsProperty.fromExpression(ROBOT_COLOUR)
     )
     layer.setDataDefinedProperty(QgsSymbolLayer.Property.PropertyName, QgsProperty.fromExpression(SHAPE))
     return symbol
@@ -50,42 +38,21 @@ def paths() -> QgsSymbol:
     """A line in the robot's colour."""
     symbol = QgsLineSymbol.createSimple({"line_width": "0.5", "capstyle": "round", "joinstyle": "round"})
     symbol.symbolLayer(0).setDataDefinedProperty(
-        QgsSymbolLayer.Property.PropertyStrokeColor, QgsProperty.fromExpression(COLOUR)
+        QgsSymbolLayer.Property.PropertyStrokeColor, QgsProperty.fromExpression(ROBOT_COLOUR)
     )
     return symbol
 
 
-def _labels() -> QgsVectorLayerSimpleLabeling:
-    letters = QgsTextFormat()
-    letters.setFont(QFont("Sans Serif", weight=QFont.Weight.DemiBold))
-    letters.setSize(7)
-    letters.setSizeUnit(QgsUnitTypes.RenderUnit.RenderPoints)
-    halo = letters.buffer()
-    halo.setEnabled(True)
-    halo.setSize(0.7)
-    letters.setBuffer(halo)
-    settings = QgsPalLayerSettings()
-    settings.fieldName = "if(\"kind\" in ('place', 'collect'), \"robot\" || ' ' || \"sequence\", '')"
+def labels() -> QgsPalLayerSettings:
+    """The robot and the number of the cone on its way."""
+    text = "if(\"kind\" in ('place', 'collect'), \"robot\" || ' ' || \"sequence\", '')"
+    settings = around_points(text, letters(7.0, 0.7), 1.2, 1500)
     settings.isExpression = True
-    settings.placement = QgsPalLayerSettings.Placement.AroundPoint
-    settings.dist = 1.2
-    settings.setFormat(letters)
-    settings.scaleVisibility, settings.minimumScale, settings.maximumScale = True, 1500, 0
-    return QgsVectorLayerSimpleLabeling(settings)
-
-
-def save(look: str, kind: str, symbol: QgsSymbol, labels: QgsVectorLayerSimpleLabeling | None) -> None:
-    """Write the style beside this file; it takes nothing but looks with it."""
-    layer = QgsVectorLayer(f"{kind}?{FIELDS}", look, "memory")
-    layer.setRenderer(QgsSingleSymbolRenderer(symbol))
-    if labels is not None:
-        layer.setLabeling(labels)
-        layer.setLabelsEnabled(True)
-    write_style(layer, HERE / f"{look}.qml")
+    return settings
 
 
 if __name__ == "__main__":
     application = QgsApplication([], True)
     application.initQgis()
-    save("assigned_targets", "Point", targets(), _labels())
-    save("assigned_paths", "LineString", paths(), None)
+    write_look("assigned_targets", f"Point?{FIELDS}", QgsSingleSymbolRenderer(targets()), labels())
+    write_look("assigned_paths", f"LineString?{FIELDS}", QgsSingleSymbolRenderer(paths()))

@@ -5,25 +5,17 @@ The styles are kept in the repository beside this file.
 
 from __future__ import annotations
 
-from pathlib import Path
-
+from labels import around_points, letters
 from qgis.core import (
     QgsApplication,
     QgsCategorizedSymbolRenderer,
     QgsFeatureRenderer,
     QgsMarkerSymbol,
-    QgsPalLayerSettings,
     QgsRendererCategory,
     QgsSingleSymbolRenderer,
-    QgsTextFormat,
-    QgsUnitTypes,
-    QgsVectorLayer,
-    QgsVectorLayerSimpleLabeling,
 )
-from qgis.PyQt.QtGui import QFont
-from style_file import write_style
+from style_file import write_look
 
-HERE = Path(__file__).resolve().parent
 COLOURS = {
     "orange": ("Orange", "#f26a1b", "#6b2600", "2.4"),
     "big_orange": ("Big orange", "#f24a00", "#ffffff", "3.2"),
@@ -63,36 +55,8 @@ def _circle(fill: str, edge: str, size: str) -> QgsMarkerSymbol:
     )
 
 
-def _labels(field: str, scale: float) -> QgsVectorLayerSimpleLabeling:
-    letters = QgsTextFormat()
-    letters.setFont(QFont("Sans Serif", weight=QFont.Weight.DemiBold))
-    letters.setSize(7)
-    letters.setSizeUnit(QgsUnitTypes.RenderUnit.RenderPoints)
-    halo = letters.buffer()
-    halo.setEnabled(True)
-    halo.setSize(0.7)
-    letters.setBuffer(halo)
-    settings = QgsPalLayerSettings()
-    settings.fieldName = field
-    settings.placement = QgsPalLayerSettings.Placement.AroundPoint
-    settings.dist = 1.2
-    settings.setFormat(letters)
-    settings.scaleVisibility, settings.minimumScale, settings.maximumScale = True, scale, 0
-    return QgsVectorLayerSimpleLabeling(settings)
-
-
-def save(look: str) -> None:
-    """Write the style of ``look`` beside this file; it takes nothing but looks with it."""
-    renderer, kind, label, scale = LOOKS[look]
-    layer = QgsVectorLayer(kind, look, "memory")
-    layer.setRenderer(renderer())
-    layer.setLabeling(_labels(label, scale))
-    layer.setLabelsEnabled(True)
-    write_style(layer, HERE / f"{look}.qml")
-
-
 if __name__ == "__main__":
     application = QgsApplication([], True)
     application.initQgis()
-    for name in LOOKS:
-        save(name)
+    for name, (renderer, kind, field, scale) in LOOKS.items():
+        write_look(name, kind, renderer(), around_points(field, letters(7.0, 0.7), 1.2, scale))

@@ -6,8 +6,8 @@ The styles are kept in the repository beside this file.
 from __future__ import annotations
 
 from collections.abc import Callable
-from pathlib import Path
 
+from labels import around_points, letters
 from qgis.core import (
     Qgis,
     QgsApplication,
@@ -24,17 +24,12 @@ from qgis.core import (
     QgsRendererRange,
     QgsSimpleLineSymbolLayer,
     QgsSingleSymbolRenderer,
-    QgsTextFormat,
-    QgsUnitTypes,
-    QgsVectorLayer,
-    QgsVectorLayerSimpleLabeling,
     QgsWkbTypes,
 )
 from qgis.PyQt.QtCore import Qt
-from qgis.PyQt.QtGui import QColor, QFont
-from style_file import write_style
+from qgis.PyQt.QtGui import QColor
+from style_file import write_look
 
-HERE = Path(__file__).resolve().parent
 HEIGHTS = (
     (-1e9, 0.0, "0 m: level", "#8d99a6"),
     (0.0, 0.5, "up to 0.5 m", "#fde725"),
@@ -129,40 +124,16 @@ def _strokes(*layers) -> QgsLineSymbol:
     return symbol
 
 
-def _labels(field: str) -> QgsVectorLayerSimpleLabeling:
-    letters = QgsTextFormat()
-    letters.setFont(QFont("Sans Serif", weight=QFont.Weight.DemiBold))
-    letters.setSize(8)
-    letters.setSizeUnit(QgsUnitTypes.RenderUnit.RenderPoints)
-    halo = letters.buffer()
-    halo.setEnabled(True)
-    halo.setSize(0.8)
-    letters.setBuffer(halo)
-    settings = QgsPalLayerSettings()
-    settings.fieldName = field
-    settings.placement = QgsPalLayerSettings.Placement.AroundPoint
-    settings.dist = 1.6
+def _labels(field: str) -> QgsPalLayerSettings:
+    settings = around_points(field, letters(8.0, 0.8), 1.6, 2500)
     settings.geometryGeneratorEnabled = True
     settings.geometryGenerator = "point_on_surface($geometry)"
     settings.geometryGeneratorType = QgsWkbTypes.GeometryType.PointGeometry
-    settings.setFormat(letters)
-    settings.scaleVisibility, settings.minimumScale, settings.maximumScale = True, 2500, 0
-    return QgsVectorLayerSimpleLabeling(settings)
-
-
-def save(look: str) -> None:
-    """Write the style of ``look`` beside this file; it takes nothing but looks with it."""
-    renderer, kind, label = LOOKS[look]
-    layer = QgsVectorLayer(kind, look, "memory")
-    layer.setRenderer(renderer())
-    if label:
-        layer.setLabeling(_labels(label))
-        layer.setLabelsEnabled(True)
-    write_style(layer, HERE / f"robot_map_{look}.qml")
+    return settings
 
 
 if __name__ == "__main__":
     application = QgsApplication([], True)
     application.initQgis()
-    for name in LOOKS:
-        save(name)
+    for name, (renderer, kind, field) in LOOKS.items():
+        write_look(f"robot_map_{name}", kind, renderer(), _labels(field) if field else None)

@@ -5,8 +5,6 @@ The style is kept in the repository beside this file.
 
 from __future__ import annotations
 
-from pathlib import Path
-
 from qgis.core import (
     Qgis,
     QgsApplication,
@@ -16,14 +14,8 @@ from qgis.core import (
     QgsSymbolLayer,
     QgsVectorLayer,
 )
+from robot_colour import ROBOT_COLOUR
 from style_file import CATEGORY, write_style
-
-FILE = Path(__file__).resolve().parent / "trajectories.qml"
-# Hues by the golden angle: neighbours in the order of names are far apart.
-COLOUR = (
-    'color_hsl((array_find(array_distinct(array_agg("robot", order_by:="robot")), "robot") * 137 + 210)'
-    " % 360, 75, 42)"
-)
 
 
 def save() -> None:
@@ -33,7 +25,7 @@ def save() -> None:
     )
     symbol = QgsLineSymbol.createSimple({"line_width": "0.7", "capstyle": "round", "joinstyle": "round"})
     symbol.symbolLayer(0).setDataDefinedProperty(
-        QgsSymbolLayer.Property.PropertyStrokeColor, QgsProperty.fromExpression(COLOUR)
+        QgsSymbolLayer.Property.PropertyStrokeColor, QgsProperty.fromExpression(ROBOT_COLOUR)
     )
     layer.setRenderer(QgsSingleSymbolRenderer(symbol))
     times = layer.temporalProperties()
@@ -41,7 +33,7 @@ def save() -> None:
     times.setStartField("begin")
     times.setEndField("end")
     times.setIsActive(True)
-    write_style(layer, FILE, CATEGORY.Symbology | CATEGORY.Temporal)
+    write_style(layer, "trajectories", CATEGORY.Symbology | CATEGORY.Temporal)
 
 
 if __name__ == "__main__":

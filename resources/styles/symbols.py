@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from labels import letters
 from qgis.core import (
     QgsCategorizedSymbolRenderer,
     QgsCentroidFillSymbolLayer,
@@ -18,12 +19,10 @@ from qgis.core import (
     QgsSimpleLineSymbolLayer,
     QgsSingleSymbolRenderer,
     QgsSymbolLayer,
-    QgsTextFormat,
-    QgsUnitTypes,
     QgsVectorLayer,
     QgsVectorLayerSimpleLabeling,
 )
-from qgis.PyQt.QtGui import QColor, QFont
+from qgis.PyQt.QtGui import QColor
 
 INK, PAPER = "26,32,44", "255,255,255"
 SURFACES = {
@@ -38,12 +37,8 @@ def style(layer: QgsVectorLayer, look: str) -> None:
     """Give ``layer`` the renderer and labels of ``look``, one of the keys of ``LOOKS``."""
     layer.setRenderer(LOOKS[look]())
     if look in LABELS:
-        text, size, colour, scale = LABELS[look]
-        layer.setLabeling(_labels(text, size, colour))
+        layer.setLabeling(QgsVectorLayerSimpleLabeling(_labels(*LABELS[look])))
         layer.setLabelsEnabled(True)
-        labeling = layer.labeling().settings()
-        labeling.scaleVisibility, labeling.minimumScale, labeling.maximumScale = True, scale, 0
-        layer.setLabeling(QgsVectorLayerSimpleLabeling(labeling))
     if look in SMALL_THINGS:
         layer.setScaleBasedVisibility(True)
         layer.setMinimumScale(SMALL_THINGS[look])
@@ -161,24 +156,19 @@ def _hatch(colour: str, angle: float, distance: float, width: float) -> QgsLineP
     return layer
 
 
-def _labels(text: str, size: float, colour: str) -> QgsVectorLayerSimpleLabeling:
-    red, green, blue = (int(part) for part in colour.split(","))
-    letters = QgsTextFormat()
-    letters.setFont(QFont("Sans Serif", weight=QFont.Weight.DemiBold))
-    letters.setSize(size)
-    letters.setSizeUnit(QgsUnitTypes.RenderUnit.RenderPoints)
-    letters.setColor(QColor(red, green, blue))
-    halo = letters.buffer()
-    halo.setEnabled(True)
-    halo.setSize(0.9)
+def _labels(text: str, size: float, colour: str, scale: float) -> QgsPalLayerSettings:
+    format = letters(size, 0.9)
+    format.setColor(QColor(*(int(part) for part in colour.split(","))))
+    halo = format.buffer()
     halo.setColor(QColor(255, 255, 255, 215))
-    letters.setBuffer(halo)
+    format.setBuffer(halo)
     settings = QgsPalLayerSettings()
     settings.fieldName = text
     settings.placement = QgsPalLayerSettings.Placement.OverPoint
     settings.centroidInside = True
-    settings.setFormat(letters)
-    return QgsVectorLayerSimpleLabeling(settings)
+    settings.setFormat(format)
+    settings.scaleVisibility, settings.minimumScale, settings.maximumScale = True, scale, 0
+    return settings
 
 
 LOOKS: dict[str, Callable[[], QgsFeatureRenderer]] = {
