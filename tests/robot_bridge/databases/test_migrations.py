@@ -8,6 +8,7 @@ import pytest
 from alembic.script import ScriptDirectory
 from database_client import DatabaseClient
 from old_database import make_old
+from sqlalchemy import Engine, event
 
 from robot_bridge.errors import StoreError
 from robot_bridge.store import revisions
@@ -42,6 +43,43 @@ def test_the_migrations_make_the_tables_that_the_program_works_with(empty_url):
 
 def test_the_newest_migration_is_the_one_that_the_program_needs():
     assert ScriptDirectory(str(revisions.MIGRATIONS)).get_heads() == [revisions.NEEDED]
+
+
+class DiedError(Exception):
+    """The program ended in the middle of its work."""
+
+
+def dies_after(statements, url):
+    """Make or upgrade the tables, dying after so many changes; tell whether it did die."""
+    left = statements
+
+    def count(_connection, _cursor, statement, *_):
+        nonlocal left
+        left -= statement.split(maxsplit=1)[0].upper() in ("CREATE", "ALTER", "DROP", "INSERT", "UPDATE")
+        if left == 0:
+            raise DiedError(statement)
+
+    event.listen(Engine, "after_cursor_execute", count)
+    try:
+        found = run_once(url, revisions.current)
+        run_once(url, revisions.create if found is None else revisions.upgrade)
+    except DiedError:
+        return True
+    finally:
+        event.remove(Engine, "after_cursor_execute", count)
+    return False
+
+
+def test_what_was_cut_short_after_any_change_is_done_by_the_next_attempt(empty_url, kind):
+    after = 1
+    while dies_after(after, empty_url):
+        if kind == "mariadb":  # what was done stays, so that each attempt has less to do than the one before
+            after += 1
+        else:
+            after += 10
+            assert run_once(empty_url, revisions.current) is None
+    assert after > 10
+    assert run_once(empty_url, revisions.differences) == []
 
 
 @pytest.mark.parametrize(
