@@ -100,6 +100,15 @@ class Slices(QObject):
         return False, None
 
 
+def whole(work: Steps[T]) -> T:
+    """Do all of ``work`` at once, which is for other threads than the window's."""
+    while True:
+        try:
+            next(work)
+        except StopIteration as end:
+            return end.value
+
+
 def part_of(work: Steps[T], before: int, parts: int) -> Steps[T]:
     """Do ``work`` as one of so many ``parts``, after ``before`` of them."""
     while True:

@@ -16,6 +16,7 @@ from ....robot_bridge.roads.nearest import NearestEdge
 from ....robot_bridge.roads.network import build_network
 from ...language import tr
 from ...sites.ground_reading import DEFAULT_WIDTH_M
+from ..drafting.slices import Steps
 
 Floats = npt.NDArray[np.float64]
 
@@ -41,22 +42,27 @@ class ClosedWay:
         )
 
 
-def closed_ways(plan: Plan, closures: Sequence[ClosureReport]) -> tuple[ClosedWay, ...]:
-    """Return the ways of ``plan`` that lead along a closed road.
+def closed_ways(plan: Plan, closures: Sequence[ClosureReport]) -> Steps[tuple[ClosedWay, ...]]:
+    """Find the ways of ``plan`` that lead along a closed road, one step for each road and each way.
 
     A way that only crosses one may be driven. The gateway says of closures no width, so that a road counts as
     wide as one of which none is known.
     """
     if not closures:
         return ()
-    roads = [_Road(closure) for closure in closures]
+    ways = [(one.robot.id, stop) for one in plan.robots if not one.lost for stop in one.stops]
+    count = len(closures) + len(ways)
+    roads = []
+    for number, closure in enumerate(closures):
+        yield number / count
+        roads.append(_Road(closure))
     found = []
-    for one in plan.robots:
-        for stop in () if one.lost else one.stops:
-            path = np.array(stop.path, dtype=float)
-            road = next((road for road in roads if road.is_along(path)), None)
-            if road is not None:
-                found.append(ClosedWay(one.robot.id, stop.id, road.by, road.reason, stop))
+    for number, (robot, stop) in enumerate(ways, len(roads)):
+        yield number / count
+        path = np.array(stop.path, dtype=float)
+        road = next((road for road in roads if road.is_along(path)), None)
+        if road is not None:
+            found.append(ClosedWay(robot, stop.id, road.by, road.reason, stop))
     return tuple(found)
 
 

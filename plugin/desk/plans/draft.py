@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 
 from ....robot_bridge.assignment.plan import Plan
 from ....robot_bridge.messages import ClosureReport
+from ..drafting.slices import Steps, whole
 from .closed_ways import ClosedWay, closed_ways
 from .cone_source import ConeFacts
 from .near_meetings import Meeting, meetings
@@ -33,9 +34,9 @@ class Draft:
         """
         ways = self.ways
         near = tuple(meetings(plan, apart_m, ways.standing, ways.settings.off_standing_m))
-        return replace(self, plan=plan, meetings=near, closed=closed_ways(plan, closures))
+        return replace(self, plan=plan, meetings=near, closed=whole(closed_ways(plan, closures)))
 
-    def with_closures(self, closures: Sequence[ClosureReport]) -> Draft:
+    def with_closures(self, closures: Sequence[ClosureReport]) -> Steps[Draft]:
         """Return the same with other roads closed; itself if that changes nothing."""
-        closed = closed_ways(self.plan, closures)
+        closed = yield from closed_ways(self.plan, closures)
         return self if closed == self.closed else replace(self, closed=closed)

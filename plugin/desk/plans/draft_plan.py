@@ -20,6 +20,7 @@ from ...errors import FleetError, PlacementError
 from ...language import tr
 from ..desk import Desk
 from .available_robots import has_place, taking_part
+from .closure_look import ClosureLook
 from .cone_source import ConeFacts, read_cones, read_stores
 from .draft import Draft
 from .plan_settings import PlanSettings, settings_in
@@ -44,6 +45,7 @@ class DraftPlan(QObject):
         self.settings: PlanSettings = settings_in(desk.project)
         self.draft: Draft | None = None
         self.task: PlanTask | None = None
+        self._look, self._look_at_made = ClosureLook(self), ClosureLook(self)
         desk.roads.closures_changed.connect(self.look_at_closures)
 
     @property
@@ -109,16 +111,25 @@ class DraftPlan(QObject):
     def shut_down(self) -> None:
         """Give up what is being made and wait until its thread has left it."""
         task = self.task
+        self._look.stop()
+        self._look_at_made.stop()
         self.cancel()
         if task is not None and task.isActive():
             task.left.wait(10.0)
 
     def look_at_closures(self) -> None:
         """Find out anew what of the plan leads along closed roads."""
-        if self.draft is not None:
-            before, self.draft = self.draft, self.draft.with_closures(self._desk.roads.closures)
-            if self.draft is not before:
+        draft = self.draft
+        if draft is None:
+            return
+
+        def found(drafts: list[Draft]) -> None:
+            # Another plan was judged when it was made.
+            if self.draft is draft and drafts[0] is not draft:
+                self.draft = drafts[0]
                 self.changed.emit()
+
+        self._look.begin([draft], self._desk.roads.closures, found)
 
     def _make(
         self, targets: tuple[Target, ...], facts: dict[str, ConeFacts], frame: SiteFrame, preview: bool
@@ -165,9 +176,13 @@ class DraftPlan(QObject):
     ) -> None:
         if task is not self.task:
             return
-        self.task = None
         now = self._desk.roads.closures
-        then(draft if now == closures else draft.with_closures(now))
+        if now != closures:
+            # Meanwhile a road was closed or opened.
+            self._look_at_made.begin([draft], now, lambda found: self._made(task, found[0], now, then))
+            return
+        self.task = None
+        then(draft)
         self.changed.emit()
 
     def _refused(self, task: PlanTask, why: str) -> None:

@@ -17,6 +17,7 @@ from ...language import tr
 from ..desk import Desk
 from ..placement_book import MOST_ASKED
 from .available_robots import has_place
+from .closure_look import ClosureLook
 from .draft import Draft
 from .draft_plan import DraftPlan, PlanningError
 from .progress import Progress, Trouble, behind, cones_under_way, situation_of, trouble_of, under_way
@@ -62,6 +63,7 @@ class DrivenPlan(QObject):
         """Robots that wait for the new plan, with the time since which their queues are paused for that."""
         self._dealt_with = Trouble()
         self._complaints: list[str] = []
+        self._look_at_closures = ClosureLook(self)
         desk.roads.closures_changed.connect(self._take_closures)
         desk.queues_changed.connect(self._take_queues)
         desk.placements_changed.connect(self._take_placements)
@@ -88,6 +90,9 @@ class DrivenPlan(QObject):
         self.trouble = self._dealt_with = Trouble()
         self._settle()
         self._start(first_steps(self._desk, tasks), self._sent)
+        if self._desk.roads.closures:
+            # The draft may not have been looked at yet since they were closed.
+            self._take_closures()
 
     def plan_rest(self, *, try_again: bool = False) -> None:
         """Hold the robots and plan what is left; :meth:`confirm` sends it, :meth:`discard` lets them go on.
@@ -157,6 +162,10 @@ class DrivenPlan(QObject):
         held, self.offer, self.held = self.held, None, {}
         self._drafts.cancel()
         self._start(going_on_steps(self._desk, held), lambda done: None)
+
+    def shut_down(self) -> None:
+        """Look at nothing any more."""
+        self._look_at_closures.stop()
 
     def clear(self) -> None:
         """Watch no plan any more; robots go on with what is in their queues."""
@@ -229,10 +238,19 @@ class DrivenPlan(QObject):
         """Find out anew which ways are closed, of the plan that is driven and of the one that is offered."""
         if self.progress is None or self.driven is None:
             return
+        drafts = [self.driven] if self.offer is None else [self.driven, self.offer]
         closures = self._desk.roads.closures
-        self.driven = self.driven.with_closures(closures)
-        if self.offer is not None:
-            self.offer = self.offer.with_closures(closures)
+        self._look_at_closures.begin(drafts, closures, lambda found: self._judged(drafts, found))
+
+    def _judged(self, before: list[Draft], after: list[Draft]) -> None:
+        """Put drafts in place of those ``before`` them, where these are still driven or offered."""
+        if self.progress is None or self.driven is None:
+            return
+        for old, new in zip(before, after, strict=True):
+            if self.driven is old:
+                self.driven = new
+            if self.offer is old:
+                self.offer = new
         self._look()
 
     def _look(self) -> None:
