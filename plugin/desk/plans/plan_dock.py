@@ -71,6 +71,7 @@ class PlanDock(ActionDock):
     def remove(self) -> None:
         """Stop what is being planned and take the layers out of the project."""
         self.drafts.shut_down()
+        self.driven.shut_down()
         self._desk.project.readProject.disconnect(self._read_settings)
         self.form.remove()
         self.layers.remove()

@@ -2,6 +2,12 @@
 
 from __future__ import annotations
 
+import threading
+
+import pytest
+from fleet_supervisor.plugin.desk.drafting import slices
+from fleet_supervisor.plugin.desk.plans.closed_ways import closed_ways
+
 from tests.plugin.desk.plans.panel_parts import (
     SHORT,
     answer,
@@ -62,3 +68,92 @@ def test_a_road_that_is_opened_again_is_no_trouble_any_more(far_cones, gateway, 
     gateway.tell("closures", closing())
     wait(lambda: not far_cones.driven.trouble, 5)
     assert not any("closed" in text for text in iface.texts())
+
+
+class Held:
+    """Looks at closed roads that come to a halt after one step each, until they are let go."""
+
+    def __init__(self, dock, monkeypatch):
+        monkeypatch.setattr(slices, "SLICE_SECONDS", 0.0)
+        looks = (dock.drafts._look, dock.drafts._look_at_made, dock.driven._look_at_closures)
+        self._timers = [look._slices._timer for look in looks]
+        for timer in self._timers:
+            timer.setInterval(3_600_000)
+
+    @property
+    def under_way(self):
+        return any(timer.isActive() for timer in self._timers)
+
+    def let_go(self):
+        for timer in self._timers:
+            timer.setInterval(0)
+            if timer.isActive():
+                timer.start()
+
+
+@pytest.fixture
+def held(far_cones, monkeypatch):
+    return Held(far_cones, monkeypatch)
+
+
+def close_road(dock, gateway, wait):
+    gateway.tell("closures", closing(SHORT))
+    wait(lambda: dock._desk.roads.closures, 5)
+
+
+def test_the_window_goes_on_while_a_plan_is_held_against_closed_roads(far_cones, held, gateway, wait):
+    plan = planned(far_cones, wait)
+    close_road(far_cones, gateway, wait)
+    assert len(list(closed_ways(plan, far_cones._desk.roads.closures))) == 1 + len(list(plan.all_stops()))
+    assert held.under_way
+    assert far_cones.drafts.draft.closed == () and far_cones.bar.trouble.text() == ""
+    held.let_go()
+    wait(lambda: "leads along a road that bert closed" in far_cones.bar.trouble.text(), 5)
+    assert not held.under_way
+
+
+def test_a_plan_that_took_the_place_of_another_is_left_alone_by_what_was_found_of_that(
+    far_cones, held, gateway, wait
+):
+    planned(far_cones, wait)
+    close_road(far_cones, gateway, wait)
+    far_cones.drafts.put(None)
+    held.let_go()
+    wait(lambda: not held.under_way, 5)
+    assert far_cones.drafts.draft is None
+
+
+def test_a_plan_that_is_sent_before_it_was_held_against_a_closed_road_is_no_less_in_trouble(
+    far_cones, held, gateway, wait
+):
+    planned(far_cones, wait)
+    close_road(far_cones, gateway, wait)
+    answer(question(far_cones), send=True)
+    held.let_go()
+    wait(lambda: far_cones.driven.trouble.closed, 5)
+    assert far_cones.driven.driven.closed != ()
+
+
+def test_a_plan_is_not_there_before_it_was_held_against_a_road_that_was_closed_meanwhile(
+    far_cones, held, gateway, wait
+):
+    plan = planned(far_cones, wait)
+    drafts, told, go_on = far_cones.drafts, [], threading.Event()
+    drafts.run("a plan", drafts.draft, lambda task: (go_on.wait(60.0), plan)[1], told.append)
+    close_road(far_cones, gateway, wait)
+    go_on.set()
+    wait(lambda: drafts._look_at_made._slices._timer.isActive(), 15)
+    assert drafts.busy and told == []
+    held.let_go()
+    wait(lambda: not drafts.busy, 5)
+    (made,) = told
+    assert [one.stop for one in made.closed] == ["far-1"]
+
+
+def test_nothing_is_looked_at_once_the_plugin_is_unloaded(far_cones, held, gateway, wait, plugin):
+    planned(far_cones, wait)
+    close_road(far_cones, gateway, wait)
+    answer(question(far_cones), send=True)
+    assert held.under_way
+    plugin.unload()
+    assert not held.under_way
