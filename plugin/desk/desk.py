@@ -147,31 +147,57 @@ class Desk(QObject):
             if self.link.phase is Phase.CONNECTED:
                 self.settled.emit(self._not_sent_yet)
         if news.site is not None:
-            self._take_site(news.site)
+            self._take_site(news.site, news.is_greeting)
         self._take_news(news)
         self.orders.watch()
         self.beat.pulls += 1
         self.pulled.emit()
 
-    def _take_site(self, site: SiteReport) -> None:
+    def _take_site(self, site: SiteReport, is_greeting: bool) -> None:
         if site == self.site and not self._is_other_gateway:
             return
-        if self.site is None or site.id != self.site.id or self._is_other_gateway:
-            # Two gateways may serve one site, for practice and for work, each with robots of its own.
-            self.picture.clear()
-            self.book.clear()
-            self.queues.clear()
-            self.placements.clear()
-            self.observations.clear()
-            self.emergency = None
-            self.roads.clear()
-            self._check_targets.clear()
-            self.select(None)
-        self.drafts.done()
+        if self._is_another(site, is_greeting):
+            self._forget_robots()
         self.site, self._is_other_gateway = site, False
         self.picture.stale_after, self.picture.lost_after = site.stale_after, site.lost_after
         self._placement = None
+        self._look_at_draft_anew()
         self.site_changed.emit()
+
+    def _is_another(self, site: SiteReport, is_greeting: bool) -> bool:
+        """Tell whether other robots are on ``site`` than on the one before.
+
+        Two gateways may serve one site, for practice and for work, each with robots of its own. Chosen while
+        the link is up, a site is served to the same robots: commands, queues and an emergency stop go on.
+        """
+        was = self.site
+        if was is None or self._is_other_gateway or (is_greeting and site.id != was.id):
+            return True
+        return (site.crs, site.origin, site.rotation) != (was.crs, was.origin, was.rotation)
+
+    def _forget_robots(self) -> None:
+        self.picture.clear()
+        self.book.clear()
+        self.queues.clear()
+        self.placements.clear()
+        self.observations.clear()
+        self.emergency = None
+        self.roads.clear()
+        self._check_targets.clear()
+        self.select(None)
+        if self.drafts.draft is not None:
+            words = self.drafts.draft.in_words()
+            self.failed.emit(
+                tr("{words} was not sent: another site is served now. Draw it anew.", words=words)
+            )
+        self.drafts.done()
+
+    def _look_at_draft_anew(self) -> None:
+        """Check the draft on the map once more: the site has been published anew beneath it."""
+        if self.checks.is_under_way:
+            self.checks.begin_anew()
+        elif self.drafts.draft is not None:
+            self._try(lambda: self.checks.again(lambda _: None))
 
     def _take_news(self, news: News) -> None:
         self.picture.merge(news.robots)

@@ -32,10 +32,14 @@ MOST_COMMANDS = 1000
 
 @dataclass
 class News:
-    """What arrived since the last look; ``site`` is set when a gateway said which site it serves."""
+    """What arrived since the last look; ``site`` is set when a gateway said which site it serves.
+
+    ``is_greeting`` when it said so on a new link: it may be another gateway than before.
+    """
 
     link: LinkStatus
     site: SiteReport | None = None
+    is_greeting: bool = False
     robots: Sightings = field(default_factory=Sightings)
     commands: dict[str, CommandReport] = field(default_factory=dict)
     answers: list[Answer] = field(default_factory=list)
@@ -58,10 +62,11 @@ class Mailbox:
         with self._lock:
             self._news.link = link
 
-    def put_site(self, site: SiteReport) -> None:
-        """Leave the site that the gateway serves."""
+    def put_site(self, site: SiteReport, *, is_greeting: bool = False) -> None:
+        """Leave the site that the gateway serves; ``is_greeting`` where it is the first word on a link."""
         with self._lock:
             self._news.site = site
+            self._news.is_greeting |= is_greeting
 
     def put_robots(self, robots: Sightings) -> None:
         """Leave what was told of robots; it replaces what is older of the same robots."""

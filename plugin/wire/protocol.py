@@ -198,7 +198,7 @@ class DeskProtocol:
                 ),
                 final=True,
             )
-        self._mailbox.put_site(checked_site(site_report(result["site"])))
+        self._mailbox.put_site(checked_site(site_report(result["site"])), is_greeting=True)
         self.operator, self.role = (str(result.get(name) or "") for name in ("operator", "role"))
         if "emergency" in result:
             self._mailbox.put_emergency(emergency_report(result["emergency"]))

@@ -63,7 +63,7 @@ class PlanDock(ActionDock):
         self.progress = QProgressBar()
         self._turn = desk.beat.turn()
         self.question: QMessageBox | None = None
-        self._site: str | None = None if desk.site is None else desk.site.id
+        self._generation = desk.picture.generation
         self._lay_out()
         self._wire()
         self._refresh()
@@ -162,11 +162,10 @@ class PlanDock(ActionDock):
         self.drafts.settings = replace(self.drafts.settings, by_itself=on)
 
     def _site_changed(self) -> None:
-        """Drop what belongs to another site; a site that was published anew keeps its plan."""
-        site = self._desk.site.id
-        if self._site not in (None, site):
+        """Drop what belongs to other robots; a site that was published anew keeps its plan."""
+        if self._generation != self._desk.picture.generation:
+            self._generation = self._desk.picture.generation
             self._clear()
-        self._site = site
 
     def _clear(self) -> None:
         self.driven.clear()

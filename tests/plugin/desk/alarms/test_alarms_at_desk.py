@@ -260,7 +260,7 @@ def test_another_site_starts_without_alarms(at_alarms, gateway, site, make_robot
 
     gateway.show(make_robot("r1", 50, 40, battery=0.1))
     wait(lambda: alarms(at_alarms))
-    gateway.tell("site", json.loads(json.dumps(replace(site, id="other").__dict__)))
+    gateway.tell("site", json.loads(json.dumps(replace(site, origin=(1.0, 2.0)).__dict__)))
     wait(lambda: not alarms(at_alarms))
 
 

@@ -84,14 +84,17 @@ def test_nothing_is_sent_while_an_emergency_stop_is_in_force(panel, gateway, wai
     assert gateway.asked("set_queue") == [] and panel.driven.driven is None
 
 
-def test_a_site_that_is_published_anew_keeps_the_plan_and_another_site_does_not(
+def test_a_site_that_is_published_anew_or_chosen_keeps_the_plan_and_another_does_not(
     under_way, gateway, wait, site
 ):
     driven = under_way.driven.driven
     gateway.tell("site", to_json(replace(site, version="2")))
     wait(lambda: under_way._desk.site.version == "2", 5)
     assert under_way.driven.driven is driven
-    gateway.tell("site", to_json(replace(site, id="elsewhere")))
+    gateway.tell("site", to_json(replace(site, id="chosen")))
+    wait(lambda: under_way._desk.site.id == "chosen", 5)
+    assert under_way.driven.driven is driven
+    gateway.tell("site", to_json(replace(site, origin=(1.0, 2.0))))
     wait(lambda: under_way.driven.driven is None, 5)
 
 

@@ -1,0 +1,75 @@
+"""The site is published anew, another is chosen, or another gateway answers: what stays and what goes."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+from fleet_supervisor.plugin.desk.drafting import slices
+from fleet_supervisor.robot_bridge.messages import to_json
+from qgis.PyQt.QtCore import Qt
+from qgis.PyQt.QtTest import QTest
+from qgis.PyQt.QtWidgets import QLabel
+
+
+@pytest.fixture
+def drawn(at_desk, iface):
+    """A desk with a cone target for r1 as a draft."""
+    at_desk.desk.select("r1")
+    at_desk.actions.cone.trigger()
+    iface.click(70, 55)
+    assert at_desk.desk.drafts.draft is not None
+    return at_desk
+
+
+def tell(gateway, site, wait, window):
+    gateway.tell("site", to_json(site))
+    wait(lambda: window.desk.site == site, what="the news of the site")
+
+
+@pytest.mark.parametrize("how", [{"version": "2"}, {"id": "chosen", "name": "Chosen"}])
+def test_robots_commands_and_a_stop_outlast_a_site_that_is_published_anew_or_chosen(
+    drawn, gateway, site, wait, how
+):
+    desk = drawn.desk
+    desk.abort_selected()
+    desk.emergency_stop()
+    wait(lambda: len(desk.book) == 1 and desk.emergency.in_force, what="the abort and the stop")
+    stop = desk.emergency
+    tell(gateway, replace(site, **how), wait, drawn)
+    assert desk.emergency == stop and drawn.dock.banner.isVisible()
+    assert len(desk.book) == 1 and len(desk.picture) == 2
+    assert desk.selection == ("r1",)
+
+
+def test_a_draft_is_held_against_the_site_that_was_published_anew(drawn, gateway, site, wait, iface):
+    tell(gateway, replace(site, version="2", bounds=(0.0, 0.0, 60.0, 160.0)), wait, drawn)
+    wait(lambda: drawn.desk.drafts.draft.findings.refused, what="the check of the draft")
+    assert "is outside the site Yard" in drawn.dock.findChild(QLabel, "fleet_draft_text").text()
+    QTest.keyClick(iface.canvas, Qt.Key.Key_Return)
+    QTest.qWait(100)
+    assert gateway.asked("send") == []
+
+
+def test_an_order_to_send_outlasts_it(drawn, gateway, site, wait, monkeypatch):
+    monkeypatch.setattr(slices, "SLICE_SECONDS", 0.0)
+    drawn.desk.send_draft()
+    drawn.desk.connection._mailbox.put_site(replace(site, version="2"))
+    drawn.desk.pull()
+    assert drawn.desk.site.version == "2" and drawn.desk.checks.has_order
+    wait(lambda: gateway.asked("send"), what="the command")
+    assert len(gateway.asked("send")) == 1
+
+
+@pytest.mark.parametrize("how", ["frame", "gateway"])
+def test_a_draft_for_other_robots_is_taken_away_and_that_is_said(drawn, gateway, site, wait, iface, how):
+    if how == "frame":
+        tell(gateway, replace(site, origin=(1.0, 2.0)), wait, drawn)
+    else:
+        gateway.stop()
+        wait(lambda: drawn.desk.link.phase.value == "retrying", what="the loss of the link")
+        gateway.site = replace(site, id="other")
+        gateway.start()
+        wait(lambda: drawn.desk.site.id == "other", 10, "the other gateway")
+    assert drawn.desk.drafts.draft is None
+    assert any("was not sent: another site is served now" in text for text in iface.texts())
