@@ -4,14 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from typing import Any
 
 from qgis.core import (
-    NULL,
     QgsCoordinateReferenceSystem,
-    QgsCoordinateTransform,
-    QgsCsException,
     QgsProcessing,
     QgsProcessingAlgorithm,
     QgsProcessingContext,
@@ -24,7 +19,11 @@ from qgis.core import (
 )
 
 from ...robot_bridge.assignment.job import COLLECT, FINISHES, PLACE, TO_STORE, Job, Robot, Store, Target
+from ...robot_bridge.sites.frame import SiteFrame
 from ..language import tr
+from ..sites.placing import SitePlacing
+from ..sites.point_rows import PointRow, point_rows
+from ..sites.site_crs import stated_crs
 from .cone_layer import theta_of
 from .errors import ParameterError
 from .fleet_algorithm import Parameters
@@ -108,15 +107,15 @@ class JobSource:
     def read(self, crs: QgsCoordinateReferenceSystem) -> Job:
         """Return what is to be done, with coordinates in ``crs``.
 
-        :raises ParameterError: naming layer, feature and field that cannot be used; JobError when what they
-            say cannot be planned for.
+        :raises ParameterError: when a layer cannot be opened; LayerReadingError naming layer, feature and
+            field that cannot be used; JobError when what they say cannot be planned for.
         """
         number = {name: self._number(name) for name in _NUMBERS}
         return Job(
             tuple(self._target(row, number) for row in self._rows(CONES, crs)),
             tuple(_robot(row, number) for row in self._rows(ROBOTS, crs)),
             tuple(
-                Store(row.name(), row.x, row.y, row.number("service_s", number["STORE_TIME"]))
+                Store(row.name, row.x, row.y, row.number("service_s", number["STORE_TIME"]))
                 for row in self._rows(STORES, crs)
             ),
             self._algorithm.parameterAsEnumString(self._parameters, FINISH, self._context),
@@ -125,12 +124,12 @@ class JobSource:
     def _number(self, name: str) -> float:
         return self._algorithm.parameterAsDouble(self._parameters, name, self._context)
 
-    def _target(self, row: _Row, number: dict[str, float]) -> Target:
+    def _target(self, row: PointRow, number: dict[str, float]) -> Target:
         text = self._algorithm.parameterAsString
         stage = text(self._parameters, STAGE_FIELD, self._context).strip()
         task = self._algorithm.parameterAsEnumString(self._parameters, TASK, self._context)
         return Target(
-            row.name(),
+            row.name,
             row.x,
             row.y,
             theta_of(row.number("heading", 90.0)),
@@ -140,88 +139,20 @@ class JobSource:
             row.number("service_s", number["SERVICE_TIME"]),
         )
 
-    def _rows(self, name: str, crs: QgsCoordinateReferenceSystem) -> Iterator[_Row]:
+    def _rows(self, name: str, crs: QgsCoordinateReferenceSystem) -> Iterator[PointRow]:
         source = self.source(name)
         if source is None:
             return
-        transform = QgsCoordinateTransform(source.sourceCrs(), crs, self._context.transformContext())
-        fields = source.fields().names()
-        for feature in source.getFeatures():
-            layer = tr("{sourcename}, feature {id}", sourcename=source.sourceName(), id=feature.id())
-            geometry = feature.geometry()
-            try:
-                geometry.transform(transform)
-                points = list(geometry.vertices())
-            except QgsCsException:
-                points = []
-            if len(points) != 1 or not all(math.isfinite(v) for v in (points[0].x(), points[0].y())):
-                raise ParameterError(
-                    tr(
-                        "{layer} is not one point with a place in {crs}: correct it.",
-                        layer=layer,
-                        crs=crs.authid(),
-                    )
-                )
-            values = {
-                field: None if value == NULL else value
-                for field, value in zip(fields, feature.attributes(), strict=True)
-            }
-            yield _Row(layer, feature.id(), points[0].x(), points[0].y(), values)
+        site = SitePlacing(crs, SiteFrame(crs.authid(), (0.0, 0.0)), self._context.transformContext())
+        placing = site.of_layer(source.sourceName(), stated_crs(source.sourceCrs()))
+        yield from point_rows(source.sourceName(), source.getFeatures(), placing, _NAMES)
 
 
-@dataclass(frozen=True)
-class _Row:
-    """One feature: what it is called in errors, its place, and its values by field."""
-
-    layer: str
-    number_in_layer: int
-    x: float
-    y: float
-    values: dict[str, Any]
-
-    def name(self) -> str:
-        """Return the id; the feature's own where no field has one."""
-        return next(
-            (str(self.values[field]) for field in _NAMES if self.values.get(field) is not None),
-            str(self.number_in_layer),
-        )
-
-    def number(self, field: str, otherwise: float) -> float:
-        """Return the number in ``field``; ``otherwise`` where the layer has no such field, or no value."""
-        value = self.values.get(field)
-        if value is None or value == "":
-            return otherwise
-        try:
-            return float(value)
-        except (TypeError, ValueError) as error:
-            text = tr(
-                "{layer}: {field} is {value!r}, which is no number; correct it.",
-                layer=self.layer,
-                field=field,
-                value=value,
-            )
-            raise ParameterError(text) from error
-
-    def whole(self, field: str, otherwise: float) -> int:
-        """Return the whole number in ``field``."""
-        value = self.number(field, otherwise)
-        if value != int(value):
-            raise ParameterError(
-                tr(
-                    "{layer}: {field} is {value:g}; give a whole number.",
-                    layer=self.layer,
-                    field=field,
-                    value=value,
-                )
-            )
-        return int(value)
-
-
-def _robot(row: _Row, number: dict[str, float]) -> Robot:
+def _robot(row: PointRow, number: dict[str, float]) -> Robot:
     # Of a range, 0 says that it does not matter.
-    metres = row.number("range_m", number["RANGE"] or math.inf)
+    metres = row.number("range_m", number["RANGE"]) or math.inf
     return Robot(
-        row.name(),
+        row.name,
         row.x,
         row.y,
         row.whole("capacity", number["CAPACITY"]),

@@ -1509,6 +1509,11 @@
             <translation>{in_words} no s'ha enviat: {error}</translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/desk.py" />
+            <source>{words} was not sent: another site is served now. Draw it anew.</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
             <location filename="../../plugin/desk/dock.py" />
             <source>Commands</source>
             <translation>Ordres</translation>
@@ -2375,6 +2380,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/as_placed_page.py" />
+            <source>Figures, histogram, map and table of these cones as a PDF</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed_page.py" />
             <source>Off [m]</source>
             <translation>Desviació [m]</translation>
         </message>
@@ -2397,6 +2407,11 @@
             <location filename="../../plugin/desk/plans/as_placed_page.py" />
             <source>Refresh</source>
             <translation>Actualitza</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed_page.py" />
+            <source>Report…</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/desk/plans/as_placed_page.py" />
@@ -2427,6 +2442,11 @@
             <location filename="../../plugin/desk/plans/as_placed_page.py" />
             <source>the plan that is driven</source>
             <translation>el pla que s'executa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed_pdf.py" />
+            <source>The report is made by QGIS's Processing: switch that on in Plugins &gt; Manage and Install Plugins.</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/desk/plans/closed_ways.py" />
@@ -2482,21 +2502,6 @@
             <location filename="../../plugin/desk/plans/cone_source.py" />
             <source>no selected features</source>
             <translation>cap entitat seleccionada</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/cone_source.py" />
-            <source>{layer}, feature {id}</source>
-            <translation>{layer}, entitat {id}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/cone_source.py" />
-            <source>{where} is not one point with a place on the site: correct or delete it.</source>
-            <translation>{where} no és un sol punt amb lloc al recinte: corregiu-lo o esborreu-lo.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/cone_source.py" />
-            <source>{where}: {field} is {value!r}, which is no number; correct it.</source>
-            <translation>{where}: {field} és {value!r}, que no és un nombre; corregiu-lo.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/draft_plan.py" />
@@ -6042,28 +6047,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/job_source.py" />
-            <source>{layer} is not one point with a place in {crs}: correct it.</source>
-            <translation>{layer} no és un sol punt amb lloc a {crs}: corregiu-lo.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/job_source.py" />
-            <source>{layer}: {field} is {value!r}, which is no number; correct it.</source>
-            <translation>{layer}: {field} és {value!r}, que no és un nombre; corregiu-lo.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/job_source.py" />
-            <source>{layer}: {field} is {value:g}; give a whole number.</source>
-            <translation>{layer}: {field} és {value:g}; doneu un nombre enter.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/job_source.py" />
             <source>{name} {given} cannot be opened: check the file and the layer's name.</source>
             <translation>{name} {given} no es pot obrir: comproveu el fitxer i el nom de la capa.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/job_source.py" />
-            <source>{sourcename}, feature {id}</source>
-            <translation>{sourcename}, entitat {id}</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/job_travel.py" />
@@ -7695,6 +7680,26 @@
             <location filename="../../plugin/sites/placing.py" />
             <source>tick 'Layers without a CRS are already in the site frame's metres' (LOCAL=true)</source>
             <translation>marqueu «Les capes sense SRC ja són en metres del marc del recinte» (LOCAL=true)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/point_rows.py" />
+            <source>{layer}, feature {id}</source>
+            <translation>{layer}, entitat {id}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/point_rows.py" />
+            <source>{layer}: {field} is {value!r}, which is no number; correct it.</source>
+            <translation>{layer}: {field} és {value!r}, que no és un nombre; corregiu-lo.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/point_rows.py" />
+            <source>{layer}: {field} is {value:g}; give a whole number.</source>
+            <translation>{layer}: {field} és {value:g}; doneu un nombre enter.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/point_rows.py" />
+            <source>{where} is not one point with a place on the site: correct or delete it.</source>
+            <translation>{where} no és un sol punt amb lloc al recinte: corregiu-lo o esborreu-lo.</translation>
         </message>
         <message>
             <location filename="../../plugin/sites/posts.py" />

@@ -1509,6 +1509,11 @@
             <translation>{in_words} no se envió: {error}</translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/desk.py" />
+            <source>{words} was not sent: another site is served now. Draw it anew.</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
             <location filename="../../plugin/desk/dock.py" />
             <source>Commands</source>
             <translation>Órdenes</translation>
@@ -2375,6 +2380,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/as_placed_page.py" />
+            <source>Figures, histogram, map and table of these cones as a PDF</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed_page.py" />
             <source>Off [m]</source>
             <translation>Desvío [m]</translation>
         </message>
@@ -2397,6 +2407,11 @@
             <location filename="../../plugin/desk/plans/as_placed_page.py" />
             <source>Refresh</source>
             <translation>Actualizar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed_page.py" />
+            <source>Report…</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/desk/plans/as_placed_page.py" />
@@ -2427,6 +2442,11 @@
             <location filename="../../plugin/desk/plans/as_placed_page.py" />
             <source>the plan that is driven</source>
             <translation>el plan que se ejecuta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed_pdf.py" />
+            <source>The report is made by QGIS's Processing: switch that on in Plugins &gt; Manage and Install Plugins.</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/desk/plans/closed_ways.py" />
@@ -2482,21 +2502,6 @@
             <location filename="../../plugin/desk/plans/cone_source.py" />
             <source>no selected features</source>
             <translation>ningún objeto seleccionado</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/cone_source.py" />
-            <source>{layer}, feature {id}</source>
-            <translation>{layer}, objeto {id}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/cone_source.py" />
-            <source>{where} is not one point with a place on the site: correct or delete it.</source>
-            <translation>{where} no es un solo punto con lugar en el recinto: corríjalo o bórrelo.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/cone_source.py" />
-            <source>{where}: {field} is {value!r}, which is no number; correct it.</source>
-            <translation>{where}: {field} es {value!r}, que no es un número; corríjalo.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/draft_plan.py" />
@@ -6042,28 +6047,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/job_source.py" />
-            <source>{layer} is not one point with a place in {crs}: correct it.</source>
-            <translation>{layer} no es un solo punto con lugar en {crs}: corríjalo.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/job_source.py" />
-            <source>{layer}: {field} is {value!r}, which is no number; correct it.</source>
-            <translation>{layer}: {field} es {value!r}, que no es un número; corríjalo.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/job_source.py" />
-            <source>{layer}: {field} is {value:g}; give a whole number.</source>
-            <translation>{layer}: {field} es {value:g}; dé un número entero.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/job_source.py" />
             <source>{name} {given} cannot be opened: check the file and the layer's name.</source>
             <translation>{name} {given} no se puede abrir: compruebe el archivo y el nombre de la capa.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/job_source.py" />
-            <source>{sourcename}, feature {id}</source>
-            <translation>{sourcename}, objeto espacial {id}</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/job_travel.py" />
@@ -7695,6 +7680,26 @@
             <location filename="../../plugin/sites/placing.py" />
             <source>tick 'Layers without a CRS are already in the site frame's metres' (LOCAL=true)</source>
             <translation>marque «Las capas sin SRC ya están en metros del marco del recinto» (LOCAL=true)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/point_rows.py" />
+            <source>{layer}, feature {id}</source>
+            <translation>{layer}, objeto {id}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/point_rows.py" />
+            <source>{layer}: {field} is {value!r}, which is no number; correct it.</source>
+            <translation>{layer}: {field} es {value!r}, que no es un número; corríjalo.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/point_rows.py" />
+            <source>{layer}: {field} is {value:g}; give a whole number.</source>
+            <translation>{layer}: {field} es {value:g}; dé un número entero.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/point_rows.py" />
+            <source>{where} is not one point with a place on the site: correct or delete it.</source>
+            <translation>{where} no es un solo punto con lugar en el recinto: corríjalo o bórrelo.</translation>
         </message>
         <message>
             <location filename="../../plugin/sites/posts.py" />

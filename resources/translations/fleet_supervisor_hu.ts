@@ -1507,6 +1507,11 @@
             <translation>{in_words} nem lett elküldve: {error}</translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/desk.py" />
+            <source>{words} was not sent: another site is served now. Draw it anew.</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
             <location filename="../../plugin/desk/dock.py" />
             <source>Commands</source>
             <translation>Parancsok</translation>
@@ -2373,6 +2378,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/as_placed_page.py" />
+            <source>Figures, histogram, map and table of these cones as a PDF</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed_page.py" />
             <source>Off [m]</source>
             <translation>Eltérés [m]</translation>
         </message>
@@ -2395,6 +2405,11 @@
             <location filename="../../plugin/desk/plans/as_placed_page.py" />
             <source>Refresh</source>
             <translation>Frissítés</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed_page.py" />
+            <source>Report…</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/desk/plans/as_placed_page.py" />
@@ -2425,6 +2440,11 @@
             <location filename="../../plugin/desk/plans/as_placed_page.py" />
             <source>the plan that is driven</source>
             <translation>a végrehajtás alatt lévő terv</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed_pdf.py" />
+            <source>The report is made by QGIS's Processing: switch that on in Plugins &gt; Manage and Install Plugins.</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/desk/plans/closed_ways.py" />
@@ -2480,21 +2500,6 @@
             <location filename="../../plugin/desk/plans/cone_source.py" />
             <source>no selected features</source>
             <translation>nincs kijelölt eleme</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/cone_source.py" />
-            <source>{layer}, feature {id}</source>
-            <translation>{layer}, {id}. elem</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/cone_source.py" />
-            <source>{where} is not one point with a place on the site: correct or delete it.</source>
-            <translation>{where} nem egyetlen pont, amelynek helye van a telephelyen: javítsa ki vagy törölje.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/cone_source.py" />
-            <source>{where}: {field} is {value!r}, which is no number; correct it.</source>
-            <translation>{where}: {field} értéke {value!r}, ami nem szám; javítsa ki.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/draft_plan.py" />
@@ -6038,28 +6043,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/job_source.py" />
-            <source>{layer} is not one point with a place in {crs}: correct it.</source>
-            <translation>{layer} nem egyetlen pont, amelynek helye van itt: {crs}. Javítsa ki.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/job_source.py" />
-            <source>{layer}: {field} is {value!r}, which is no number; correct it.</source>
-            <translation>{layer}: {field} értéke {value!r}, ami nem szám; javítsa ki.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/job_source.py" />
-            <source>{layer}: {field} is {value:g}; give a whole number.</source>
-            <translation>{layer}: {field} értéke {value:g}; adjon meg egész számot.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/job_source.py" />
             <source>{name} {given} cannot be opened: check the file and the layer's name.</source>
             <translation>{name}: {given} nem nyitható meg: ellenőrizze a fájlt és a réteg nevét.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/job_source.py" />
-            <source>{sourcename}, feature {id}</source>
-            <translation>{sourcename}, {id}. elem</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/job_travel.py" />
@@ -7689,6 +7674,26 @@
             <location filename="../../plugin/sites/placing.py" />
             <source>tick 'Layers without a CRS are already in the site frame's metres' (LOCAL=true)</source>
             <translation>kapcsolja be: „A vetület nélküli rétegek már a telephelyi keret métereiben vannak” (LOCAL=true)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/point_rows.py" />
+            <source>{layer}, feature {id}</source>
+            <translation>{layer}, {id}. elem</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/point_rows.py" />
+            <source>{layer}: {field} is {value!r}, which is no number; correct it.</source>
+            <translation>{layer}: {field} értéke {value!r}, ami nem szám; javítsa ki.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/point_rows.py" />
+            <source>{layer}: {field} is {value:g}; give a whole number.</source>
+            <translation>{layer}: {field} értéke {value:g}; adjon meg egész számot.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/point_rows.py" />
+            <source>{where} is not one point with a place on the site: correct or delete it.</source>
+            <translation>{where} nem egyetlen pont, amelynek helye van a telephelyen: javítsa ki vagy törölje.</translation>
         </message>
         <message>
             <location filename="../../plugin/sites/posts.py" />

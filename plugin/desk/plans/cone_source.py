@@ -2,17 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
 
 from qgis.core import (
-    NULL,
     QgsCoordinateReferenceSystem,
-    QgsCoordinateTransform,
-    QgsCsException,
-    QgsFeatureRequest,
     QgsProject,
     QgsVectorLayer,
     QgsWkbTypes,
@@ -23,13 +17,16 @@ from ....robot_bridge.sites.frame import SiteFrame
 from ...errors import FleetError
 from ...language import tr
 from ...processing.cone_layer import theta_of
+from ...sites.placing import SitePlacing
+from ...sites.point_rows import PointRow, point_rows
+from ...sites.site_crs import stated_crs
 from .plan_settings import PlanSettings
 
 _NAMES = ("id", "name")
 
 
 class ConeLayerError(FleetError):
-    """A layer of cones or stores that cannot be planned for: names the layer, the feature, and what to do."""
+    """There is no layer of cones or stores to plan for, or nothing in it."""
 
 
 @dataclass(frozen=True)
@@ -65,20 +62,18 @@ def read_cones(
     Fields: ``id``, ``heading`` (degrees clockwise from north), ``layout``, ``stage``, ``demand`` and
     ``service_s``.
 
-    :raises ConeLayerError: when the layer is not there, empty, or a feature cannot be placed.
+    :raises ConeLayerError: when the layer is not there, or empty; LayerReadingError naming the layer, the
+        feature and the field that cannot be used.
     """
     layer = project.mapLayer(settings.cones)
     if layer is None:
         raise ConeLayerError(tr("No layer of cones is chosen. Choose one, or place a cone layout first."))
     targets, facts = [], {}
-    for row in _rows(layer, project, frame, settings.selected_only):
+    for row in _rows(layer, project, frame, selected=settings.selected_only):
         theta = frame.heading_to_site(theta_of(row.number("heading", 90.0)))
-        targets.append(
-            Target(
-                row.name, row.x, row.y, theta, round(row.number("stage", 0)), PLACE,
-                round(row.number("demand", 1)), row.number("service_s", settings.service_s),
-            )
-        )  # fmt: skip
+        stage, demand = row.whole("stage", 0), row.whole("demand", 1)
+        service_s = row.number("service_s", settings.service_s)
+        targets.append(Target(row.name, row.x, row.y, theta, stage, PLACE, demand, service_s))
         facts[row.name] = ConeFacts(row.name, str(row.values.get("layout") or layer.name()))
     if not targets:
         which = tr("no selected features") if settings.selected_only else tr("no features")
@@ -103,61 +98,16 @@ def read_stores(project: QgsProject, settings: PlanSettings, frame: SiteFrame) -
         )
     return tuple(
         Store(row.name, row.x, row.y, row.number("service_s", settings.store_s))
-        for row in _rows(layer, project, frame, False)
+        for row in _rows(layer, project, frame, selected=False)
     )
 
 
-@dataclass(frozen=True)
-class _Row:
-    where: str
-    name: str
-    x: float
-    y: float
-    values: dict[str, Any]
-
-    def number(self, field: str, otherwise: float) -> float:
-        value = self.values.get(field)
-        if value is None or value == "":
-            return otherwise
-        try:
-            number = float(value)
-        except (TypeError, ValueError):
-            number = math.nan
-        if not math.isfinite(number):
-            raise ConeLayerError(
-                tr(
-                    "{where}: {field} is {value!r}, which is no number; correct it.",
-                    where=self.where,
-                    field=field,
-                    value=value,
-                )
-            )
-        return number
-
-
-def _rows(layer: QgsVectorLayer, project: QgsProject, frame: SiteFrame, selected: bool) -> Iterator[_Row]:
-    transform = QgsCoordinateTransform(layer.crs(), QgsCoordinateReferenceSystem(frame.crs), project)
-    names = layer.fields().names()
-    features = layer.getSelectedFeatures() if selected else layer.getFeatures(QgsFeatureRequest())
-    for feature in features:
-        where = tr("{layer}, feature {id}", layer=layer.name(), id=feature.id())
-        geometry = feature.geometry()
-        try:
-            geometry.transform(transform)
-            points = list(geometry.vertices())
-        except QgsCsException:
-            points = []
-        if len(points) != 1 or not (math.isfinite(points[0].x()) and math.isfinite(points[0].y())):
-            raise ConeLayerError(
-                tr(
-                    "{where} is not one point with a place on the site: correct or delete it.",
-                    where=where,
-                )
-            )
-        ((x, y),) = frame.to_site([(points[0].x(), points[0].y())]).tolist()
-        values = {
-            name: None if value == NULL else value
-            for name, value in zip(names, feature.attributes(), strict=True)
-        }
-        name = next((str(values[one]) for one in _NAMES if values.get(one) not in (None, "")), "")
-        yield _Row(where, name or str(feature.id()), x, y, values)
+def _rows(
+    layer: QgsVectorLayer, project: QgsProject, frame: SiteFrame, *, selected: bool
+) -> Iterator[PointRow]:
+    crs = stated_crs(QgsCoordinateReferenceSystem(frame.crs))
+    placing = SitePlacing(crs, frame, project.transformContext()).of_layer(
+        layer.name(), stated_crs(layer.crs())
+    )
+    features = layer.getSelectedFeatures() if selected else layer.getFeatures()
+    return point_rows(layer.name(), features, placing, _NAMES)
