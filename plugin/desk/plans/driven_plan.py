@@ -1,26 +1,25 @@
-"""The plan that robots drive: sent, followed, and planned anew for what is left when something goes wrong."""
+"""The plan that robots drive: sent, and planned anew for what is left when something goes wrong."""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 
 import numpy as np
 from qgis.PyQt.QtCore import QObject, pyqtSignal
 
-from ....robot_bridge.assignment.plan import Plan
 from ....robot_bridge.assignment.replanning import replan
 from ....robot_bridge.assignment.solving import Wanted
-from ....robot_bridge.messages import GetPlacements, MessageError, QueueTask, TaskState
+from ....robot_bridge.messages import MessageError, QueueTask
 from ...errors import FleetError
 from ...language import tr
 from ..desk import Desk
-from ..placement_book import MOST_ASKED
 from .available_robots import has_place
 from .closure_look import ClosureLook
 from .draft import Draft
 from .draft_plan import DraftPlan, PlanningError
-from .progress import Progress, Trouble, behind, cones_under_way, situation_of, trouble_of, under_way
+from .followed_plan import FollowedPlan
+from .progress import Progress, Trouble, cones_under_way, situation_of, under_way
 from .sending import (
     Sending,
     Step,
@@ -32,15 +31,17 @@ from .sending import (
     paused_at,
 )
 from .sending_check import after_sending
-from .task_rows import SentStop, sent_stops, tasks_of
+from .task_rows import SentStop, tasks_of
 
 _REPLANNING_S = 2.0
 """How long a new plan for what is left may take at most: robots stand meanwhile."""
+_LONGEST_REASON = 200
+"""Characters of the reason that a pause is given."""
 
 
 class DrivenPlan(QObject):
-    """Sends the draft when told to, and watches what becomes of it. Robots are never sent by it unasked,
-    unless ``settings.by_itself`` says so."""
+    """Sends the draft when told to, and new plans for what is left of it. Robots are never sent by it
+    unasked, unless ``settings.by_itself`` says so."""
 
     changed = pyqtSignal()
     """Something new is known of the plan that is driven."""
@@ -53,21 +54,33 @@ class DrivenPlan(QObject):
         super().__init__(parent)
         self._desk = desk
         self._drafts = drafts
-        self.driven: Draft | None = None
-        self.progress: Progress | None = None
         self.offer: Draft | None = None
         """A new plan for what is left, that nobody confirmed yet."""
-        self.trouble = Trouble()
         self.sending: Sending | None = None
         self.held: dict[str, float | None] = {}
         """Robots that wait for the new plan, with the time since which their queues are paused for that."""
-        self._dealt_with = Trouble()
-        self._complaints: list[str] = []
-        self._look_at_closures = ClosureLook(self)
+        self._followed = FollowedPlan(desk, self)
+        self._followed.changed.connect(self.changed)
+        self._followed.failed.connect(self.failed)
+        self._followed.settled.connect(self.settled)
+        self._followed.troubled.connect(self._plan_rest_by_itself)
+        self._look_at_offer = ClosureLook(self)
         desk.roads.closures_changed.connect(self._take_closures)
-        desk.queues_changed.connect(self._take_queues)
-        desk.placements_changed.connect(self._take_placements)
-        desk.link_changed.connect(self._ask_for_placements)
+
+    @property
+    def driven(self) -> Draft | None:
+        """The plan that robots drive, None while none is followed."""
+        return self._followed.draft
+
+    @property
+    def progress(self) -> Progress | None:
+        """How far the robots are, None while no plan is followed."""
+        return self._followed.progress
+
+    @property
+    def trouble(self) -> Trouble:
+        """What keeps the plan from going on as it is."""
+        return self._followed.trouble
 
     @property
     def busy(self) -> bool:
@@ -84,40 +97,26 @@ class DrivenPlan(QObject):
             raise PlanningError(tr("There is no plan to send. Make one with Preview or Solve first."))
         self._check_no_emergency()
         tasks = _tasks(draft)
-        self.progress = Progress(draft.name, draft.facts, time.time())
-        self._note(draft.plan, tasks)
-        self.driven, self.offer, self.held = draft, None, {}
-        self.trouble = self._dealt_with = Trouble()
-        self._settle()
+        self.offer, self.held = None, {}
+        self._followed.begin(draft, tasks)
         self._start(first_steps(self._desk, tasks), self._sent)
         if self._desk.roads.closures:
             # The draft may not have been looked at yet since they were closed.
-            self._take_closures()
+            self._followed.look_at_closures()
 
     def plan_rest(self, *, try_again: bool = False) -> None:
         """Hold the robots and plan what is left; :meth:`confirm` sends it, :meth:`discard` lets them go on.
 
         :raises PlanningError: when no plan is driven, or nobody is left to drive.
         """
-        if self.driven is None or self.progress is None or self.busy:
+        if self.driven is None or self.busy:
             raise PlanningError(tr("No plan is being driven, or something is still being sent."))
         self._check_no_emergency()
-        staying = [
-            one.robot.id
-            for one in self.driven.plan.robots
-            if not one.lost and one.robot.id not in self.trouble.away
-        ]
+        robots = self.driven.plan.robots
+        staying = [one.robot.id for one in robots if not one.lost and one.robot.id not in self.trouble.away]
         if not staying:
             raise PlanningError(tr("No robot is left to take over: connect one, and plan anew."))
-        trouble = self._dealt_with = self.trouble
-        reason = (
-            tr(
-                "plan of what is left: {in_words}",
-                in_words=trouble.in_words(),
-            )[:200]
-            if trouble
-            else tr("plan of what is left")
-        )
+        trouble = self._followed.see_to()
         paused = {robot for robot in paused_at(self._desk, staying) if not has_failed(self._desk, robot)}
         ours = [robot for robot in staying if robot not in paused]
 
@@ -126,7 +125,7 @@ class DrivenPlan(QObject):
             if done:
                 self._plan_rest(trouble, try_again)
 
-        self._start(holding_steps(ours, reason), held)
+        self._start(holding_steps(ours, _reason(trouble)), held)
 
     def confirm(self) -> None:
         """Send the new plan for what is left; raises PlanningError when there is none."""
@@ -144,17 +143,8 @@ class DrivenPlan(QObject):
             )
         tasks = _tasks(offer, under_way(progress))
         away = [one.robot.id for one in offer.plan.robots if one.lost]
-        progress.forget(
-            task
-            for task in list(progress.stops)
-            if task not in progress.reports
-            or progress.reports[task].state not in (TaskState.DONE, TaskState.CURRENT)
-            or progress.stops[task].robot in away
-        )
-        self._note(offer.plan, tasks)
-        held, self.held = self.held, {}
-        self.driven, self.offer = offer, None
-        self._settle()
+        held, self.held, self.offer = self.held, {}, None
+        self._followed.go_on(offer, tasks)
         self._start(later_steps(self._desk, tasks, away, held, tr("its robot is lost")), self._sent)
 
     def discard(self) -> None:
@@ -163,18 +153,21 @@ class DrivenPlan(QObject):
         self._drafts.cancel()
         self._start(going_on_steps(self._desk, held), lambda done: None)
 
-    def shut_down(self) -> None:
-        """Look at nothing any more."""
-        self._look_at_closures.stop()
-
     def clear(self) -> None:
-        """Watch no plan any more; robots go on with what is in their queues."""
-        self.driven = self.progress = self.offer = None
-        self.trouble, self.held = Trouble(), {}
-        self._settle()
+        """Watch no plan any more, and send no more of it; robots go on with what is in their queues."""
+        if self.sending is not None:
+            self.sending.give_up()
+            self._forget_sending()
+        self.offer, self.held = None, {}
+        self._followed.clear()
         self.changed.emit()
 
-    # --- what becomes of it ---
+    def shut_down(self) -> None:
+        """Look at nothing any more."""
+        self._look_at_offer.stop()
+        self._followed.shut_down()
+
+    # --- what is left of it ---
 
     def _plan_rest(self, trouble: Trouble, try_again: bool) -> None:
         driven, progress = self.driven, self.progress
@@ -202,113 +195,47 @@ class DrivenPlan(QObject):
         self.offer = offer
         self.changed.emit()
         if self._drafts.settings.by_itself and not offer.meetings and not offer.closed:
-            why = self._dealt_with.in_words()
+            why = self._followed.seen_to.in_words()
             self.remarked.emit(tr("A new plan is sent by itself, as you switched on: {why}", why=why))
             # What made the plan is still telling of it.
             self._drafts.changed.connect(self._confirm_once)
 
     def _confirm_once(self) -> None:
         self._drafts.changed.disconnect(self._confirm_once)
-        if self.offer is None:
-            return
-        try:
-            self.confirm()
-        except FleetError as error:
-            self.failed.emit(str(error))
+        if self.offer is not None:
+            self._try(self.confirm)
 
-    def _take_queues(self, robots: Sequence[str]) -> None:
-        if self.progress is None or self.driven is None:
-            return
-        for robot in robots:
-            report = self._desk.queues.get(robot)
-            if report is not None:
-                self.progress.take_queue(report)
-        self._look()
-
-    def _take_placements(self, numbers: Sequence[int]) -> None:
-        if self.progress is None:
-            return
-        new = set(numbers)
-        for report in self._desk.placements:
-            if report.placement in new:
-                self.progress.take_placement(report)
-        self._look()
-
-    def _take_closures(self) -> None:
-        """Find out anew which ways are closed, of the plan that is driven and of the one that is offered."""
-        if self.progress is None or self.driven is None:
-            return
-        drafts = [self.driven] if self.offer is None else [self.driven, self.offer]
-        closures = self._desk.roads.closures
-        self._look_at_closures.begin(drafts, closures, lambda found: self._judged(drafts, found))
-
-    def _judged(self, before: list[Draft], after: list[Draft]) -> None:
-        """Put drafts in place of those ``before`` them, where these are still driven or offered."""
-        if self.progress is None or self.driven is None:
-            return
-        for old, new in zip(before, after, strict=True):
-            if self.driven is old:
-                self.driven = new
-            if self.offer is old:
-                self.offer = new
-        self._look()
-
-    def _look(self) -> None:
-        """Find out what is wrong, and tell of what was not wrong before."""
-        plan, queues = self.driven.plan, {one.robot: one for one in self._desk.queues}
-        made = {id(stop) for stop in behind(self.progress)}
-        closed = tuple(one for one in self.driven.closed if id(one.at) not in made)
-        before, self.trouble = self.trouble, trouble_of(plan, self.progress, queues, closed)
-        self.changed.emit()
-        if not self.trouble:
-            self._settle()
-        if not self.trouble or self.trouble == self._dealt_with:
-            return
-        if self.trouble != before:
-            why = self.trouble.in_words()
-            self._complain(tr("The cone plan cannot go on as it is: {why}. Plan what is left.", why=why))
+    def _plan_rest_by_itself(self) -> None:
         if self._drafts.settings.by_itself and self.offer is None and not self.busy:
             # Tried once: what cannot be planned is told once, and is the operator's from then on.
-            self._dealt_with = self.trouble
-            try:
-                self.plan_rest()
-            except FleetError as error:
-                self.failed.emit(str(error))
+            self._followed.see_to()
+            self._try(self.plan_rest)
 
-    def _complain(self, text: str) -> None:
-        """Tell what a new plan is to mend: it hangs there until one was agreed to, and no longer."""
-        self._settle()
-        self._complaints.append(text)
-        self.failed.emit(text)
-
-    def _settle(self) -> None:
-        for text in self._complaints:
-            self.settled.emit(text)
-        self._complaints.clear()
-
-    def _ask_for_placements(self) -> None:
-        """Ask for what was put down while this desk was not connected."""
-        if self.progress is None or self._desk.link.phase.value != "connected":
+    def _take_closures(self) -> None:
+        """Find out anew which ways of the new plan lead along closed roads."""
+        offer = self.offer
+        if offer is None:
             return
-        request = GetPlacements(plan=self.progress.name, limit=MOST_ASKED)
-        self._desk.ask(request, tr("Placed cones of the plan"))
+
+        def found(drafts: list[Draft]) -> None:
+            if self.offer is offer:
+                self.offer = drafts[0]
+                self.changed.emit()
+
+        self._look_at_offer.begin([offer], self._desk.roads.closures, found)
+
+    # --- how it is sent ---
 
     def _check_no_emergency(self) -> None:
         stop = self._desk.emergency
         if stop is not None and stop.in_force:
             raise PlanningError(tr("An emergency stop is in force. It has to be cleared first."))
 
-    def _note(self, plan: Plan, tasks: dict[str, list[QueueTask]]) -> None:
-        for one in plan.robots:
-            if one.robot.id in tasks:
-                self.progress.sent(sent_stops(one, tasks[one.robot.id]))
-
     def _start(self, steps: list[Step], then: Callable[[bool], None]) -> None:
         self.sending = sending = Sending(self._desk, steps, self)
 
         def ended(done: bool, why: str) -> None:
-            self.sending = None
-            sending.deleteLater()
+            self._forget_sending()
             if not done:
                 self.failed.emit(tr("The cone plan was not sent as a whole. {why}", why=why))
             then(done)
@@ -318,12 +245,29 @@ class DrivenPlan(QObject):
         self.changed.emit()
         sending.start()
 
+    def _forget_sending(self) -> None:
+        sending, self.sending = self.sending, None
+        sending.deleteLater()
+
     def _sent(self, done: bool) -> None:
         if done:
             self.remarked.emit(tr("The cone plan is in the robots' queues."))
             for text in after_sending(self._desk, self.driven.plan):
                 self.failed.emit(text)
-        self._take_queues([one.robot for one in self._desk.queues])
+        self._followed.look_at_queues()
+
+    def _try(self, action: Callable[[], None]) -> None:
+        try:
+            action()
+        except FleetError as error:
+            self.failed.emit(str(error))
+
+
+def _reason(trouble: Trouble) -> str:
+    """Return why robots are held, for their queues."""
+    if not trouble:
+        return tr("plan of what is left")
+    return tr("plan of what is left: {in_words}", in_words=trouble.in_words())[:_LONGEST_REASON]
 
 
 def _tasks(draft: Draft, now: Mapping[str, SentStop] | None = None) -> dict[str, list[QueueTask]]:

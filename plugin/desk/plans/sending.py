@@ -57,6 +57,10 @@ class Sending(QObject):
         """Ask for the first step."""
         self._next()
 
+    def give_up(self) -> None:
+        """Ask for nothing more, and tell nothing of what was asked for."""
+        self._desk.answered.disconnect(self._answered)
+
     def _next(self) -> None:
         while self._steps:
             self._now = self._steps.pop(0)
@@ -128,13 +132,7 @@ def first_steps(desk: Desk, tasks: Mapping[str, Sequence[QueueTask]]) -> list[St
 def holding_steps(robots: Sequence[str], reason: str) -> list[Step]:
     """Return what holds robots: they finish what they are doing, and are sent nothing more."""
     return [
-        Step(
-            tr(
-                "holding {robot}",
-                robot=robot,
-            ),
-            lambda robot=robot: PauseQueue(robot, reason),
-        )
+        Step(tr("holding {robot}", robot=robot), lambda robot=robot: PauseQueue(robot, reason))
         for robot in robots
     ]
 
@@ -163,10 +161,7 @@ def later_steps(
 
 def _filling(desk: Desk, robot: str, tasks: Sequence[QueueTask]) -> Step:
     return Step(
-        tr(
-            "the queue of {robot}",
-            robot=robot,
-        ),
+        tr("the queue of {robot}", robot=robot),
         lambda: SetQueue(robot, desk.queues.revision(robot), list(tasks)),
     )
 

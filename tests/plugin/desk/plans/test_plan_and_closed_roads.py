@@ -75,7 +75,12 @@ class Held:
 
     def __init__(self, dock, monkeypatch):
         monkeypatch.setattr(slices, "SLICE_SECONDS", 0.0)
-        looks = (dock.drafts._look, dock.drafts._look_at_made, dock.driven._look_at_closures)
+        looks = (
+            dock.drafts._look,
+            dock.drafts._look_at_made,
+            dock.driven._look_at_offer,
+            dock.driven._followed._look,
+        )
         self._timers = [look._slices._timer for look in looks]
         for timer in self._timers:
             timer.setInterval(3_600_000)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from fleet_supervisor.plugin.desk.plans import plan_rows
+from fleet_supervisor.plugin.wire.outbox import Answer, Order
 from fleet_supervisor.robot_bridge.messages import TaskState, to_json
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
@@ -109,3 +110,16 @@ def test_what_is_done_is_counted_and_off_the_map_in_every_language(under_way, ga
     assert [stops[one] for one in (first, *others)] == ["done", "failed", "waiting"]
     drawn = {one["to_stop"] for one in under_way.layers.ways.layer.getFeatures()}
     assert first not in drawn and set(others) <= drawn
+
+
+def test_a_plan_that_is_cleared_while_it_is_sent_is_sent_no_further(panel, gateway, wait):
+    planned(panel, wait)
+    gateway.mute.add("set_queue")
+    answer(question(panel), send=True)
+    wait(lambda: gateway.asked("set_queue"), 5, "the first queue")
+    first = Order(panel.driven.sending._key, "set_queue")
+    panel.driven.clear()
+    assert not panel.driven.busy and panel.driven.driven is None
+    panel._desk.answered.emit(Answer(first, {}))
+    QTest.qWait(200)
+    assert len(gateway.asked("set_queue")) == 1 and panel.driven.sending is None
