@@ -15,15 +15,17 @@ from pathlib import Path
 from typing import Any
 
 from plugin_files import ROOT
-from sqlalchemy import Connection, make_url
+from sqlalchemy import Connection, func, make_url, select
 
 from robot_bridge.store import revisions
 from robot_bridge.store.accounts.choice import keeper_on
 from robot_bridge.store.database import run_once
+from robot_bridge.store.schema import trajectories
 
 from ..database_server import DatabaseServer
 from ..desk_wire import ask
 from ..errors import StageError
+from ..patience import BUSY
 from ..processes import Processes
 from .crew import Plan
 from .desk import Desk, Ledger
@@ -41,7 +43,7 @@ PASSWORD = "robot-of-the-yard"
 GATEWAY_KILLED, ROBOTS_KILLED = "gateway killed", "two robots killed"
 DESKS = 4
 STORED_WITHIN_S = 2.0
-"""seconds within which the gateway stores what it was told last."""
+"""seconds within which the gateway stores what it was told last, on an idle machine."""
 FIRST_ROW, BETWEEN_ROWS = 8.0, 7.0
 """metres: the y of the robots, each in a row of its own."""
 
@@ -212,7 +214,8 @@ class Yard:
             assert crew.process is not None
             crew.process.terminate()
             crew.process.wait(20)
-        time.sleep(STORED_WITHIN_S)
+        # What is not there then is lost, which the audit tells.
+        self._wait(self._last_words_are_stored, BUSY * STORED_WITHIN_S)
 
     # ---------------------------------------------------------------------------------------------------
 
@@ -237,6 +240,13 @@ class Yard:
     def _all_are_there(self) -> bool:
         (known,) = ask(self.address, ("get_positions", {}))
         return {robot["robot"] for robot in known["robots"] if "x" in robot} >= set(self.place.robot_urls)
+
+    def _last_words_are_stored(self) -> bool:
+        last: dict[str, float] = {}
+        for entry in self.journals():
+            if entry["what"] == "pose":
+                last[entry["robot"]] = max(entry["t"], last.get(entry["robot"], 0.0))
+        return run_once(self.place.url, _newest_stored) == last
 
     def _run(self, name: str, module: str, *words: str | Path) -> subprocess.Popen[bytes]:
         command = [sys.executable, "-m", module, *words]
@@ -287,6 +297,12 @@ def _accounts(connection: Connection, robots: list[str], url: Any) -> dict[str, 
         keeper.add_robot(name, PASSWORD)
     shared = url.set(database=keeper.robots_database(), password=PASSWORD)
     return {name: shared.set(username=name).render_as_string(hide_password=False) for name in robots}
+
+
+def _newest_stored(connection: Connection) -> dict[str, float]:
+    """Return by the robots' own clocks when the newest position of each was told."""
+    newest = select(trajectories.c.robot, func.max(trajectories.c.device_time))
+    return dict(map(tuple, connection.execute(newest.group_by(trajectories.c.robot))))
 
 
 def _site(folder: Path) -> Path:
