@@ -144,12 +144,7 @@ def read_obstacles(
                 except PlacingError as error:
                     parts, found = (
                         [],
-                        [
-                            tr(
-                                "cannot be transformed into the site's CRS ({error})",
-                                error=error,
-                            )
-                        ],
+                        [tr("cannot be transformed into the site's CRS ({error})", error=error)],
                     )
                 shapes += parts
                 notes += found

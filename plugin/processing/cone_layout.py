@@ -100,8 +100,7 @@ class ConeLayout(FleetAlgorithm):
         if len(given) != 1:
             how = tr("Both POINT and LINE are") if given else tr("Neither POINT nor LINE is")
             return False, tr(
-                "{how} given: give the place of the layout, or a line that it lies along.",
-                how=how,
+                "{how} given: give the place of the layout, or a line that it lies along.", how=how
             )
         return super().checkParameterValues(parameters, context)
 
@@ -148,10 +147,7 @@ class ConeLayout(FleetAlgorithm):
         features = list(self._line.getFeatures(request.setLimit(2)))
         if len(features) != 1:
             found = (
-                tr(
-                    "no feature {wanted}",
-                    wanted=wanted,
-                )
+                tr("no feature {wanted}", wanted=wanted)
                 if wanted not in (None, "")
                 else tr("not exactly one feature")
             )
@@ -171,10 +167,7 @@ class ConeLayout(FleetAlgorithm):
             geometry.transform(transform)
         except QgsCsException as error:
             raise ParameterError(
-                tr(
-                    "The line cannot be transformed into the site's CRS ({error}).",
-                    error=error,
-                )
+                tr("The line cannot be transformed into the site's CRS ({error}).", error=error)
             ) from error
         lines = parts_of(geometry).lines
         if len(lines) != 1:

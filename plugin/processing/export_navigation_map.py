@@ -275,10 +275,7 @@ def _name(given: str, source: Path) -> str:
     name = given.strip() or source.stem
     if Path(name).name != name or name.startswith("."):
         raise ParameterError(
-            tr(
-                "NAME {name!r} is no file's name: leave out folders and leading dots.",
-                name=name,
-            )
+            tr("NAME {name!r} is no file's name: leave out folders and leading dots.", name=name)
         )
     return name
 
@@ -299,10 +296,7 @@ def _write(made: Mapping[str, Files], folder: Path, source: Path, feedback: QgsP
     for target in files:
         if target.exists() and target.samefile(source):
             raise OutputError(
-                tr(
-                    "{target} is the robot map itself: choose another NAME or OUTPUT.",
-                    target=target,
-                )
+                tr("{target} is the robot map itself: choose another NAME or OUTPUT.", target=target)
             )
     for target, content in files.items():
         write_whole(target, content)

@@ -138,10 +138,7 @@ def obstacle_layers(
     for layer in layers:
         if not isinstance(layer, QgsVectorLayer):
             raise LayerTypeError(
-                tr(
-                    "The layer {layer} is no vector layer: leave it out.",
-                    layer=layer.name(),
-                )
+                tr("The layer {layer} is no vector layer: leave it out.", layer=layer.name())
             )
     return layers
 
@@ -179,10 +176,7 @@ def default_height(
     height = algorithm.parameterAsDouble(parameters, DEFAULT_HEIGHT, context)
     if not 0 <= height < math.inf:
         raise ParameterError(
-            tr(
-                "DEFAULT_HEIGHT is {height}: give a number of metres of 0 or more.",
-                height=height,
-            )
+            tr("DEFAULT_HEIGHT is {height}: give a number of metres of 0 or more.", height=height)
         )
     return height
 

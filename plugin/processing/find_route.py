@@ -265,9 +265,5 @@ def _report(route: Route, path: DensePath, feedback: QgsProcessingFeedback) -> N
     )
     for x, y in path.tight.tolist():
         feedback.pushWarning(
-            tr(
-                "The corner at ({x:.2f}, {y:.2f}) is tighter than the robot turns.",
-                x=x,
-                y=y,
-            )
+            tr("The corner at ({x:.2f}, {y:.2f}) is tighter than the robot turns.", x=x, y=y)
         )

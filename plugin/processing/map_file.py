@@ -129,11 +129,7 @@ def read_map_file(path: Path) -> RobotMap:
         ) from error
     except RobotMapError as error:
         raise MapFileError(
-            tr(
-                "The robot map {path} cannot be read: {error}",
-                path=path,
-                error=error,
-            )
+            tr("The robot map {path} cannot be read: {error}", path=path, error=error)
         ) from error
 
 
@@ -193,10 +189,7 @@ def _crs(
     if known.isValid():
         return known
     why = (
-        tr(
-            "the CRS {stated!r} that the map names is not known to QGIS",
-            stated=stated,
-        )
+        tr("the CRS {stated!r} that the map names is not known to QGIS", stated=stated)
         if stated
         else tr("it names no CRS")
     )

@@ -99,11 +99,7 @@ def shaping_of(
     for name, value in lengths.items():
         if not 0 <= value < math.inf:
             raise ParameterError(
-                tr(
-                    "{name} is {value:g}: give a number of metres of 0 or more.",
-                    name=name,
-                    value=value,
-                )
+                tr("{name} is {value:g}: give a number of metres of 0 or more.", name=name, value=value)
             )
     dissolve, chain = (algorithm.parameterAsBool(parameters, name, context) for name in _FLAGS)
     if dissolve or lengths[TOLERANCE] or lengths[SHORTEST]:

@@ -64,9 +64,7 @@ def window_problem(parameters: Parameters) -> str:
     for side in (WIDTH, HEIGHT):
         if not _is_number(parameters.get(side, PAPERS_SIDE_M)):
             return tr(
-                "{side} is {length}: give a finite number of metres.",
-                side=side,
-                length=parameters[side],
+                "{side} is {length}: give a finite number of metres.", side=side, length=parameters[side]
             )
     return ""
 

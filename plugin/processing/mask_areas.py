@@ -51,10 +51,7 @@ def areas_of(
         limit = math.nan if speed is None else speed(feature)
         if speed is not None and not 0 < limit < math.inf:
             warnings.append(
-                tr(
-                    "{name}: it has no speed above 0 m/s, so it sets no limit; it is left out",
-                    name=name,
-                )
+                tr("{name}: it has no speed above 0 m/s, so it sets no limit; it is left out", name=name)
             )
             continue
         try:
@@ -62,12 +59,7 @@ def areas_of(
         except PlacingError as error:
             shapes, notes = (
                 [],
-                [
-                    tr(
-                        "cannot be transformed into the site's CRS ({error}); it is left out",
-                        error=error,
-                    )
-                ],
+                [tr("cannot be transformed into the site's CRS ({error}); it is left out", error=error)],
             )
         warnings += [f"{name}: {note}" for note in notes]
         areas += [

@@ -164,10 +164,7 @@ def _check_vectors(layers: Sequence[QgsMapLayer]) -> None:
     for layer in layers:
         if not isinstance(layer, QgsVectorLayer):
             raise LayerTypeError(
-                tr(
-                    "The layer {layer} is no vector layer: take its role away.",
-                    layer=layer.name(),
-                )
+                tr("The layer {layer} is no vector layer: take its role away.", layer=layer.name())
             )
 
 
@@ -175,10 +172,7 @@ def _check_published_crs(crs: QgsCoordinateReferenceSystem) -> None:
     if crs.isValid() and not is_engineering(crs) and crs.authid() and not crs.authid().startswith("USER:"):
         return
     named = (
-        tr(
-            "The site's CRS, {crs_name},",
-            crs_name=crs_name(crs),
-        )
+        tr("The site's CRS, {crs_name},", crs_name=crs_name(crs))
         if crs.isValid()
         else tr("The site's CRS is not known, and")
     )
@@ -235,11 +229,7 @@ def _number(text: str, place: str) -> float:
         return float(text.replace("_", ""))
     except ValueError:
         raise ParameterError(
-            tr(
-                "{place} = {text} is no number: correct it there.",
-                place=place,
-                text=text,
-            )
+            tr("{place} = {text} is no number: correct it there.", place=place, text=text)
         ) from None
 
 
@@ -275,10 +265,7 @@ def _bounds(
     corners = site.frame.to_site([(vertex.x(), vertex.y()) for vertex in outline.vertices()])
     if not len(corners):
         raise ParameterError(
-            tr(
-                "BOUNDS {bounds} is no extent: write 'xmin,xmax,ymin,ymax'.",
-                bounds=parameters[BOUNDS],
-            )
+            tr("BOUNDS {bounds} is no extent: write 'xmin,xmax,ymin,ymax'.", bounds=parameters[BOUNDS])
         )
     low, high = corners.min(axis=0).round(3), corners.max(axis=0).round(3)
     return Bounds(float(low[0]), float(low[1]), float(high[0]), float(high[1]))
@@ -290,10 +277,6 @@ def _above_zero(
     value = algorithm.parameterAsDouble(parameters, name, context)
     if not 0 < value < math.inf:
         raise ParameterError(
-            tr(
-                "{name} is {value}: give a number of metres above 0.",
-                name=name,
-                value=value,
-            )
+            tr("{name} is {value}: give a number of metres above 0.", name=name, value=value)
         )
     return value

@@ -199,11 +199,7 @@ def _value_parameters() -> list[QgsProcessingParameterDefinition]:
     parameters += [
         QgsProcessingParameterNumber(
             name,
-            tr(
-                "{title} (default: as published, at first {default:g})",
-                title=title,
-                default=default,
-            ),
+            tr("{title} (default: as published, at first {default:g})", title=title, default=default),
             _REAL,
             optional=True,
         )

@@ -194,12 +194,7 @@ class RoadSource:
             lines += found
             features += [feature.id()] * len(found)
             warnings += [
-                tr(
-                    "Layer {name}, feature {id}: {note}",
-                    name=name,
-                    id=feature.id(),
-                    note=note,
-                )
+                tr("Layer {name}, feature {id}: {note}", name=name, id=feature.id(), note=note)
                 for note in notes
             ]
         reading = RoadReading(self._columns(lines, known, name, warnings), features, crs, placing, warnings)
@@ -246,10 +241,7 @@ def _lines_in_metres(feature: QgsFeature, placing: LayerPlacing, notes: list[str
         return lines_of(placing.to_metres(geometry), notes)
     except PlacingError as error:
         notes.append(
-            tr(
-                "cannot be transformed into the CRS in metres ({error}); it is left out",
-                error=error,
-            )
+            tr("cannot be transformed into the CRS in metres ({error}); it is left out", error=error)
         )
         return []
 

@@ -129,11 +129,7 @@ class SurfaceAtPoint(FleetAlgorithm):
         if feedback.isCanceled():
             return {}
         feedback.pushInfo(
-            tr(
-                "{on} points are on a surface, {off} on none.",
-                on=counts[True],
-                off=counts[False],
-            )
+            tr("{on} points are on a surface, {off} on none.", on=counts[True], off=counts[False])
         )
         return {OUTPUT: made, **dict(zip(NUMBERS, (counts[True], counts[False], warnings), strict=True))}
 
@@ -187,10 +183,7 @@ def _told(
         begin += count
         if len({one and one.label for one in own_surfaces}) > 1:
             notes.append(
-                tr(
-                    "Feature {id} has points on several surfaces; none is given for it",
-                    id=feature.id(),
-                )
+                tr("Feature {id} has points on several surfaces; none is given for it", id=feature.id())
             )
             own_surfaces = []
         found.append(own_surfaces[0] if own_surfaces else None)

@@ -38,10 +38,7 @@ class TileFolder:
         """Keep ``content`` to become the file ``name``."""
         if (self.target / name).is_dir():
             raise OutputError(
-                tr(
-                    "{path} is a folder: choose another folder for the tiles.",
-                    path=self.target / name,
-                )
+                tr("{path} is a folder: choose another folder for the tiles.", path=self.target / name)
             )
         try:
             (self._stage / name).write_bytes(content)

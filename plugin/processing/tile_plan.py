@@ -98,10 +98,7 @@ def _routes(
     source = algorithm.parameterAsSource(parameters, ROUTE, context)
     if source is None:
         raise ParameterError(
-            tr(
-                "ROUTE {route} cannot be opened: choose a layer of lines.",
-                route=parameters[ROUTE],
-            )
+            tr("ROUTE {route} cannot be opened: choose a layer of lines.", route=parameters[ROUTE])
         )
     placing = site.of_layer(source.sourceName(), stated_crs(source.sourceCrs()))
     counted = filter_in(algorithm, parameters, ROUTE, context)

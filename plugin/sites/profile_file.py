@@ -42,10 +42,7 @@ def read_profile(file: Path) -> Profile:
     layers = content.get("layers")
     if not isinstance(layers, list) or not layers:
         raise ProfileError(
-            tr(
-                "{file}: layers is missing or empty: write one table [[layers]] or more.",
-                file=file,
-            )
+            tr("{file}: layers is missing or empty: write one table [[layers]] or more.", file=file)
         )
     return Profile(
         name=_text(content, "name", "", file) or file.stem,
@@ -68,11 +65,7 @@ def _content(file: Path) -> Mapping[str, Any]:
         ) from error
     except (OSError, UnicodeDecodeError) as error:
         raise ProfileError(
-            tr(
-                "The profile {file} cannot be read: {error}.",
-                file=file,
-                error=error,
-            )
+            tr("The profile {file} cannot be read: {error}.", file=file, error=error)
         ) from error
     try:
         content = json.loads(text) if file.suffix.lower() == ".json" else _toml(text, file)

@@ -79,20 +79,12 @@ def _bad_status(response: Any, url: str) -> LinkError:
         )
     if status == 403:
         return LinkError(
-            tr(
-                "{url} refuses this desk: {said}",
-                url=url,
-                said=said or tr("no reason given."),
-            ),
+            tr("{url} refuses this desk: {said}", url=url, said=said or tr("no reason given.")),
             final=True,
         )
     if status in (429, 503) and said:
         return LinkError(
-            tr(
-                "{url} takes no desk now: {said} It is tried again by itself.",
-                url=url,
-                said=said,
-            )
+            tr("{url} takes no desk now: {said} It is tried again by itself.", url=url, said=said)
         )
     return LinkError(
         tr(
@@ -177,10 +169,7 @@ def _bad_certificate(error: ssl.SSLCertVerificationError, place: str) -> LinkErr
         )
     if code == _NOT_YET_VALID:
         return LinkError(
-            tr(
-                "The certificate of {place} holds only later: check this computer's clock.",
-                place=place,
-            )
+            tr("The certificate of {place} holds only later: check this computer's clock.", place=place)
         )
     return LinkError(
         tr(
@@ -222,10 +211,7 @@ def _network_failure(error: Exception, place: str, *, secure: bool) -> LinkError
         )
     if isinstance(error, socket.gaierror):
         return LinkError(
-            tr(
-                "The host of {place} is not known to this network. Correct the URL.",
-                place=place,
-            )
+            tr("The host of {place} is not known to this network. Correct the URL.", place=place)
         )
     if secure and isinstance(error, ConnectionResetError):
         return LinkError(

@@ -74,10 +74,7 @@ def _features(layer: QgsVectorLayer) -> list[QgsFeature]:
     found = [one for one in features if not one.geometry().isNull() and not one.geometry().isEmpty()]
     if not found:
         raise LayerDraftError(
-            tr(
-                "The layer {layer} has no feature with a place to go to.",
-                layer=layer.name(),
-            )
+            tr("The layer {layer} has no feature with a place to go to.", layer=layer.name())
         )
     return found
 

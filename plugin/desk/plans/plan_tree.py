@@ -176,11 +176,7 @@ def _robot_in_words(rows: Sequence[StopRow], lost: bool) -> str:
     cones = [row for row in rows if row.stop.is_target]
     done = sum(row.state is TaskState.DONE for row in cones)
     text = (
-        tr(
-            "{done} of {cones} cones",
-            done=done,
-            cones=len(cones),
-        )
+        tr("{done} of {cones} cones", done=done, cones=len(cones))
         if done
         else tr("{cones} cones", cones=len(cones))
     )

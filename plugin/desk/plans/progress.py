@@ -125,11 +125,7 @@ class Trouble:
         """Return what happened, for the operator."""
         parts = [tr("{robot} is lost or offline", robot=robot) for robot in self.away]
         parts += [
-            tr(
-                "cone {cone} failed{why}",
-                cone=cone,
-                why=f": {why}" if why else "",
-            )
+            tr("cone {cone} failed{why}", cone=cone, why=f": {why}" if why else "")
             for cone, why in self.failed
         ]
         parts += [one.in_words() for one in self.closed]

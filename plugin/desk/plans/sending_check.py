@@ -23,11 +23,7 @@ def before_sending(desk: Desk, draft: Draft) -> str:
     driving = [one for one in draft.plan.robots if one.stops and not one.lost]
     lines = [summary(draft) + ".", ""]
     lines += [
-        tr(
-            "{robot}: {cones} cones",
-            robot=one.robot.id,
-            cones=sum(stop.is_target for stop in one.stops),
-        )
+        tr("{robot}: {cones} cones", robot=one.robot.id, cones=sum(stop.is_target for stop in one.stops))
         for one in driving
     ]
     doubts = [doubt for one in driving for doubt in _doubts(desk, one.robot)]
@@ -67,11 +63,7 @@ def _doubts_of_place(desk: Desk, robot: Robot) -> Iterator[str]:
         return
     away = math.hypot(view.report.x - robot.x, view.report.y - robot.y)
     if away > MOVED:
-        yield tr(
-            "{id} is {away:.1f} m from where the plan begins: better plan anew",
-            id=robot.id,
-            away=away,
-        )
+        yield tr("{id} is {away:.1f} m from where the plan begins: better plan anew", id=robot.id, away=away)
     if view.state not in (RobotState.FRESH, RobotState.STALE):
         yield tr(
             "{id} is {state}: it gets its queue when it is heard of again",
@@ -85,9 +77,7 @@ def _doubts_of_queue(queue: QueueReport) -> Iterator[str]:
     waiting = sum(task.state is not TaskState.CURRENT for task in queue.tasks)
     if waiting:
         yield tr(
-            "{waiting} tasks that wait in the queue of {id} are replaced",
-            waiting=waiting,
-            id=queue.robot,
+            "{waiting} tasks that wait in the queue of {id} are replaced", waiting=waiting, id=queue.robot
         )
     if waiting < len(queue.tasks):
         yield tr("{id} finishes first what it is doing", id=queue.robot)
