@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 import uuid
 from collections.abc import Callable, Iterable
 from dataclasses import replace
@@ -17,6 +16,7 @@ from ..connection import Connection
 from ..errors import FleetError, NotSentError, PlacementError
 from ..language import tr
 from ..wire.addresses import Credentials
+from ..wire.clock import clock
 from ..wire.mailbox import News
 from ..wire.outbox import Order
 from ..wire.status import LinkStatus, Phase
@@ -70,7 +70,7 @@ class Desk(QObject):
         canvas: QgsMapCanvas,
         project: QgsProject,
         parent: QObject | None = None,
-        clock: Callable[[], float] = time.monotonic,
+        clock: Callable[[], float] = clock,
     ):
         super().__init__(parent)
         self.canvas = canvas

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 from qgis.core import QgsCoordinateReferenceSystem, QgsPointXY
+
+from ..wire.clock import clock
 
 Numbers = npt.NDArray[np.float64]
 
@@ -41,7 +42,7 @@ class RobotsNow:
     def silence(self, robot: str, now: float | None = None) -> float | None:
         """Return the seconds since a robot's last message."""
         age = self._number(self.age, robot)
-        now = time.monotonic() if now is None else now
+        now = clock() if now is None else now
         return None if age is None else age + max(0.0, now - self.taken)
 
     def place(self, robot: str) -> QgsPointXY | None:

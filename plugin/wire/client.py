@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import time
 from types import ModuleType
 from typing import Any
 
@@ -11,6 +10,7 @@ from ..errors import AddressError, LinkError
 from ..language import tr
 from .addresses import Credentials
 from .backoff import Backoff
+from .clock import clock
 from .failures import explain
 from .mailbox import Mailbox
 from .outbox import Order
@@ -25,6 +25,9 @@ CLOSE_WITHIN = 0.2
 LARGEST_MESSAGE = 64 * 2**20
 MOST_WAITING = 1
 """Messages that wait to be read: more would be old news by then, where a gateway that waits has newer."""
+AWAKE_EVERY = 1.0
+ASLEEP_AFTER = 8.0
+"""Seconds: what waited in this computer for longer would be taken for new."""
 
 
 class DeskClient:
@@ -43,8 +46,9 @@ class DeskClient:
         self._credentials = credentials or Credentials()
         self._mailbox = mailbox
         self._library = library
-        self._protocol = DeskProtocol(operator, rate, url, mailbox, time.monotonic)
+        self._protocol = DeskProtocol(operator, rate, url, mailbox, clock)
         self._backoff = Backoff()
+        self._awake_at = clock()
         self._outgoing: asyncio.Queue[str] = asyncio.Queue()
 
     async def run(self) -> None:
@@ -59,7 +63,7 @@ class DeskClient:
                     self._mailbox.put_link(LinkStatus(Phase.FAILED, reason, wants_token=failure.wants_token))
                     return
                 wait = self._backoff.next_wait()
-                due = time.monotonic() + wait
+                due = clock() + wait
                 self._mailbox.put_link(LinkStatus(Phase.RETRYING, reason, next_try=due))
                 await asyncio.sleep(wait)
         finally:
@@ -117,7 +121,9 @@ class DeskClient:
     async def _converse(self, socket: Any) -> None:
         self._outgoing = asyncio.Queue()
         self._send_all(self._protocol.begin())
-        tasks = [asyncio.ensure_future(self._read(socket)), asyncio.ensure_future(self._write(socket))]
+        self._awake_at = clock()
+        work = (self._read(socket), self._write(socket), self._stay_awake())
+        tasks = [asyncio.ensure_future(one) for one in work]
         try:
             done, _ = await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
             for task in done:
@@ -147,7 +153,26 @@ class DeskClient:
             LinkStatus(Phase.CONNECTED, ", ".join(filter(None, who)), operator=who[0], role=who[1])
         )
         async for text in socket:
+            self._check_awake()
             self._send_all(self._protocol.receive(text))
+
+    async def _stay_awake(self) -> None:
+        while True:
+            await asyncio.sleep(AWAKE_EVERY)
+            self._check_awake()
+            self._awake_at = clock()
+
+    def _check_awake(self) -> None:
+        """Raise LinkError when this computer has slept: what comes in now was sent before or meanwhile."""
+        asleep = clock() - self._awake_at
+        if asleep > ASLEEP_AFTER:
+            raise LinkError(
+                tr(
+                    "This computer slept, or did nothing, for {seconds:.0f} s: what waits for it is old. "
+                    "The link is opened anew.",
+                    seconds=asleep,
+                )
+            )
 
     async def _write(self, socket: Any) -> None:
         while True:
