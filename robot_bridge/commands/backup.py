@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from ..store import revisions
 from ..store.address import shown
 from ..store.backups.backing_up import back_up
 from ..store.backups.backing_up import restore as put_back
@@ -37,8 +38,10 @@ def restore(
     """Put a backup in the place of what the database holds; no gateway may run on it."""
     address = database_address(database, database_password_file)
     with noting(address, "database restore", shown(address), str(file.absolute())):
-        asyncio.run(put_back(address, file, replace=replace))
+        revision = asyncio.run(put_back(address, file, replace=replace))
     typer.echo(f"{file} is restored into {shown(address)}")
+    if revision != revisions.NEEDED:
+        typer.echo(f"its tables are of revision {revision}; run now: robot-bridge database upgrade")
 
 
 def add_to(app: typer.Typer) -> None:

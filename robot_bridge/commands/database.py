@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable
 from pathlib import Path
-from typing import TypeVar
+from typing import Annotated, TypeVar
 
 import typer
 from sqlalchemy import URL, Connection
@@ -14,6 +14,7 @@ from ..errors import StoreError
 from ..store import revisions
 from ..store.accounts.choice import has_accounts, keeper_on
 from ..store.address import shown
+from ..store.backups.backing_up import revision_in
 from ..store.database import run_once
 from ..store.engines.sqlite import SQLite
 from ..store.sole_gateway import no_gateway
@@ -29,12 +30,22 @@ backup.add_to(app)
 
 
 @app.command()
-def create(database: DatabaseOption = DEFAULT, database_password_file: PasswordFileOption = None) -> None:
+def create(
+    database: DatabaseOption = DEFAULT,
+    database_password_file: PasswordFileOption = None,
+    for_backup: Annotated[
+        Path | None,
+        typer.Option(
+            help="Make them as they are in this backup, so that it can be restored and then upgraded."
+        ),
+    ] = None,
+) -> None:
     """Make the tables in an empty database; a server's database itself must be there."""
     address = database_address(database, database_password_file)
+    revision = revisions.NEEDED if for_backup is None else revision_in(address, for_backup)
     with noting(address, "database create", shown(address)):
-        _run(address, revisions.create)
-    print(f"{shown(address)}: made the tables, revision {revisions.NEEDED}")
+        _run(address, lambda connection: revisions.create(connection, revision))
+    print(f"{shown(address)}: made the tables, revision {revision}")
 
 
 @app.command()

@@ -70,12 +70,12 @@ def must_create(connection: Connection, where: str, made_by_serve: bool) -> bool
     return True
 
 
-def create(connection: Connection) -> None:
-    """Make the tables in an empty database; raises StoreError when it has some."""
+def create(connection: Connection, revision: str = NEEDED) -> None:
+    """Make the tables of ``revision`` in an empty database; raises StoreError when it has some."""
     found = current(connection)
     if found is not None:
         raise RevisionError(f"the tables are there already, at revision {found}; {_advice(found)}")
-    _migrate(connection)
+    _migrate(connection, revision)
 
 
 def upgrade(connection: Connection) -> str:
@@ -87,7 +87,7 @@ def upgrade(connection: Connection) -> str:
         raise RevisionError(f"the tables are at revision {found}, {_needed(found)}")
     if found == FIRST and _version.name not in inspect(connection).get_table_names():
         _stamp(connection, FIRST)
-    _migrate(connection)
+    _migrate(connection, NEEDED)
     return found
 
 
@@ -107,10 +107,10 @@ def differences(connection: Connection) -> list[str]:
     return [_words(change) for change in found]
 
 
-def _migrate(connection: Connection) -> None:
+def _migrate(connection: Connection, revision: str) -> None:
     from alembic import command
 
-    command.upgrade(_config(connection), NEEDED)
+    command.upgrade(_config(connection), revision)
 
 
 def _stamp(connection: Connection, revision: str) -> None:

@@ -206,6 +206,7 @@ class ServerLock:
     """A lock in a transaction of its own connection, which the server ends when it hears no more of it."""
 
     def __init__(self, url: URL) -> None:
+        self._url = url
         self._engine, self._dialect = open_engine(url)
         self._statements = _LOCKING[self._dialect.name]
         self._connection: Connection | None = None
@@ -213,7 +214,7 @@ class ServerLock:
     def take(self) -> bool:
         """Take the lock."""
         self.release()
-        with _explained(self._engine.url, self._dialect):
+        with _explained(self._url, self._dialect):
             _make_row(self._engine)
             connection = self._engine.connect()
             try:
@@ -229,18 +230,18 @@ class ServerLock:
 
     def ping(self) -> None:
         """Use the connection, so that the server knows that somebody is there."""
-        with _explained(self._engine.url, self._dialect):
+        with _explained(self._url, self._dialect):
             assert self._connection is not None
             self._connection.execute(text("select 1"))
 
     def write(self, run: dict[str, Any]) -> None:
         """Write down which gateway runs."""
-        with _explained(self._engine.url, self._dialect), self._engine.begin() as connection:
+        with _explained(self._url, self._dialect), self._engine.begin() as connection:
             connection.execute(update(bridge).where(bridge.c.name == RUN).values(value=json.dumps(run)))
 
     def read(self) -> dict[str, Any]:
         """Return which gateway wrote itself down last."""
-        with _explained(self._engine.url, self._dialect), self._engine.connect() as connection:
+        with _explained(self._url, self._dialect), self._engine.connect() as connection:
             return _run_in(connection.scalar(select(bridge.c.value).where(bridge.c.name == RUN)))
 
     def release(self) -> None:

@@ -32,8 +32,8 @@ class Backups(Protocol):
     def write(self, partial: Path, revision: str) -> None:
         """Write a backup into ``partial``."""
 
-    def check(self, file: Path, revision: str) -> None:
-        """Raise StoreError unless ``file`` is a whole backup that fits tables of ``revision``."""
+    def check(self, file: Path) -> str:
+        """Return the revision of the tables in ``file``; raises StoreError unless it is a whole backup."""
 
     def load(self, file: Path) -> None:
         """Put what ``file`` holds in the place of what is there."""
@@ -61,7 +61,7 @@ def back_up(url: URL, file: Path, *, replace: bool = False) -> int:
             os.close(os.open(partial, os.O_CREAT | os.O_WRONLY, 0o600))
             kind = KINDS[url.get_backend_name()](url)
             kind.write(partial, revision)
-            kind.check(partial, revision)
+            kind.check(partial)
             _to_disk(partial)
             partial.replace(file)
     except OSError as error:
@@ -69,33 +69,58 @@ def back_up(url: URL, file: Path, *, replace: bool = False) -> int:
     return file.stat().st_size
 
 
-async def restore(url: URL, file: Path, *, replace: bool = False) -> None:
-    """Put the backup in ``file`` in the place of the database.
+def revision_in(url: URL, file: Path) -> str:
+    """Return which tables a backup for the database at ``url`` holds; raises BridgeError and StoreError."""
+    _check_kind(url, file)
+    revision = KINDS[url.get_backend_name()](url).check(file)
+    if revision > revisions.NEEDED:
+        raise StoreError(
+            f"backup {file} holds tables of revision {revision}, and this version of robot-bridge knows "
+            f"those up to {revisions.NEEDED}; install the robot-bridge that wrote it"
+        )
+    return revision
+
+
+async def restore(url: URL, file: Path, *, replace: bool = False) -> str:
+    """Put the backup in ``file`` in the place of the database; return the revision of its tables.
 
     The database gets a new id, so that robots forget the numbers of messages that may come again. Refused
     while a gateway runs on it, and where it holds anything unless ``replace``. Raises BridgeError and
     StoreError.
     """
-    _check_kind(url, file)
+    revision = revision_in(url, file)
     async with no_gateway(url, "robot-bridge database restore"):
-        await asyncio.to_thread(_restore, url, file, replace)
+        await asyncio.to_thread(_restore, url, file, revision, replace)
+    return revision
 
 
-def _restore(url: URL, file: Path, replace: bool) -> None:
-    kind = KINDS[url.get_backend_name()](url)
-    if url.get_backend_name() == "sqlite":
-        revision = run_once(url, revisions.current) or ""
-    else:
-        revision = run_once(url, _revision, shown(url))
-    kind.check(file, revision)
-    held = run_once(url, _held) if revision else None
+def _restore(url: URL, file: Path, revision: str, replace: bool) -> None:
+    if url.get_backend_name() != "sqlite":
+        _check_fits(url, file, revision, run_once(url, _revision, shown(url)))
+    held = run_once(url, _held)
     if held is not None and not replace:
         raise BridgeError(
             f"database {shown(url)} is not empty: it has {held}; back it up, then give --replace to have it "
             "replaced"
         )
-    kind.load(file)
+    KINDS[url.get_backend_name()](url).load(file)
     run_once(url, _renew)
+
+
+def _check_fits(url: URL, file: Path, revision: str, found: str) -> None:
+    """Raise StoreError unless the tables that were found are those whose rows are in the backup."""
+    if found == revision:
+        return
+    advice = (
+        "run first: robot-bridge database upgrade"
+        if found < revision
+        else "restore it into another, empty database, whose tables are made by 'robot-bridge database "
+        f"create --for-backup {file}'; after that run 'robot-bridge database upgrade' there"
+    )
+    raise StoreError(
+        f"backup {file} holds tables of revision {revision}, and those of database {shown(url)} are {found}; "
+        f"{advice}"
+    )
 
 
 def _revision(connection: Connection, where: str) -> str:

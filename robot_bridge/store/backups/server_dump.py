@@ -14,24 +14,21 @@ import shutil
 import subprocess
 import tempfile
 import time
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import IO, Any
 
-from sqlalchemy import URL
+from sqlalchemy import URL, Connection, inspect
 
 from ...errors import StoreError
 from ..address import shown
+from ..database import run_once
 from ..schema import metadata
 
 MARK = b"-- robot-bridge backup "
-TABLES = tuple(sorted(metadata.tables.keys() - {"rr", "bridge"}))
-NUMBERED = tuple(
-    sorted(
-        name
-        for name, table in metadata.tables.items()
-        if "id" in table.c and table.c.id.type.python_type is int
-    )
+LEFT_OUT = frozenset({"rr", "bridge"})
+NUMBERED = frozenset(
+    name for name, table in metadata.tables.items() if "id" in table.c and table.c.id.type.python_type is int
 )
 _GZIP = b"\x1f\x8b"
 _PIECE = 1 << 20
@@ -58,27 +55,26 @@ class ServerBackups:
         program = self._program(self.writer)
         with gzip.open(partial, "wb", compresslevel=3) as target:
             target.write(MARK + json.dumps(about).encode() + b"\n")
-            self._run([program, *self._writer_options()], None, target)
+            self._run([program, *self._writer_options(self._tables())], None, target)
 
-    def check(self, file: Path, revision: str) -> None:
-        """Raise StoreError when ``file`` is no whole backup of this kind and revision."""
+    def check(self, file: Path) -> str:
+        """Return the revision of the tables in ``file``; raises StoreError unless it is a whole backup."""
         about = self._about(file)
         if about.get("kind") != self.kind:
             raise StoreError(
                 f"backup {file} is of {about.get('kind', 'another program')}, and database "
                 f"{shown(self._url)} is {self.kind}; restore it into a database of its kind"
             )
-        if about.get("revision") != revision:
-            raise StoreError(
-                f"backup {file} holds tables of revision {about.get('revision')}, and those of database "
-                f"{shown(self._url)} are {revision}; restore it with the robot-bridge that wrote it, then "
-                "run: robot-bridge database upgrade"
-            )
-        self._program(self.reader)
+        return str(about.get("revision"))
 
     def load(self, file: Path) -> None:
         """Put what ``file`` holds in the place of the rows that are there, in one transaction."""
-        self._run([self._program(self.reader), *self._reader_options()], self._script(file), None)
+        program, script = self._program(self.reader), self._script(file, self._tables())
+        self._run([program, *self._reader_options()], script, None)
+
+    def _tables(self) -> list[str]:
+        """Return those tables that are there: an older version had fewer of them."""
+        return run_once(self._url, _present)
 
     def _about(self, file: Path) -> dict[str, Any]:
         try:
@@ -91,12 +87,12 @@ class ServerBackups:
             raise StoreError(f"backup {file} is damaged: {error}") from error
         return about if isinstance(about, dict) else {}
 
-    def _script(self, file: Path) -> Iterator[bytes]:
-        yield "\n".join(self._before()).encode() + b"\n"
+    def _script(self, file: Path, tables: Collection[str]) -> Iterator[bytes]:
+        yield "\n".join(self._before(tables)).encode() + b"\n"
         with gzip.open(file, "rb") as source:
             while piece := source.read(_PIECE):
                 yield piece
-        yield b"\n" + "\n".join(self._after()).encode() + b"\n"
+        yield b"\n" + "\n".join(self._after(tables)).encode() + b"\n"
 
     def _run(
         self, command: Sequence[str], script: Iterable[bytes] | None, output: gzip.GzipFile | None
@@ -134,16 +130,16 @@ class ServerBackups:
             )
         return found
 
-    def _writer_options(self) -> list[str]:
+    def _writer_options(self, tables: Collection[str]) -> list[str]:
         raise NotImplementedError
 
     def _reader_options(self) -> list[str]:
         raise NotImplementedError
 
-    def _before(self) -> list[str]:
+    def _before(self, tables: Collection[str]) -> list[str]:
         raise NotImplementedError
 
-    def _after(self) -> list[str]:
+    def _after(self, tables: Collection[str]) -> list[str]:
         raise NotImplementedError
 
     def _secrets(self) -> Mapping[str, str]:
@@ -156,8 +152,7 @@ class PostgreSqlBackups(ServerBackups):
     kind = "postgresql"
     writer, reader, package = "pg_dump", "psql", "postgresql-client"
 
-    def _writer_options(self) -> list[str]:
-        tables = [f"--table=public.{name}" for name in TABLES]
+    def _writer_options(self, tables: Collection[str]) -> list[str]:
         form = [
             "--data-only",
             "--rows-per-insert=500",
@@ -165,19 +160,19 @@ class PostgreSqlBackups(ServerBackups):
             "--no-owner",
             "--no-privileges",
         ]
-        return [*form, *tables, "--exclude-table=*_seq"]
+        return [*form, *(f"--table=public.{name}" for name in tables), "--exclude-table=*_seq"]
 
     def _reader_options(self) -> list[str]:
         return ["--no-psqlrc", "--quiet", "--single-transaction", "--set=ON_ERROR_STOP=1", "--file=-"]
 
-    def _before(self) -> list[str]:
-        return [f"delete from public.{name};" for name in (*TABLES, "rr")]
+    def _before(self, tables: Collection[str]) -> list[str]:
+        return [f"delete from public.{name};" for name in (*tables, "rr")]
 
-    def _after(self) -> list[str]:
+    def _after(self, tables: Collection[str]) -> list[str]:
         return [
             f"select setval(pg_get_serial_sequence('public.{name}', 'id'), {_highest(f'public.{name}')});"
-            for name in NUMBERED
-            if name != "rr"
+            for name in tables
+            if name in NUMBERED
         ]
 
     def _secrets(self) -> Mapping[str, str]:
@@ -199,7 +194,7 @@ class MariaDbBackups(ServerBackups):
     kind = "mariadb"
     writer, reader, package = "mariadb-dump", "mariadb", "mariadb-client"
 
-    def _writer_options(self) -> list[str]:
+    def _writer_options(self, tables: Collection[str]) -> list[str]:
         form = [
             "--single-transaction",
             "--no-create-info",
@@ -214,15 +209,15 @@ class MariaDbBackups(ServerBackups):
             "--no-tablespaces",
             "--skip-comments",
         ]
-        return ["--no-defaults", *form, *self._where(), str(self._url.database), *TABLES]
+        return ["--no-defaults", *form, *self._where(), str(self._url.database), *tables]
 
     def _reader_options(self) -> list[str]:
         return ["--no-defaults", "--batch", "--binary-mode", *self._where(), str(self._url.database)]
 
-    def _before(self) -> list[str]:
-        return ["set autocommit = 0;", *(f"delete from `{name}`;" for name in (*TABLES, "rr"))]
+    def _before(self, tables: Collection[str]) -> list[str]:
+        return ["set autocommit = 0;", *(f"delete from `{name}`;" for name in (*tables, "rr"))]
 
-    def _after(self) -> list[str]:
+    def _after(self, tables: Collection[str]) -> list[str]:
         # Inserting moved the numbers of the others on; those of sa may be known to robots and gone from it.
         return [
             "commit;",
@@ -244,6 +239,11 @@ class MariaDbBackups(ServerBackups):
 
     def _secrets(self) -> Mapping[str, str]:
         return {"MYSQL_PWD": str(self._url.password)} if self._url.password else {}
+
+
+def _present(connection: Connection) -> list[str]:
+    names = set(inspect(connection).get_table_names())
+    return sorted(names & metadata.tables.keys() - LEFT_OUT)
 
 
 def _highest(table: str) -> str:

@@ -7,9 +7,11 @@ import sqlite3
 from collections.abc import Iterator
 from pathlib import Path
 
-from sqlalchemy import URL
+from sqlalchemy import URL, create_engine
+from sqlalchemy.pool import NullPool
 
 from ...errors import StoreError
+from .. import revisions
 
 _MAGIC = b"SQLite format 3\x00"
 _PAGES = 2000
@@ -35,12 +37,19 @@ class SqliteBackups:
             # A file of its own: what would wait in a log beside it could be left behind.
             target.execute("PRAGMA journal_mode = DELETE")
 
-    def check(self, file: Path, revision: str) -> None:
-        """Raise StoreError when ``file`` is damaged."""
+    def check(self, file: Path) -> str:
+        """Return the revision of the tables in ``file``; raises StoreError unless it is a whole backup."""
         with _connected(file) as source:
             found = source.execute("PRAGMA quick_check(1)").fetchone()[0]
         if found != "ok":
             raise StoreError(f"backup {file} is damaged: {found}")
+        # Not as the bridge opens a database: that would turn the backup into one with a log beside it.
+        engine = create_engine(URL.create("sqlite", database=str(file)), poolclass=NullPool)
+        with engine.connect() as connection:
+            revision = revisions.current(connection)
+        if revision is None:
+            raise StoreError(f"file {file} is no backup: it has no tables of the bridge")
+        return revision
 
     def load(self, file: Path) -> None:
         """Put what ``file`` holds in the place of the database."""

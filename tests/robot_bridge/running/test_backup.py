@@ -14,7 +14,7 @@ from robot_bridge.errors import BridgeError, StoreError
 from robot_bridge.store import revisions
 from robot_bridge.store.accounts.choice import keeper_on
 from robot_bridge.store.address import read_address
-from robot_bridge.store.backups.backing_up import back_up, restore
+from robot_bridge.store.backups.backing_up import back_up, restore, revision_in
 from robot_bridge.store.database import run_once
 from robot_bridge.store.schema import bridge, metadata
 from robot_bridge.store.sole_gateway import SoleGateway
@@ -24,8 +24,12 @@ BYTES = bytes(range(256)) * 300
 COMPARED = sorted(metadata.tables.keys() - {"rr", "bridge"})
 
 
+OLDER = "0003"
+"""A revision that had neither queues nor placements, and fewer columns of commands."""
+
+
 def put_back(address, file, *, replace=False):
-    asyncio.run(restore(address, file, replace=replace))
+    return asyncio.run(restore(address, file, replace=replace))
 
 
 def rows():
@@ -144,6 +148,59 @@ def test_a_database_that_holds_something_is_replaced_only_when_told(address, tmp
     assert run_once(address, contents) == before
 
 
+@pytest.fixture
+def empty(request, kind, tmp_path):
+    """Make an empty database of the kind: ``empty()``."""
+    if kind == "sqlite":
+        return lambda: read_address(f"sqlite:///{tmp_path}/{secrets.token_hex(4)}.db")
+    return lambda: read_address(request.getfixturevalue(f"{kind}_server").new_database())
+
+
+def test_a_backup_of_an_older_version_is_restored_and_then_upgraded(empty, tmp_path, kind):
+    old, new, fresh, file = empty(), empty(), empty(), tmp_path / "backup"
+    run_once(old, revisions.create, OLDER)
+    stop = {"id": "s1", "at": 1.5, "by": ODD, "reason": None}
+    run_once(old, lambda c: c.execute(insert(metadata.tables["emergency_stops"]).values(stop)))
+    back_up(old, file)
+    assert revision_in(fresh, file) == OLDER
+    if kind == "sqlite":  # the tables are in the file
+        assert put_back(new, file) == OLDER
+    else:
+        run_once(new, revisions.create)
+        with pytest.raises(StoreError, match=r"another, empty database, .* create --for-backup"):
+            put_back(new, file)
+        run_once(fresh, revisions.create, revision_in(fresh, file))
+        assert put_back(fresh, file) == OLDER
+        new = fresh
+    assert run_once(new, revisions.upgrade) == OLDER
+    assert run_once(new, revisions.differences) == []
+    assert [row[:4] for row in run_once(new, contents)["emergency_stops"]] == [tuple(stop.values())]
+
+
+def test_a_backup_is_not_restored_into_older_tables(address, empty, tmp_path, kind):
+    if kind == "sqlite":
+        pytest.skip("a backup of SQLite brings its tables")
+    old, file = empty(), tmp_path / "backup"
+    run_once(old, revisions.create, OLDER)
+    back_up(address, file)
+    with pytest.raises(StoreError, match=f"are {OLDER}; run first: robot-bridge database upgrade"):
+        put_back(old, file)
+
+
+def test_a_backup_of_a_newer_version_is_refused(address, empty, tmp_path):
+    file = tmp_path / "backup"
+    run_once(address, lambda c: c.exec_driver_sql("update alembic_version set version_num = '9999'"))
+    try:
+        back_up(address, file)
+    finally:
+        needed = f"update alembic_version set version_num = '{revisions.NEEDED}'"
+        run_once(address, lambda c: c.exec_driver_sql(needed))
+    before = run_once(address, contents)
+    with pytest.raises(StoreError, match=r"revision 9999, .*; install the robot-bridge that wrote it"):
+        put_back(address, file, replace=True)
+    assert run_once(address, contents) == before
+
+
 def test_nothing_is_restored_under_a_running_gateway(address, tmp_path):
     file = tmp_path / "backup"
     back_up(address, file)
@@ -196,6 +253,9 @@ def test_a_file_that_is_no_backup_or_of_another_kind_is_named(address, tmp_path,
             file.write(b"x")
         with pytest.raises(StoreError, match="is of a database server"):
             put_back(address, text, replace=True)
+        # A GeoPackage is a database of SQLite, too.
+        with pytest.raises(StoreError, match=r"some.db is no backup: it has no tables of the bridge"):
+            put_back(address, database, replace=True)
     else:
         with pytest.raises(StoreError, match="is of sqlite, and database"):
             put_back(address, database, replace=True)
