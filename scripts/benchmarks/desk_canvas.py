@@ -248,7 +248,7 @@ def open_desk(stage: Stage, clock: Callable[[], float] = time.monotonic) -> tupl
     site = site_of(stage)
     desk = Desk(stage.canvas, QgsProject.instance(), clock=clock)
     view = LiveView(desk)
-    desk._take_site(site)
+    desk._take_site(site, is_greeting=True)
     stage.canvas.setLayers([view.layer.layer, *stage.layers])
     stage.run(0.2)
     stage.wait(lambda: not stage.canvas.isDrawing())

@@ -15,6 +15,7 @@ from ..glyphs import draw_cone
 from .atlases import CONE_TARGET
 from .scene import PlacedScene
 from .screen import Screen
+from .screen_image import screen_image
 from .sprites import Sprites
 from .strokes import dashes, polygon, ring, route
 
@@ -80,18 +81,14 @@ class DraftPainter:
 
 
 def _drawn(points: Points, screen: Screen, colour: QColor, marks: Marks | None) -> QImage:
-    width, height = round(screen.width * screen.ratio), round(screen.height * screen.ratio)
-    image = QImage(width, height, QImage.Format.Format_ARGB32_Premultiplied)
-    image.setDevicePixelRatio(screen.ratio)
-    image.fill(QColor(0, 0, 0, 0))
-    painter = QPainter(image)
-    painter.setPen(QPen(colour, 0.0))
-    painter.drawPolyline(polygon(points))
-    if marks is not None:
-        seen = points[screen.seen(points, 30.0)]
-        marks(screen.ratio, SMALL).paint(painter, seen, CONE_TARGET)
-    painter.end()
-    return image
+    def paint(painter: QPainter) -> None:
+        painter.setPen(QPen(colour, 0.0))
+        painter.drawPolyline(polygon(points))
+        if marks is not None:
+            seen = points[screen.seen(points, 30.0)]
+            marks(screen.ratio, SMALL).paint(painter, seen, CONE_TARGET)
+
+    return screen_image(screen, paint)
 
 
 def _paint_targets(painter: QPainter, points: Points, colour: QColor) -> None:

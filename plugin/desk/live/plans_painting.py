@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 import numpy.typing as npt
 from qgis.PyQt.QtCore import QPointF, Qt
-from qgis.PyQt.QtGui import QColor, QImage, QPainter, QPen
+from qgis.PyQt.QtGui import QImage, QPainter, QPen
 
 from ...language import tr
 from ..colours import PAPER, ROUTE
@@ -15,6 +15,7 @@ from .atlases import CONE_TARGET, TARGET
 from .labels import Labels
 from .scene import PlacedScene
 from .screen import Screen
+from .screen_image import screen_image
 from .sprites import Sprites
 from .strokes import dashes, polygon, route
 
@@ -97,18 +98,14 @@ class PlansPainter:
 
 
 def _drawn(ways: list[Points], screen: Screen) -> QImage:
-    width, height = round(screen.width * screen.ratio), round(screen.height * screen.ratio)
-    image = QImage(width, height, QImage.Format.Format_ARGB32_Premultiplied)
-    image.setDevicePixelRatio(screen.ratio)
-    image.fill(QColor(0, 0, 0, 0))
-    painter = QPainter(image)
-    if len(ways) <= MANY:
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        for way in ways:
-            route(painter, way, ROUTE)
-    else:
-        painter.setPen(QPen(ROUTE, 0.0))
-        for way in ways:
-            painter.drawPolyline(polygon(way))
-    painter.end()
-    return image
+    def paint(painter: QPainter) -> None:
+        if len(ways) <= MANY:
+            painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+            for way in ways:
+                route(painter, way, ROUTE)
+        else:
+            painter.setPen(QPen(ROUTE, 0.0))
+            for way in ways:
+                painter.drawPolyline(polygon(way))
+
+    return screen_image(screen, paint)

@@ -6,8 +6,8 @@ from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
-from qgis.PyQt.QtCore import QLineF, Qt
-from qgis.PyQt.QtGui import QColor, QPainter, QPen
+from qgis.PyQt.QtCore import Qt
+from qgis.PyQt.QtGui import QColor, QPainter
 
 from ..colours import CASING, PAPER, STATE_COLOURS
 from ..pens import pen
@@ -17,7 +17,7 @@ from .in_view import InView
 from .scene import PlacedScene
 from .screen import Screen
 from .sprites import Sprites
-from .strokes import polygon, segments
+from .strokes import flat, lines, polygon, segments
 
 Points = npt.NDArray[np.float64]
 Rows = npt.NDArray[np.intp]
@@ -198,15 +198,10 @@ def _velocities(
     end = start + view.metre[long] * (speed[long, None] * VELOCITY_SECONDS)
     if len(long) > FINE_VELOCITIES:
         painter.setRenderHint(QPainter.RenderHint.Antialiasing, False)
-        painter.strokePath(segments(start, end), _flat(pen(PAPER, 1.0)))
+        painter.strokePath(segments(start, end), flat(pen(PAPER, 1.0)))
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         return
-    lines = [QLineF(*ends) for ends in np.hstack([start, end]).tolist()]
+    long_ones = lines(start, end)
     for stroke in (pen(CASING, 4.2), pen(PAPER, 2.0)):
-        painter.setPen(_flat(stroke))
-        painter.drawLines(lines)
-
-
-def _flat(stroke: QPen) -> QPen:
-    stroke.setCapStyle(Qt.PenCapStyle.FlatCap)
-    return stroke
+        painter.setPen(flat(stroke))
+        painter.drawLines(long_ones)

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
+from fleet_supervisor.plugin.desk.queues import queue_marks
 from fleet_supervisor.robot_bridge.messages import QueueTask
 from qgis.core import QgsCoordinateReferenceSystem, QgsCoordinateTransform, QgsPointXY, QgsProject
+from qgis.PyQt.QtCore import QRect
 from qgis.PyQt.QtGui import QColor, QImage
 from qgis.PyQt.QtTest import QTest
 
@@ -20,7 +23,7 @@ def marks(at_desk, gateway, wait):
 
 
 def there(marks):
-    return [(place.x() - 488000, place.y() - 5190000) for place in marks.places]
+    return (marks.places - (488000.0, 5190000.0)).tolist()
 
 
 def test_the_tasks_of_the_selected_robot_are_marked_in_their_order(marks, at_desk, gateway, wait):
@@ -28,19 +31,62 @@ def test_the_tasks_of_the_selected_robot_are_marked_in_their_order(marks, at_des
     at_desk.queue_edits.move("r1", "task-of-2", "task-of-1")
     wait(lambda: there(marks)[1] == pytest.approx(PLACES[2]))
     at_desk.desk.select("r2")
-    assert marks.places == []
+    assert there(marks) == []
     at_desk.desk.select(None)
-    assert marks.places == []
+    assert there(marks) == []
 
 
-def test_marks_are_painted_where_the_tasks_are(marks, iface):
+def is_ringed(iface, place):
+    """Tell whether the orange ring of a task is to be seen around ``place``."""
     orange = QColor("#F26A1B")
-    QTest.qWait(100)
     seen: QImage = iface.canvas.grab().toImage()
-    for place in PLACES[1:]:
-        centre = iface.pixel(*place)
-        ring = [seen.pixelColor(centre.x() + dx, centre.y()) for dx in range(7, 12)]
-        assert any(abs(c.red() - orange.red()) + abs(c.green() - orange.green()) < 40 for c in ring), place
+    centre = iface.pixel(*place)
+    ring = [seen.pixelColor(centre.x() + dx, centre.y()) for dx in range(7, 12)]
+    return any(abs(c.red() - orange.red()) + abs(c.green() - orange.green()) < 40 for c in ring)
+
+
+def test_marks_are_painted_where_the_tasks_are_and_go_with_the_map(marks, iface):
+    QTest.qWait(100)
+    assert [is_ringed(iface, place) for place in PLACES[1:]] == [True, True]
+    iface.look_at(40, 30, 130, 110)
+    QTest.qWait(100)
+    assert [is_ringed(iface, place) for place in PLACES[1:]] == [True, True]
+
+
+def test_marks_go_with_the_queue_that_they_are_of(marks, at_desk, iface):
+    QTest.qWait(100)
+    assert is_ringed(iface, PLACES[2])
+    at_desk.desk.select("r2")
+    assert not is_ringed(iface, PLACES[2])
+
+
+def test_marks_are_painted_once_for_a_queue_and_a_view(marks, at_desk, gateway, iface, wait, monkeypatch):
+    painted, paint = [], queue_marks._paint
+    monkeypatch.setattr(queue_marks, "_paint", lambda *given: painted.append(1) or paint(*given))
+    iface.look_at(40, 30, 130, 110)
+    for _ in range(3):
+        iface.canvas.grab()
+    assert len(painted) == 1
+    at_desk.queue_edits.move("r1", "task-of-2", "task-of-1")
+    wait(lambda: there(marks)[1] == pytest.approx(PLACES[2]))
+    for _ in range(3):
+        iface.canvas.grab()
+    assert len(painted) == 2
+
+
+@pytest.mark.parametrize("tasks", [queue_marks.MOST_DOTTED, queue_marks.MOST_DOTTED + 1])
+def test_the_line_leads_through_few_and_through_many(marks, iface, tasks):
+    there = [(60.0, 50.0), (100.0, 50.0)] * (tasks // 2) + [(60.0, 80.0)] * (tasks % 2)
+    marks.places = np.add(there, (488000.0, 5190000.0))
+    marks._made_for = None
+    before = iface.canvas.grab().toImage().copy(line := line_between(iface))
+    marks.places = queue_marks.NOWHERE
+    assert before != iface.canvas.grab().toImage().copy(line)
+
+
+def line_between(iface):
+    """Return the pixels around the middle of the line from (60, 50) to (100, 50), clear of the rings."""
+    return QRect(iface.pixel(75, 50.5), iface.pixel(85, 49.5))
 
 
 def test_marks_are_right_in_another_crs_of_the_map(marks, iface):
@@ -50,4 +96,4 @@ def test_marks_are_right_in_another_crs_of_the_map(marks, iface):
         QgsCoordinateReferenceSystem("EPSG:32633"), other, QgsProject.instance().transformContext()
     )
     expected = way.transform(QgsPointXY(488060, 5190050))
-    assert (marks.places[0].x(), marks.places[0].y()) == pytest.approx((expected.x(), expected.y()), abs=0.01)
+    assert marks.places[0].tolist() == pytest.approx([expected.x(), expected.y()], abs=0.01)
