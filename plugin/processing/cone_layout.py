@@ -9,6 +9,7 @@ import numpy as np
 from qgis.core import (
     QgsCoordinateTransform,
     QgsCsException,
+    QgsFeature,
     QgsFeatureRequest,
     QgsGeometry,
     QgsProcessing,
@@ -138,8 +139,8 @@ class ConeLayout(FleetAlgorithm):
             points = points[::-1]
         return along(cones, points, self.parameterAsDouble(parameters, START, context))
 
-    def _points(self, parameters: Parameters, context: QgsProcessingContext) -> np.ndarray:
-        """Return the points of the one line, in the site CRS."""
+    def _line_feature(self, parameters: Parameters, context: QgsProcessingContext) -> QgsFeature:
+        """Return the one feature that the layout lies along."""
         request = QgsFeatureRequest()
         wanted = parameters.get(LINE_ID)
         if wanted not in (None, ""):
@@ -159,7 +160,12 @@ class ConeLayout(FleetAlgorithm):
                     found=found,
                 )
             )
-        geometry = QgsGeometry(features[0].geometry())
+        return features[0]
+
+    def _points(self, parameters: Parameters, context: QgsProcessingContext) -> np.ndarray:
+        """Return the points of the one line, in the site CRS."""
+        feature = self._line_feature(parameters, context)
+        geometry = QgsGeometry(feature.geometry())
         transform = QgsCoordinateTransform(
             self._line.sourceCrs(), self._setup.crs, context.transformContext()
         )
@@ -175,7 +181,7 @@ class ConeLayout(FleetAlgorithm):
                 tr(
                     "The feature {id} of {sourcename} has {lines} lines: split it, or choose one that has "
                     "one.",
-                    id=features[0].id(),
+                    id=feature.id(),
                     sourcename=self._line.sourceName(),
                     lines=len(lines),
                 )

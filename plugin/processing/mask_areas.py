@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 
+import numpy as np
 from qgis.core import (
     QgsExpression,
     QgsExpressionContext,
@@ -17,7 +18,7 @@ from ...robot_bridge.robotmap.exporters.masks import MaskArea
 from ..language import tr
 from ..sites.feature_filter import FeatureFilter
 from ..sites.placing import LayerPlacing, PlacingError, SitePlacing
-from ..sites.shapes import Shape, polygons_of, shapes_of
+from ..sites.shapes import polygons_of, shapes_of
 from .errors import ParameterError
 
 Speed = Callable[[QgsFeature], float]
@@ -44,27 +45,14 @@ def areas_of(
         if feedback.isCanceled():
             break
         name = tr("Layer {sourcename}, feature {id}", sourcename=source.sourceName(), id=feature.id())
-        doubts: list[str] = []
-        if counted is not None and not counted.keeps(feature, doubts):
-            warnings += [f"{name}: {doubt}" for doubt in doubts]
-            continue
-        limit = math.nan if speed is None else speed(feature)
-        if speed is not None and not 0 < limit < math.inf:
-            warnings.append(
-                tr("{name}: it has no speed above 0 m/s, so it sets no limit; it is left out", name=name)
-            )
-            continue
-        try:
-            shapes, notes = _shapes(feature, placing)
-        except PlacingError as error:
-            shapes, notes = (
-                [],
-                [tr("cannot be transformed into the site's CRS ({error}); it is left out", error=error)],
-            )
+        notes: list[str] = []
+        if counted is None or counted.keeps(feature, notes):
+            limit = math.nan if speed is None else speed(feature)
+            if speed is None or 0 < limit < math.inf:
+                areas += [MaskArea(rings, name, limit) for rings in _polygons(feature, placing, notes)]
+            else:
+                notes.append(tr("has no speed above 0 m/s, so it sets no limit; it is left out"))
         warnings += [f"{name}: {note}" for note in notes]
-        areas += [
-            MaskArea([placing.to_site(ring) for ring in rings], name, limit) for rings in polygons_of(shapes)
-        ]
     return areas, warnings
 
 
@@ -96,8 +84,16 @@ def speed_by(text: str, source: QgsProcessingFeatureSource, context: QgsExpressi
     return speed
 
 
-def _shapes(feature: QgsFeature, placing: LayerPlacing) -> tuple[Sequence[Shape], list[str]]:
+def _polygons(feature: QgsFeature, placing: LayerPlacing, notes: list[str]) -> list[list[np.ndarray]]:
+    """Return the rings of each polygon of ``feature`` in the site frame; what is odd goes into ``notes``."""
     geometry = feature.geometry()
     if geometry.isNull() or geometry.isEmpty():
-        return [], [tr("has no geometry; it is left out")]
-    return shapes_of(placing.to_metres(geometry))
+        notes.append(tr("has no geometry; it is left out"))
+        return []
+    try:
+        shapes, odd = shapes_of(placing.to_metres(geometry))
+    except PlacingError as error:
+        notes.append(tr("cannot be transformed into the site's CRS ({error}); it is left out", error=error))
+        return []
+    notes += odd
+    return [[placing.to_site(ring) for ring in rings] for rings in polygons_of(shapes)]

@@ -9,6 +9,8 @@ import numpy as np
 from qgis.core import (
     QgsCoordinateReferenceSystem,
     QgsFeature,
+    QgsFeatureSink,
+    QgsFields,
     QgsGeometry,
     QgsProcessing,
     QgsProcessingContext,
@@ -114,24 +116,12 @@ class SurfaceAtPoint(FleetAlgorithm):
             sink, made = self.parameterAsSink(
                 parameters, OUTPUT, context, fields, points.wkbType(), points.sourceCrs()
             )
-            counts = {True: 0, False: 0}
-            warnings = len(surfaces.warnings)
-            for features in _batches(points, feedback):
-                found, odd = _told(features, surfaces, points.sourceCrs())
-                for note in odd:
-                    feedback.pushWarning(note)
-                warnings += len(odd)
-                for surface in found:
-                    counts[surface is not None] += 1
-                rows = [_row(feature, one) for feature, one in zip(features, found, strict=True)]
-                if not fill(sink, fields, rows, feedback):
-                    return {}
+            on, off, odd = _written(points, surfaces, sink, fields, feedback)
         if feedback.isCanceled():
             return {}
-        feedback.pushInfo(
-            tr("{on} points are on a surface, {off} on none.", on=counts[True], off=counts[False])
-        )
-        return {OUTPUT: made, **dict(zip(NUMBERS, (counts[True], counts[False], warnings), strict=True))}
+        feedback.pushInfo(tr("{on} points are on a surface, {off} on none.", on=on, off=off))
+        numbers = on, off, len(surfaces.warnings) + odd
+        return {OUTPUT: made, **dict(zip(NUMBERS, numbers, strict=True))}
 
     def _points(self, parameters: Parameters, context: QgsProcessingContext) -> QgsProcessingFeatureSource:
         points = self.parameterAsSource(parameters, POINTS, context)
@@ -146,6 +136,31 @@ class SurfaceAtPoint(FleetAlgorithm):
                 )
             )
         return points
+
+
+def _written(
+    points: QgsProcessingFeatureSource,
+    surfaces: SurfaceMap,
+    sink: QgsFeatureSink,
+    fields: QgsFields,
+    feedback: QgsProcessingFeedback,
+) -> tuple[int, int, int]:
+    """Write the points with their surfaces; return how many are on one, on none, and odd.
+
+    Stops early when cancelled; raises OutputError.
+    """
+    counts, odd = {True: 0, False: 0}, 0
+    for features in _batches(points, feedback):
+        found, notes = _told(features, surfaces, points.sourceCrs())
+        for note in notes:
+            feedback.pushWarning(note)
+        odd += len(notes)
+        for surface in found:
+            counts[surface is not None] += 1
+        rows = [_row(feature, one) for feature, one in zip(features, found, strict=True)]
+        if not fill(sink, fields, rows, feedback):
+            break
+    return counts[True], counts[False], odd
 
 
 def _batches(

@@ -54,32 +54,7 @@ def read_centrelines(
     """
     reading: GroundReading[Centreline] = GroundReading()
     for source in sources:
-        layer = _GroundLayer(source, site, ROAD_CENTRELINE)
-        width = layer.rules.rule("width", source.expressions.width or layer.rules.column(*WIDTH_FIELDS))
-        roads = RoadRules(layer.rules, RoadExpressions())
-        unknown: list[int] = []
-        for feature, geometry in layer.features(reading, feedback):
-            notes: list[str] = []
-            metres = layer.rules.metres("width", width, notes)
-            if metres is None:
-                unknown.append(feature.id())
-            lines = lines_of(geometry, notes)
-            label = layer.label(feature, notes)
-            traffic = roads.traffic(notes)
-            reading.items += [
-                Centreline(
-                    layer.placing.to_site(line),
-                    metres or default_width,
-                    label,
-                    direction=traffic.direction,
-                    speed_ms=traffic.speed or DEFAULT_SPEED,
-                    closed=traffic.closed,
-                    level=traffic.level,
-                )
-                for line in lines
-            ]
-            layer.note(feature, notes, reading)
-        reading.warnings += layer.rules.warnings
+        unknown = _read_roads(_GroundLayer(source, site, ROAD_CENTRELINE), default_width, reading, feedback)
         if unknown:
             reading.warnings.append(
                 tr(
@@ -92,6 +67,39 @@ def read_centrelines(
                 )
             )
     return reading
+
+
+def _read_roads(
+    layer: _GroundLayer, default_width: float, reading: GroundReading[Centreline], feedback: QgsFeedback
+) -> list[int]:
+    """Read the roads of one layer; return the features whose width is not known."""
+    given = layer.source.expressions.width or layer.rules.column(*WIDTH_FIELDS)
+    width = layer.rules.rule("width", given)
+    roads = RoadRules(layer.rules, RoadExpressions())
+    unknown: list[int] = []
+    for feature, geometry in layer.features(reading, feedback):
+        notes: list[str] = []
+        metres = layer.rules.metres("width", width, notes)
+        if metres is None:
+            unknown.append(feature.id())
+        lines = lines_of(geometry, notes)
+        label = layer.label(feature, notes)
+        traffic = roads.traffic(notes)
+        reading.items += [
+            Centreline(
+                layer.placing.to_site(line),
+                metres or default_width,
+                label,
+                direction=traffic.direction,
+                speed_ms=traffic.speed or DEFAULT_SPEED,
+                closed=traffic.closed,
+                level=traffic.level,
+            )
+            for line in lines
+        ]
+        layer.note(feature, notes, reading)
+    reading.warnings += layer.rules.warnings
+    return unknown
 
 
 def read_areas(

@@ -99,7 +99,27 @@ def load_site(folder: Path, project: QgsProject) -> LoadedSite:
 
     :raises PublicationError: when a part is missing or cannot be read; nothing is loaded then.
     """
-    name = _site_name(folder)
+    name, opened = _site_name(folder), _open(folder)
+    taken = {part.setup.role for part in PARTS if layers_with_role(project, part.setup.role)}
+    group = fleet_group(project).addGroup(name)
+    for part, layer in opened:
+        if part.setup.role not in taken:
+            keep_setup(layer, part.setup)
+        _dress(layer, part.style)
+        project.addMapLayer(layer, False)
+        group.addLayer(layer)
+    titles = [part.title for part in PARTS if part.setup.role in taken]
+    return LoadedSite(name, [layer for _, layer in opened], titles)
+
+
+def loaded_already(folder: Path, project: QgsProject) -> list[QgsVectorLayer]:
+    """Return the layers of ``project`` that are of the site published in ``folder``."""
+    file = str((folder / GEOPACKAGE_FILE).resolve())
+    layers = project.mapLayers().values()
+    return [layer for layer in layers if str(Path(layer.source().split("|")[0]).resolve()) == file]
+
+
+def _open(folder: Path) -> list[tuple[_Part, QgsVectorLayer]]:
     file = folder / GEOPACKAGE_FILE
     if not file.is_file():
         raise PublicationError(
@@ -122,27 +142,15 @@ def load_site(folder: Path, project: QgsProject) -> LoadedSite:
                 again=AGAIN,
             )
         )
-    taken = {part.setup.role for part in PARTS if layers_with_role(project, part.setup.role)}
-    group = fleet_group(project).addGroup(name)
-    for part, layer in opened:
-        if part.setup.role not in taken:
-            keep_setup(layer, part.setup)
-        if part.style:
-            layer.loadNamedStyle(str(STYLES / part.style))
-        elif isinstance(renderer := layer.renderer(), QgsSingleSymbolRenderer):
-            # Of whatever kind its shapes are; QGIS would choose a colour by chance, red as well.
-            renderer.symbol().setColor(QColor(PLAIN))
-        project.addMapLayer(layer, False)
-        group.addLayer(layer)
-    titles = [part.title for part in PARTS if part.setup.role in taken]
-    return LoadedSite(name, [layer for _, layer in opened], titles)
+    return opened
 
 
-def loaded_already(folder: Path, project: QgsProject) -> list[QgsVectorLayer]:
-    """Return the layers of ``project`` that are of the site published in ``folder``."""
-    file = str((folder / GEOPACKAGE_FILE).resolve())
-    layers = project.mapLayers().values()
-    return [layer for layer in layers if str(Path(layer.source().split("|")[0]).resolve()) == file]
+def _dress(layer: QgsVectorLayer, style: str) -> None:
+    if style:
+        layer.loadNamedStyle(str(STYLES / style))
+    elif isinstance(renderer := layer.renderer(), QgsSingleSymbolRenderer):
+        # Of whatever kind its shapes are; QGIS would choose a colour by chance, red as well.
+        renderer.symbol().setColor(QColor(PLAIN))
 
 
 def _site_name(folder: Path) -> str:

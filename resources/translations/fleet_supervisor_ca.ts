@@ -946,6 +946,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/checks.py" />
+            <source>The project has no CRS, so the map is taken to be in the site's, {crs}; a layer in another CRS lies at a wrong place on it. Choose the project's CRS at the bottom right in QGIS.</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/checks.py" />
             <source>{where} m is outside the site {name}, which reaches from ({x_min:g}, {y_min:g}) to ({x_max:g}, {y_max:g}) m. Click inside it.</source>
             <translation>{where} m és fora del recinte {name}, que va de ({x_min:g}, {y_min:g}) a ({x_max:g}, {y_max:g}) m. Feu clic a dins.</translation>
         </message>
@@ -2555,18 +2560,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driven_plan.py" />
-            <source>Placed cones of the plan</source>
-            <translation>Cons col·locats del pla</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/driven_plan.py" />
             <source>Plan of what is left</source>
             <translation>Pla del que queda</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/driven_plan.py" />
-            <source>The cone plan cannot go on as it is: {why}. Plan what is left.</source>
-            <translation>El pla de cons no pot seguir com és: {why}. Planifiqueu el que queda.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driven_plan.py" />
@@ -2687,6 +2682,16 @@
             <location filename="../../plugin/desk/plans/driving_bar.py" />
             <source>try failed cones again</source>
             <translation>torna a provar els cons fallits</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/followed_plan.py" />
+            <source>Placed cones of the plan</source>
+            <translation>Cons col·locats del pla</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/followed_plan.py" />
+            <source>The cone plan cannot go on as it is: {why}. Plan what is left.</source>
+            <translation>El pla de cons no pot seguir com és: {why}. Planifiqueu el que queda.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/near_meetings.py" />
@@ -6432,8 +6437,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/mask_areas.py" />
-            <source>{name}: it has no speed above 0 m/s, so it sets no limit; it is left out</source>
-            <translation>{name}: no té cap velocitat superior a 0 m/s, així que no limita; s'omet</translation>
+            <source>has no speed above 0 m/s, so it sets no limit; it is left out</source>
+            <translation>no té cap velocitat superior a 0 m/s, així que no limita; s'omet</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/navigation_help.py" />
@@ -8086,6 +8091,11 @@
             <location filename="../../plugin/wire/client.py" />
             <source>The gateway at {url} closed the link. It is tried again.</source>
             <translation>La passarel·la a {url} ha tancat l'enllaç. Es torna a provar.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/client.py" />
+            <source>This computer slept, or did nothing, for {seconds:.0f} s: what waits for it is old. The link is opened anew.</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/wire/client.py" />

@@ -946,6 +946,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/checks.py" />
+            <source>The project has no CRS, so the map is taken to be in the site's, {crs}; a layer in another CRS lies at a wrong place on it. Choose the project's CRS at the bottom right in QGIS.</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/checks.py" />
             <source>{where} m is outside the site {name}, which reaches from ({x_min:g}, {y_min:g}) to ({x_max:g}, {y_max:g}) m. Click inside it.</source>
             <translation>{where} m está fuera del recinto {name}, que va de ({x_min:g}, {y_min:g}) a ({x_max:g}, {y_max:g}) m. Haga clic dentro.</translation>
         </message>
@@ -2555,18 +2560,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driven_plan.py" />
-            <source>Placed cones of the plan</source>
-            <translation>Conos colocados del plan</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/driven_plan.py" />
             <source>Plan of what is left</source>
             <translation>Plan de lo que queda</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/driven_plan.py" />
-            <source>The cone plan cannot go on as it is: {why}. Plan what is left.</source>
-            <translation>El plan de conos no puede seguir como está: {why}. Planifique lo que queda.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driven_plan.py" />
@@ -2687,6 +2682,16 @@
             <location filename="../../plugin/desk/plans/driving_bar.py" />
             <source>try failed cones again</source>
             <translation>reintentar los conos fallidos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/followed_plan.py" />
+            <source>Placed cones of the plan</source>
+            <translation>Conos colocados del plan</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/followed_plan.py" />
+            <source>The cone plan cannot go on as it is: {why}. Plan what is left.</source>
+            <translation>El plan de conos no puede seguir como está: {why}. Planifique lo que queda.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/near_meetings.py" />
@@ -6432,8 +6437,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/mask_areas.py" />
-            <source>{name}: it has no speed above 0 m/s, so it sets no limit; it is left out</source>
-            <translation>{name}: no tiene velocidad superior a 0 m/s, así que no limita; se omite</translation>
+            <source>has no speed above 0 m/s, so it sets no limit; it is left out</source>
+            <translation>no tiene velocidad superior a 0 m/s, así que no limita; se omite</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/navigation_help.py" />
@@ -8086,6 +8091,11 @@
             <location filename="../../plugin/wire/client.py" />
             <source>The gateway at {url} closed the link. It is tried again.</source>
             <translation>La pasarela en {url} cerró el enlace. Se vuelve a intentar.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/client.py" />
+            <source>This computer slept, or did nothing, for {seconds:.0f} s: what waits for it is old. The link is opened anew.</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/wire/client.py" />

@@ -944,6 +944,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/checks.py" />
+            <source>The project has no CRS, so the map is taken to be in the site's, {crs}; a layer in another CRS lies at a wrong place on it. Choose the project's CRS at the bottom right in QGIS.</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/checks.py" />
             <source>{where} m is outside the site {name}, which reaches from ({x_min:g}, {y_min:g}) to ({x_max:g}, {y_max:g}) m. Click inside it.</source>
             <translation>{where} m a(z) {name} telephelyen kívül van, amely ettől: ({x_min:g}, {y_min:g}), eddig terjed: ({x_max:g}, {y_max:g}) m. Kattintson belülre.</translation>
         </message>
@@ -2553,18 +2558,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driven_plan.py" />
-            <source>Placed cones of the plan</source>
-            <translation>A terv kihelyezett bójái</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/driven_plan.py" />
             <source>Plan of what is left</source>
             <translation>A maradék terve</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/driven_plan.py" />
-            <source>The cone plan cannot go on as it is: {why}. Plan what is left.</source>
-            <translation>A bójaterv így nem folytatható: {why}. Tervezze meg a maradékot.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driven_plan.py" />
@@ -2685,6 +2680,16 @@
             <location filename="../../plugin/desk/plans/driving_bar.py" />
             <source>try failed cones again</source>
             <translation>sikertelen bóják újra</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/followed_plan.py" />
+            <source>Placed cones of the plan</source>
+            <translation>A terv kihelyezett bójái</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/followed_plan.py" />
+            <source>The cone plan cannot go on as it is: {why}. Plan what is left.</source>
+            <translation>A bójaterv így nem folytatható: {why}. Tervezze meg a maradékot.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/near_meetings.py" />
@@ -6428,8 +6433,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/mask_areas.py" />
-            <source>{name}: it has no speed above 0 m/s, so it sets no limit; it is left out</source>
-            <translation>{name}: nincs 0 m/s feletti sebessége, így nem korlátoz; kimarad</translation>
+            <source>has no speed above 0 m/s, so it sets no limit; it is left out</source>
+            <translation>nincs 0 m/s feletti sebessége, így nem korlátoz; kimarad</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/navigation_help.py" />
@@ -8078,6 +8083,11 @@
             <location filename="../../plugin/wire/client.py" />
             <source>The gateway at {url} closed the link. It is tried again.</source>
             <translation>A(z) {url} átjáró bontotta a kapcsolatot. Újrapróbálkozás folyik.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/client.py" />
+            <source>This computer slept, or did nothing, for {seconds:.0f} s: what waits for it is old. The link is opened anew.</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/wire/client.py" />

@@ -211,7 +211,7 @@ def test_layers_in_the_crs_come_into_the_site_frame_of_the_masks(export, robot_m
     assert mask * multiplier == pytest.approx(1.5)
     assert value_at(results["SPEED"], 15, 12) == 255
     assert warnings == [
-        "Layer zones, feature 2: it has no speed above 0 m/s, so it sets no limit; it is left out"
+        "Layer zones, feature 2: has no speed above 0 m/s, so it sets no limit; it is left out"
     ]
 
 
