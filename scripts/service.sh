@@ -27,6 +27,14 @@ may_write() {
     [ -n "$DESTDIR" ] || [ "$(id -u)" -eq 0 ] || stop "this writes below /etc and $PREFIX: run it as root, or with sudo"
 }
 
+need_systemd() {
+    [ -n "$DESTDIR" ] || command -v systemd-sysusers >/dev/null ||
+        stop "systemd is not installed here: run the gateway by hand (docs/operation.md), or give DESTDIR="
+}
+
+# An image or a container is often set up where systemd is installed and does not run.
+systemd_runs() { [ -z "$DESTDIR" ] && [ -d /run/systemd/system ]; }
+
 install_program() {
     # Not the environment of this folder, which is for tests and may be anybody's.
     python3 -c 'import sys; sys.exit(sys.version_info < (3, 11))' || stop "python3 is older than 3.11"
@@ -38,6 +46,7 @@ install_program() {
 
 install_service() {
     may_write
+    need_systemd
     case $PREFIX in /*) ;; *) stop "PREFIX=$PREFIX is no absolute path" ;; esac
     [ "$PROGRAM" = no ] || install_program
     install -d "$(dirname "$UNIT")" "$(dirname "$USERS")"
@@ -49,11 +58,15 @@ install_service() {
     if [ -z "$DESTDIR" ]; then
         chgrp -R robot-bridge "$(dirname "$SETTINGS")"
         install -d -m 750 -o robot-bridge -g robot-bridge /var/lib/robot-bridge
-        systemctl daemon-reload
     fi
     say "installed $UNIT"
     say "publish a site into /var/lib/robot-bridge/site, or name its folder in $SETTINGS"
-    say "then start it, now and with the computer: systemctl enable --now robot-bridge"
+    if systemd_runs; then
+        systemctl daemon-reload
+        say "then start it, now and with the computer: systemctl enable --now robot-bridge"
+    else
+        say "then have it start with the computer: systemctl enable robot-bridge (systemd does not run here now)"
+    fi
 }
 
 uninstall_service() {
@@ -65,7 +78,9 @@ uninstall_service() {
     if [ -e "$DESTDIR$PREFIX/pyvenv.cfg" ]; then
         rm -rf "$DESTDIR$PREFIX"
     fi
-    [ -n "$DESTDIR" ] || systemctl daemon-reload
+    if systemd_runs; then
+        systemctl daemon-reload
+    fi
     say "removed; settings ($(dirname "$SETTINGS")), data (/var/lib/robot-bridge) and the account robot-bridge stay"
 }
 
