@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
@@ -154,7 +153,7 @@ def test_a_revoked_token_ends_the_link_and_it_is_not_tried_again(connection, bri
 def test_a_session_that_was_ended_is_not_brought_back_by_itself(connection, bridge, wait):
     connection.open(bridge.url, "Ada", Credentials(bridge.token, str(bridge.ca)))
     link_when(connection, wait, Phase.CONNECTED)
-    time.sleep(0.3)
+    wait(lambda: bridge.run("sessions", "list"))
     session = bridge.run("sessions", "list").split("\t")[0]
     bridge.run("sessions", "end", session, "--reason", "shift is over")
     link = link_when(connection, wait, Phase.FAILED)

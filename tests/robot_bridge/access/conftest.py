@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 
 import pytest
+from stage.patience import BUSY
 
 from robot_bridge.store.database import Database
 
@@ -44,7 +45,7 @@ def close_code():
         began = time.monotonic()
         with pytest.raises(ConnectionClosed) as caught:
             while True:
-                wire.connection.recv(began + seconds - time.monotonic())
+                wire.connection.recv(began + BUSY * seconds - time.monotonic())
         received = caught.value.rcvd
         return (
             received.code if received else None,

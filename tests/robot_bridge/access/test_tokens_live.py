@@ -8,8 +8,9 @@ import time
 
 import pytest
 from bridge_accounts import bearing
+from bridge_programs import wait_until
 from bridge_sockets import frame, plain_socket
-from bridge_wires import RefusedError
+from bridge_wires import RefusedError, is_refused
 from websockets.sync.client import connect
 
 from robot_bridge.access.tokens import TokenKind, new_token
@@ -204,10 +205,9 @@ def test_another_role_holds_for_open_connections(bridge, accounts):
     with pytest.raises(RefusedError, match="Eve is viewer"):
         desk.ask("abort_all")
     accounts.do("operators", "role", "Eve", "operator")
-    time.sleep(1)
-    desk.ask("abort_all")
+    wait_until(lambda: not is_refused(desk, "abort_all"))
     accounts.do("operators", "role", "Eve", "viewer")
-    time.sleep(1)
+    wait_until(lambda: is_refused(desk, "abort_all"))
     with pytest.raises(RefusedError, match="Eve is viewer"):
         desk.ask("abort_all")
 
@@ -215,18 +215,24 @@ def test_another_role_holds_for_open_connections(bridge, accounts):
 def test_sessions_are_listed_and_ended_on_the_command_line_and_at_the_desk(bridge, accounts, ada, close_code):
     supervisor = bridge.desk(**ada)
     victims = [bridge.desk(**accounts.operator(f"Guest {n}", "viewer")) for n in range(2)]
-    time.sleep(0.3)
-    listed = [line.split("\t") for line in accounts.do("sessions", "list").splitlines()]
-    by_name = {name: id for id, name, *_ in listed}
-    assert {"Ada", "Guest 0", "Guest 1"} <= set(by_name)
+
+    def listed():
+        lines = [line.split("\t") for line in accounts.do("sessions", "list").splitlines()]
+        return {name: id for id, name, *_ in lines}
+
+    wait_until(lambda: {"Ada", "Guest 0", "Guest 1"} <= set(listed()))
+    by_name = listed()
     accounts.do("sessions", "end", by_name["Guest 0"][:8], "--reason", "shift is over")
     assert close_code(victims[0])[:2] == (4004, "shift is over")
     at_desk = {s["operator"]: s["session"] for s in supervisor.ask("get_sessions")["sessions"]}
     supervisor.ask("end_session", {"session": at_desk["Guest 1"]})
     assert close_code(victims[1])[:2] == (4004, "ended by a supervisor (Ada)")
-    time.sleep(0.3)
-    ended = {s["operator"]: s for s in supervisor.ask("get_sessions", {"ended": True})["sessions"]}
-    assert ended["Guest 0"]["reason"] == "shift is over"
+
+    def reasons():
+        ended = supervisor.ask("get_sessions", {"ended": True})["sessions"]
+        return {session["operator"]: session.get("reason") for session in ended}
+
+    wait_until(lambda: reasons().get("Guest 0") == "shift is over")
     assert "Guest 0" not in {s["operator"] for s in supervisor.ask("get_sessions")["sessions"]}
 
 
@@ -234,7 +240,7 @@ def test_a_gateway_that_is_killed_leaves_no_session_open(start_bridge, sample_si
     bridge = start_bridge(sample_site)
     accounts = accounts_of(bridge)
     bridge.desk(**accounts.operator("Ada", "viewer"))
-    time.sleep(0.3)
+    wait_until(lambda: accounts.do("sessions", "list"))
     bridge.kill_gateway()
     bridge.start_gateway()
     assert accounts.do("sessions", "list") == ""

@@ -6,12 +6,14 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 
 import pytest
-from bridge_wires import RefusedError
+from bridge_programs import wait_until
+from bridge_wires import RefusedError, Wire
 from hypothesis import HealthCheck, given, settings
 from stage.fuzzing import Conversation, desk_frames, handshakes, knock, robot_frames, rr_rows
-from websockets.exceptions import ConnectionClosed
+from websockets.exceptions import ConnectionClosed, InvalidStatus
 
 GENEROUS = """
 [limits]
@@ -60,8 +62,17 @@ def guarded(start_bridge, limited_site, accounts_of):
     accounts = accounts_of(bridge)
     accounts.operator("Ada", "supervisor")
     accounts.robot("r1")
-    time.sleep(0.6)
+    wait_until(lambda: is_shut(bridge.desk) and is_shut(lambda: bridge.robot("r1")))
     return bridge
+
+
+def is_shut(connect: Callable[[], Wire]) -> bool:
+    """Tell whether nobody gets in without a token."""
+    try:
+        connect().connection.close()
+    except InvalidStatus as error:
+        return error.response.status_code == 401
+    return False
 
 
 @cases(150)

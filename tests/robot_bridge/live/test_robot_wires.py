@@ -115,7 +115,7 @@ def test_a_robot_that_reconnects_need_not_wait_for_its_dead_connection(bridge):
     with _mute_connection(bridge, "/robot?robot=ws6"):
         began = time.monotonic()
         bridge.robot("ws6").plug_in(1)
-        assert time.monotonic() - began < 10.0
+        assert time.monotonic() - began < 18
 
 
 @contextlib.contextmanager

@@ -68,7 +68,7 @@ def test_a_robot_that_hangs_gives_way_after_a_second(bridge, desk):
         began = time.monotonic()
         newcomer = WIRES["websocket"](bridge, "frozen")
         assert newcomer.ask("Ready", {"magic": 7})["robot"] == "frozen"
-        assert time.monotonic() - began < 10.0
+        assert time.monotonic() - began < 18
     finally:
         robot.send_signal(signal.SIGCONT)
     # The one that hung finds that it was replaced, and ends.

@@ -24,6 +24,15 @@ class RefusedError(Exception):
         self.data = error.get("data")
 
 
+def is_refused(wire: Wire, method: str) -> bool:
+    """Call ``method`` and tell whether the gateway refused it."""
+    try:
+        wire.ask(method)
+    except RefusedError:
+        return True
+    return False
+
+
 class Wire:
     """One connection. What comes in between is handed to ``_hear``."""
 
@@ -43,8 +52,8 @@ class Wire:
         return self.answer(id, seconds)
 
     def answer(self, id: Any, seconds: float = 10.0) -> Any:
-        """Return the result of call ``id``."""
-        until = time.monotonic() + seconds
+        """Return the result of call ``id``; ``seconds`` are an idle machine's."""
+        until = time.monotonic() + BUSY * seconds
         while True:
             frame = json.loads(self.connection.recv(until - time.monotonic()))
             if "method" in frame:

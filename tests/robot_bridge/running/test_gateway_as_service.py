@@ -155,11 +155,12 @@ def test_settings_are_taken_over_without_a_new_publication(bridge, site):
     robot.plug_in(1)
     told = []
     desk._hear = told.append
-    change(site, "stale_after_s = 3.0", "stale_after_s = 0.5")
-    desk.until(lambda: [f for f in told if f["method"] == "site" and f["params"]["stale_after"] == 0.5])
-    time.sleep(1.0)
+    change(site, "stale_after_s = 3.0", "stale_after_s = 9.5")
+    desk.until(lambda: [f for f in told if f["method"] == "site" and f["params"]["stale_after"] == 9.5])
+    robot.ask("Alive")
+    time.sleep(3.2)
     (known,) = desk.ask("get_positions")["robots"]
-    assert known["state"] == "stale"
+    assert known["state"] == "fresh"
     robot.listen(0.3)
     assert [call["method"] for call in robot.calls if call["method"] != "Start"] == []
 

@@ -21,6 +21,7 @@ from qgis.PyQt.QtWidgets import (
     QTableView,
     QToolButton,
 )
+from stage.patience import BUSY
 
 LEFT = Qt.MouseButton.LeftButton
 
@@ -94,7 +95,7 @@ def test_a_robot_that_stands_with_a_task(at_alarms, gateway, make_robot, iface, 
         QTest.qWait(200)
     assert alarms(at_alarms) == []
     gateway.step(command.command, CommandState.ACKNOWLEDGED, "r1")
-    keep = time.monotonic() + 8
+    keep = time.monotonic() + BUSY * 8
     while not alarms(at_alarms) and time.monotonic() < keep:
         gateway.show(make_robot("r1", 50, 40, v=0.0), make_robot("r2", 80, 60, v=0.0))
         QTest.qWait(200)
