@@ -23,6 +23,7 @@ from .exchange import Outcome
 from .ground_track import GroundTracks
 from .handshake import Holds, refusal
 from .messages import (
+    Answer,
     Command,
     CommandReport,
     CommandState,
@@ -193,16 +194,7 @@ class Fleet:
         stopped = isinstance(request, Stopped) or self.robots.get(robot).ended_in_order
         known = self.robots.heard(robot, link, now, stopped=stopped)
         self._saving.touch(robot)
-        answer, note = None, ""
-        if isinstance(request, OpAck):
-            self._measure(known, await self._book.acknowledged(robot, request))
-        elif isinstance(request, Observed):
-            await self.observations.add(known, link, request, id)
-        elif isinstance(request, Question):
-            if isinstance(request, GetPath):
-                self._waiting.check(robot)
-            answer, note = await self._answering.answer(robot, request)
-            self.emergency.check(answer)
+        answer, note = await self._deal_with(known, link, request, id)
         return Outcome(robot, OpAck(id=id, reason=note or None) if request.acknowledged else None, answer)
 
     def take_pose(self, robot: str, link: str, pose: SendPos) -> Coroutine[Any, Any, None] | None:
@@ -345,6 +337,25 @@ class Fleet:
 
     # ---------------------------------------------------------------------------------------------------
 
+    async def _deal_with(
+        self, robot: Robot, link: str, request: Request, id: int | None
+    ) -> tuple[Answer | None, str]:
+        """Deal with what is neither Ready nor a position; return the answer to it, and a note about that."""
+        if isinstance(request, OpAck):
+            self._measure(robot, await self._book.acknowledged(robot.name, request))
+        elif isinstance(request, Stopped):
+            if (rest := self._book.rests(robot.name, robot.pose if robot.located else None)) is not None:
+                await rest
+        elif isinstance(request, Observed):
+            await self.observations.add(robot, link, request, id)
+        elif isinstance(request, Question):
+            if isinstance(request, GetPath):
+                self._waiting.check(robot.name)
+            answer, note = await self._answering.answer(robot.name, request)
+            self.emergency.check(answer)
+            return answer, note
+        return None, ""
+
     async def _receive_ready(self, robot: str, link: str, request: Ready, id: int | None) -> Outcome:
         reason = await self._refusal(robot, request.magic)
         if reason is not None:
@@ -376,8 +387,11 @@ class Fleet:
     def _take_pose(
         self, robot: str, link: str, pose: SendPos, now: float
     ) -> Coroutine[Any, Any, None] | None:
+        unseen = self.robots.is_unseen(robot, now)
         if not self.robots.observe(robot, pose, link, now):
             return None
+        if unseen:
+            self._book.lose_sight(robot)
         self._saving.observe(robot, now, pose)
         return self._book.observe(robot, pose)
 

@@ -6,7 +6,6 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
 from numpy.typing import NDArray
 
 from ..messages import Command, SendPos, SetPath, SetPosEnd, SetPosIni
@@ -51,14 +50,15 @@ class TargetArrival:
 class PathArrival:
     """Judges SetPath: the robot followed the path and stands within ``tolerance`` metres of its end.
 
-    A path may end where it began, so standing at the end counts only after the whole of it was driven.
-    ``driven`` is the metres of path that the robot is known to have driven. With ``under_way`` its first pose
-    may be anywhere on what is left, since it may have driven on unseen; where that passes a place twice, the
-    sooner place counts: a robot that stands blocked at the beginning of a loop has not come to its end. Where
-    it is not known how far the robot came (``driven`` is None), the later counts. After poses were missed the
-    robot is looked for on all of the path that is left. So is one that is beyond the beginning and
-    far from where it was when the path was given to it (``handed``): it may acknowledge it long after it set
-    off, where its link broke.
+    A path may end where it began, or beside that, so standing at the end counts only after the whole of it
+    was driven. ``driven`` is the metres of path that the robot is known to have driven; where that is not
+    known (None) it is taken to be as far as it can be. ``handed`` is where it was seen last before it can
+    have begun, and ``under_way`` is true where it may have driven since then without being seen.
+
+    A robot is looked for a few metres ahead of where it was, further where it has left its path and comes
+    back to it, and on all of what is left where it was out of sight and has moved. Where it may be at two
+    places of its path the sooner one counts: a robot that stands blocked at the beginning of a loop has not
+    come to its end. Whether it has it says itself: see :meth:`rests`.
     """
 
     def __init__(
@@ -73,11 +73,13 @@ class PathArrival:
         self.line = Polyline(path.points)
         self._tolerance = tolerance
         self._theta = path.theta
-        self._seek = under_way
-        self._handed = handed
-        self._sooner = driven is not None
-        self._last: SendPos | None = None
+        self._anywhere = driven is None
+        self._last = handed
+        self._on_path: SendPos | None = None
         self.driven = driven or 0.0
+        self._unseen_from = self.driven if under_way else None
+        self._is_lost = under_way
+        self._rests = False
 
     def deviation(self, pose: SendPos) -> float | None:
         """Return metres between robot and end of path once it has arrived, else None."""
@@ -86,10 +88,32 @@ class PathArrival:
         stands_there = distance <= self._tolerance and standing(pose)
         if stands_there or self._moved(pose):
             self._follow(pose)
+        self._rests &= stands_there
+        if self._rests and self._is_unsure:
+            self.driven = self.line.length
         if not stands_there or self.driven < self.line.length - self._tolerance:
             return None
         turned = self._theta is not None and _turn(pose.theta, self._theta) > HEADING_TOLERANCE
         return None if turned else distance
+
+    def lose_sight(self) -> None:
+        """Take it that the robot may have driven since its last pose without being seen."""
+        self._unseen_from = self.driven
+        self._is_lost = True
+
+    def rests(self, pose: SendPos | None) -> float | None:
+        """Take it that the robot, at ``pose`` for all that is known, has nothing left to do.
+
+        Its word decides where its poses cannot: when it was out of sight and stands at the end of a path that
+        passes there more than once. Return as :meth:`deviation`.
+        """
+        self._rests = True
+        return None if pose is None or self._on_path is None else self.deviation(pose)
+
+    @property
+    def _is_unsure(self) -> bool:
+        """Whether the robot was out of sight, and has not been followed for long since."""
+        return self._unseen_from is not None and self.driven <= self._unseen_from + LOOK_AHEAD
 
     def _moved(self, pose: SendPos) -> bool:
         """Tell whether the robot is far enough from where it was followed last to be looked for again."""
@@ -98,33 +122,45 @@ class PathArrival:
 
     def _follow(self, pose: SendPos) -> None:
         station, off = self.line.feet(pose.x, pose.y)
-        if self._handed is not None:
-            at_beginning = ((off <= CORRIDOR) & (station <= LOOK_AHEAD)).any()
-            self._seek |= _apart(pose, self._handed) > LOOK_AHEAD and not at_beginning
-            self._handed = None
-        if self._seek and (off <= CORRIDOR).any():
-            self._seek, self._last = False, pose
-            self.driven = max(self.driven, self._found(station, off))
-            return
-        near = (off <= CORRIDOR) & (station > self.driven) & (station <= self.driven + self._reach(pose))
-        if near.any():
-            self.driven = float(station[near][np.argmin(off[near])])
+        on_line = off <= CORRIDOR
+        left = on_line & (station >= self.driven - self._tolerance)
+        near = on_line & (station > self.driven) & (station <= self.driven + self._reach(pose))
+        if left.any() and self._is_elsewhere(pose, station[left]):
+            self.driven = max(self.driven, self._found(station[left], off[left], self._tolerance))
+        elif near.any():
+            followed = self._on_path is self._last
+            self.driven = self._found(station[near], off[near], 0.0 if followed else self._tolerance)
+        if near.any() or (on_line & (station <= self.driven)).any():
+            self._on_path = pose
+        self._last, self._anywhere, self._is_lost = pose, False, False
 
-    def _found(self, station: NDArray[Any], off: NDArray[Any]) -> float:
-        """Return the station of a robot that was not seen for a while, on what is left of the path."""
-        left = station >= self.driven - self._tolerance
-        if not (off[left] <= CORRIDOR).any():
-            return self.driven
-        best = station[left][off[left] <= off[left].min() + self._tolerance]
-        return float(best.min() if self._sooner else best.max())
+    def _is_elsewhere(self, pose: SendPos, station: NDArray[Any]) -> bool:
+        """Tell whether the robot has come unseen to one of ``station``, and not to where it was expected."""
+        if self._anywhere:
+            return True
+        return self._was_missed(pose) and not (station <= self.driven + LOOK_AHEAD).any()
+
+    def _was_missed(self, pose: SendPos) -> bool:
+        """Tell whether the robot has driven unseen; one that had not set off may stand where it stood."""
+        last = self._last
+        if self._is_lost and (last is None or self.driven > LOOK_AHEAD):
+            return True
+        if last is None:
+            return False
+        return _apart(pose, last) > LOOK_AHEAD + LOOK_AHEAD_TIME * max(abs(pose.v), abs(last.v))
+
+    def _found(self, station: NDArray[Any], off: NDArray[Any], slack: float) -> float:
+        """Return the one of ``station`` that is nearest, within ``slack`` metres, and soonest of those."""
+        best = station[off <= off.min() + slack]
+        return float(best.max() if self._anywhere else best.min())
 
     def _reach(self, pose: SendPos) -> float:
-        """Return how many metres of path ahead the robot may be since its last pose."""
-        last, self._last = self._last or pose, pose
-        reach = LOOK_AHEAD + LOOK_AHEAD_TIME * max(abs(pose.v), abs(last.v))
-        moved = _apart(pose, last)
+        """Return how many metres of path ahead the robot may be of where it was on it last."""
+        last = self._last or pose
+        driving = LOOK_AHEAD_TIME * max(abs(pose.v), abs(last.v))
         # Round a corner the path is longer than the way as the crow flies.
-        return math.inf if moved > reach else max(reach, LOOK_AHEAD + 2 * moved)
+        away = 0.0 if self._on_path is None else 2 * _apart(pose, self._on_path)
+        return LOOK_AHEAD + max(driving, away)
 
 
 @dataclass

@@ -49,7 +49,8 @@ class Order:
 class OpenCommand:
     """A command with a step to come; ``sa_id`` is its message's row in SA, written at ``written_at``.
 
-    ``handed`` is where the robot was, as far as it is known, before it can have read that.
+    ``handed`` is where the robot was, as far as it is known, before it can have read that. It was
+    ``out_of_sight`` where it may have driven since then without being seen.
     """
 
     report: CommandReport
@@ -59,6 +60,7 @@ class OpenCommand:
     expires_at: float | None = None
     written_at: float | None = None
     handed: SendPos | None = None
+    out_of_sight: bool = False
 
     @property
     def is_motion(self) -> bool:
@@ -110,13 +112,20 @@ class OpenCommand:
         """Return the command one step further."""
         return dataclasses.replace(self, report=advance(self.report, state, at, by, reason, deviation, stood))
 
-    def noted(self, at: float, by: str, reason: str, arrival: Arrival | None = None) -> OpenCommand:
-        """Return the command in the same state with a note, judged by ``arrival`` from now on."""
-        return dataclasses.replace(self, report=note(self.report, at, by, reason), arrival=arrival)
+    def noted(self, at: float, by: str, reason: str) -> OpenCommand:
+        """Return the command in the same state with a note, and not judged any more."""
+        return dataclasses.replace(self, report=note(self.report, at, by, reason), arrival=None)
 
     def judged(self, tolerance: float) -> OpenCommand:
         """Return the command as one that the robot has just taken on."""
-        return dataclasses.replace(self, arrival=judge(self.message, tolerance, handed=self.handed))
+        judged = judge(self.message, tolerance, under_way=self.out_of_sight, handed=self.handed)
+        return dataclasses.replace(self, arrival=judged)
+
+    def lose_sight(self) -> None:
+        """Take it that the robot may have driven since its last pose without being seen."""
+        self.out_of_sight = True
+        if isinstance(self.arrival, PathArrival):
+            self.arrival.lose_sight()
 
 
 def drafted(order: Order, now: float) -> OpenCommand:

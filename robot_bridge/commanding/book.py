@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 
 from sqlalchemy import Connection
 
-from ..command_life.arrival import judge
+from ..command_life.arrival import PathArrival, judge
 from ..command_life.open_command import (
     GATEWAY,
     NOTHING,
@@ -180,6 +180,25 @@ class CommandBook:
             for command in mine
             if command.arrival
             and ((deviation := command.arrival.deviation(pose)) is not None or given_up_by(command, mine))
+        ]
+        return to_its_end(self._all_done(done)) if done else None
+
+    def lose_sight(self, robot: str) -> None:
+        """Note that nobody saw for a while where a robot drove."""
+        for command in self._open.of(robot):
+            command.lose_sight()
+
+    def rests(self, robot: str, pose: SendPos | None) -> Coroutine[Any, Any, None] | None:
+        """Note that a robot, at ``pose`` for all that is known, says that it has nothing to do.
+
+        Return as :meth:`observe`.
+        """
+        done = [
+            (command, deviation, pose)
+            for command in self._open.of(robot)
+            if isinstance(command.arrival, PathArrival)
+            and (deviation := command.arrival.rests(pose)) is not None
+            and pose is not None
         ]
         return to_its_end(self._all_done(done)) if done else None
 
@@ -354,8 +373,7 @@ class CommandBook:
             steps.append(command.step(CommandState.ACKNOWLEDGED, now, robot).judged(self.tolerance))
             return [*steps, *ended_by(command, self._ended_with_it(robot), now, ABORTED)]
         if command.arrival is None:
-            arrival = judge(command.message, self.tolerance, handed=command.handed)
-            return [command.noted(now, robot, "acknowledged again", arrival)]
+            return [command.noted(now, robot, "acknowledged again").judged(self.tolerance)]
         return []
 
     def _ended_with_it(self, robot: str) -> list[OpenCommand]:
@@ -372,13 +390,15 @@ class CommandBook:
         if command.report.state is CommandState.QUEUED:
             reason = "behind what the robot is told once more"
         noted, handed = command.noted(now, GATEWAY, reason), self.seen(command.report.robot)
-        return dataclasses.replace(noted, written_at=now, handed=handed)
+        return dataclasses.replace(noted, written_at=now, handed=handed, out_of_sight=False)
 
     def _restored(self, stored: StoredCommand) -> OpenCommand:
-        handed = self.seen(stored.report.robot) or NOWHERE
-        command = dataclasses.replace(opened(stored), handed=handed)
+        seen = self.seen(stored.report.robot)
+        command = dataclasses.replace(opened(stored), handed=seen or NOWHERE, out_of_sight=True)
         if stored.report.state is CommandState.ACKNOWLEDGED:
-            command.arrival = judge(command.message, self.tolerance, driven=stored.driven, under_way=True)
+            command.arrival = judge(
+                command.message, self.tolerance, driven=stored.driven, under_way=True, handed=seen
+            )
         return command
 
     async def _save(self, steps: list[OpenCommand]) -> None:

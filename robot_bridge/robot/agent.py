@@ -107,6 +107,8 @@ class Agent:
             self._take_acknowledgement(answer)
             return None
         if id is not None and id in self._done:
+            # The gateway has not heard what became of it: it is told once more that all is done, when it is.
+            self._moving = True
             return OpAck(id=id)
         refusal = self._do(answer)
         if id is not None:

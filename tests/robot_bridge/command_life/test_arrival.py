@@ -144,6 +144,94 @@ def test_a_path_with_a_point_named_twice_is_followed():
     assert walk(PathArrival(SetPath(path), TOLERANCE), [(0.0, 0.0), (4.0, 0.0)])[1] is not None
 
 
+LAP = SetPath([*LOOP[:-1], (0.0, 1.0)])
+"""It ends beside its beginning."""
+
+
+@pytest.mark.parametrize("end", [(0.0, 1.0), (0.05, 0.95)])
+@pytest.mark.parametrize("handed", [(0.0, 1.0), (-8.0, 0.0)])
+def test_a_lap_that_was_driven_unseen_is_reached_when_the_robot_says_that_it_has_nothing_to_do(end, handed):
+    for rests_first in (True, False):
+        arrival = judge(LAP, TOLERANCE, under_way=True, handed=pose(*handed))
+        told = [arrival.rests(None)] if rests_first else [arrival.deviation(pose(*end))]
+        told += [arrival.deviation(pose(*end))] if rests_first else [arrival.rests(pose(*end))]
+        assert told == [None, pytest.approx(math.dist(end, (0.0, 1.0)))]
+
+
+def test_where_a_robot_was_before_it_took_its_lap_on_shows_nothing():
+    assert judge(LAP, TOLERANCE, under_way=True, handed=pose(0.0, 1.0)).rests(pose(0.0, 1.0)) is None
+
+
+def test_so_is_a_loop_of_which_only_the_beginning_was_seen():
+    arrival = PathArrival(SetPath(LOOP), TOLERANCE)
+    walk(arrival, [(0.0, 0.0), (3.0, 0.0)])
+    arrival.lose_sight()
+    assert arrival.deviation(pose(0.0, 0.0)) is None
+    assert arrival.rests(pose(0.0, 0.0)) == 0.0
+
+
+def test_a_robot_that_was_seen_all_along_has_driven_no_lap_because_it_says_that_it_has_nothing_to_do():
+    arrival = judge(LAP, TOLERANCE, handed=pose(0.0, 1.0))
+    assert arrival.deviation(pose(0.0, 1.0)) is None
+    assert arrival.rests(pose(0.0, 1.0)) is None
+    arrival = judge(LAP, TOLERANCE, under_way=True, handed=pose(0.0, 1.0))
+    assert walk(arrival, [(0.0, 0.0), (10.0, 0.0), (0.0, 0.0), (0.0, 1.0)]) == (None, None)
+    assert arrival.rests(pose(0.0, 1.0)) is None
+
+
+def test_what_a_robot_said_before_it_set_off_counts_no_more_when_it_has():
+    arrival = judge(LAP, TOLERANCE, under_way=True, handed=pose(0.0, 1.0))
+    arrival.rests(None)
+    arrival.deviation(pose(1.0, 0.0, v=1.0))
+    assert arrival.deviation(pose(0.0, 1.0)) is None
+
+
+def test_a_robot_that_says_nothing_to_do_elsewhere_has_not_reached_the_end():
+    arrival = judge(LAP, TOLERANCE, under_way=True, handed=pose(0.0, 1.0))
+    arrival.deviation(pose(0.0, 1.5))
+    assert arrival.rests(pose(0.0, 1.5)) is None
+
+
+def test_a_robot_that_stood_at_the_end_before_it_set_off_has_not_reached_it_by_a_restart():
+    for begin in ((0.0, 0.0), (-9.0, 0.0)):
+        path = SetPath([begin, (10.0, 0.0), (0.0, 1.0)])
+        arrival = PathArrival(path, TOLERANCE, under_way=True, handed=pose(0.0, 1.0))
+        assert arrival.deviation(pose(0.02, 1.0)) is None
+
+
+def test_a_robot_that_came_unseen_to_its_lap_has_not_driven_it():
+    arrival = judge(LAP, TOLERANCE, handed=pose(-8.0, 0.0))
+    arrival.deviation(pose(-8.0, 0.0, v=1.0))
+    assert arrival.deviation(pose(0.0, 1.0)) is None
+
+
+ROUND = [(0.0, 0.0), (100.0, 0.0)]
+
+
+@pytest.mark.parametrize("v", [0.3, 1.0, 4.0])
+def test_a_robot_that_leaves_its_path_for_long_is_found_on_it_again(v):
+    arrival = PathArrival(SetPath(ROUND), TOLERANCE)
+    walk(arrival, [(0.0, 0.0), (20.0, 0.0), (23.0, 4.0), (57.0, 4.0)], v=v)
+    assert arrival.driven == pytest.approx(21.5, abs=0.5)
+    walk(arrival, [(57.0, 4.0), (60.0, 0.0), (61.0, 0.0)], v=v)
+    assert arrival.driven == pytest.approx(61.0)
+    assert walk(arrival, [(61.0, 0.0), (100.0, 0.0)], v=v)[1] == 0.0
+
+
+def test_a_robot_that_comes_back_where_its_path_passes_twice_is_found_at_the_sooner_place():
+    there_and_back = SetPath([(0.0, 0.0), (50.0, 0.0), (0.0, 0.01)])
+    arrival = PathArrival(there_and_back, TOLERANCE)
+    walk(arrival, [(0.0, 0.0), (20.0, 0.0), (23.0, 4.0), (41.0, 4.0), (44.0, 0.01)])
+    assert arrival.driven == pytest.approx(44.0, abs=0.3)
+
+
+def test_a_robot_that_crosses_its_path_far_ahead_has_not_driven_what_lies_between():
+    lanes = SetPath([(0.0, 0.0), (50.0, 0.0), (50.0, 4.0), (0.0, 4.0)])
+    arrival = PathArrival(lanes, TOLERANCE)
+    walk(arrival, [(0.0, 0.0), (10.0, 0.0), (10.0, 4.0), (14.0, 4.0)])
+    assert arrival.driven == pytest.approx(10.0, abs=0.1)
+
+
 def test_an_abort_is_reached_when_the_robot_stands():
     arrival = judge(Abort(), TOLERANCE)
     assert isinstance(arrival, AbortArrival)

@@ -37,6 +37,10 @@ COURSE_CONES = [PLACES["b"], PLACES["c"]]
 OTHER = QueueTask("task-0002", 41.0, 70.0, kind=TaskKind.PLACE, cone="X")
 BEFORE_OTHER = (41.0, 60.0)
 DRAWN = [BEGIN, PLACES["a"], PLACES["b"], PLACES["c"]]
+LAP = [BEGIN, (44.0, 40.0), (44.0, 43.0), (41.0, 43.0), (41.0, 41.0)]
+"""A lap that ends beside its beginning, so short that it is driven while no gateway is there."""
+OUT_OF_REACH = 15
+"""seconds for which robots are out of reach: they come to the end of what they do, and are lost."""
 CROSSING = [(16.0, 8.0), (44.0, 22.0), (90.0, 22.0)], [(13.0, 22.0), (60.0, 22.0), (60.0, 40.0)]
 """The ways of r1 and r2, who meet where the road from the south joins the ring."""
 
@@ -114,6 +118,25 @@ async def aborted(play):
     await play.until_done()
     play.check({"r1": COURSE, "r2": [OTHER.task]})
     play.check_cones([OTHER, *COURSE_CONES], interrupted=True)
+
+
+async def aborted_too_late(play):
+    await play.begin(WebSocketRobot(play, "r1", BEGIN), SqlRobot(play, "r2", BEFORE_OTHER))
+    await play.give(task("a", "place"), task("b", "place"))
+    await play.give(OTHER, robot="r2")
+    await play.until(lambda: all(robot.record.began for robot in play.robots.values()))
+    for robot in play.robots.values():
+        robot.says_late, robot.away_until = True, play.now + OUT_OF_REACH
+    for name in play.robots:
+        await play.ask(
+            lambda fleet, name=name: fleet.orders.abort(AbortTask(f"abort-of-{name}", name), "Ada")
+        )
+    await play.until(lambda: all(robot.record.stops for robot in play.robots.values()))
+    await play.wait(3)
+    await play.resume_all()
+    await play.until_done()
+    play.check()
+    play.check_cones([OTHER, PLACES["a"], PLACES["b"]], interrupted=True)
 
 
 async def made_current(play):
@@ -199,6 +222,20 @@ async def along_a_drawn_path(play, robot=WebSocketRobot):
 
 async def along_a_drawn_path_over_sql(play):
     await along_a_drawn_path(play, SqlRobot)
+
+
+async def a_lap(play, robot=WebSocketRobot):
+    await play.begin(robot(play, "r1", LAP[-1]))
+    for number in ("one", "two"):
+        await play.order(number, "SetPath", points=LAP)
+        await play.until_done()
+    play.check()
+    assert [play.state_of("one"), play.state_of("two")] == ["reached", "reached"]
+    assert len(play.robots["r1"].record.ends) >= 2
+
+
+async def a_lap_over_sql(play):
+    await a_lap(play, SqlRobot)
 
 
 async def started_anew(play):
@@ -294,12 +331,15 @@ SCENARIOS = {
         one_after_another,
         paused,
         aborted,
+        aborted_too_late,
         made_current,
         taken_over,
         stopped,
         ordered_beside_its_queue,
         along_a_drawn_path,
         along_a_drawn_path_over_sql,
+        a_lap,
+        a_lap_over_sql,
         started_anew,
         seen,
         led_round_a_closed_road,

@@ -44,7 +44,10 @@ class Record:
 
 
 class Robot:
-    """A robot, without its wire; cones that it puts down stand at ``offset``: metres ahead, left."""
+    """A robot, without its wire; cones that it puts down stand at ``offset``: metres ahead, left.
+
+    Until ``away_until`` it cannot be reached. One that ``says_late`` hears first, and then says where it is.
+    """
 
     link = ""
 
@@ -56,9 +59,11 @@ class Robot:
         self.task: Task | None = None
         self.record = Record()
         self.away_until = 0.0
+        self.says_late = False
         self.must_stand = False
         self._database = None
         self._done: set[int] = set()
+        self._told_stopped = True
 
     # --- its body ------------------------------------------------------------------------------------------
 
@@ -85,6 +90,7 @@ class Robot:
         self.task = None
         self.theta = self.theta if task.theta is None else task.theta
         self.record.ends.append((self.x, self.y))
+        self._told_stopped = False
         if task.does is not None:
             ahead, left = self.offset
             cos, sin = math.cos(self.theta), math.sin(self.theta)
@@ -107,6 +113,7 @@ class Robot:
     def hear(self, id, op, params):
         """Take in a message of the gateway; what it did before it does not do again."""
         if id in self._done:
+            self._told_stopped = False
             return
         self._done.add(id)
         if op == "Abort":
@@ -118,6 +125,7 @@ class Robot:
         """Stand."""
         self.task = None
         self.v = 0.0
+        self._told_stopped = False
         self.record.stops += 1
 
     def count_ids_of(self, database):
@@ -181,13 +189,22 @@ class WebSocketRobot(Robot):
             outcome = await fleet.receive(self.name, self.link, self._untold[0], self._next_call())
             assert outcome.ack.ok
             self._untold.pop(0)
-        if (rest := fleet.take_pose(self.name, self.link, self.position())) is not None:
-            await rest
+        if not self.says_late:
+            await self._say_where_it_is()
         for row in await fleet.outbox(self.name, self._last[False], self._last[True]):
             self.hear(row.id, row.op, parse_params(row.op, row.params) or {})
             self._last[row.urgent] = row.id
             await fleet.delivered([row.id])
             await fleet.receive(self.name, self.link, OpAck(id=row.id), None)
+        if self.says_late:
+            await self._say_where_it_is()
+        if self.task is None and not self._told_stopped:
+            await fleet.receive(self.name, self.link, Stopped(), self._next_call())
+            self._told_stopped = True
+
+    async def _say_where_it_is(self):
+        if (rest := self.play.fleet.take_pose(self.name, self.link, self.position())) is not None:
+            await rest
 
     async def _connect(self):
         fleet = self.play.fleet
@@ -214,7 +231,6 @@ class SqlRobot(Robot):
         super().__init__(*how, **more)
         self._admitted = False
         self._greet_at = 0.0
-        self._told_stopped = True
 
     def see(self, told):
         """Write that it saw an object."""
@@ -244,7 +260,7 @@ class SqlRobot(Robot):
             self._write(self.position())
             if self.task is None and not self._told_stopped:
                 self._write(Stopped())
-            self._told_stopped = self.task is None
+                self._told_stopped = True
 
     def _read(self, id, op, params):
         if op == "Start":

@@ -7,7 +7,7 @@ from road_places import SOUTH, highest
 
 from robot_bridge.commanding.writing import write_again
 from robot_bridge.errors import RefusedError, StoreError
-from robot_bridge.messages import GetPath, ResolveConflict
+from robot_bridge.messages import GetPath, ResolveConflict, Stopped
 
 PATH = [(20.0, 40.0), (40.0, 40.0), (40.0, 60.0)]
 
@@ -67,6 +67,52 @@ async def test_a_path_that_was_driven_although_its_delivery_was_not_noted_is_rea
     assert await roads.take() == ["SetPath", "SetMap"]
     await roads.at(*PATH[-1])
     assert (await roads.states())["a"] == "reached"
+
+
+LAP = [(20.0, 40.0), (40.0, 40.0), (40.0, 60.0), (20.0, 60.0), (20.0, 41.0)]
+"""It ends beside its beginning."""
+
+
+async def stopped(yard):
+    await yard.fleet.receive("r1", "websocket", Stopped(), 9)
+
+
+@pytest.mark.parametrize("restarts", [True, False], ids=["the gateway restarts", "the link broke"])
+@pytest.mark.parametrize("stops_first", [True, False])
+async def test_a_lap_that_was_driven_unseen_is_reached_when_the_robot_has_nothing_to_do(
+    roads, restarts, stops_first
+):
+    await roads.ready()
+    await roads.take()
+    await roads.at(*LAP[-1])
+    await roads.fleet.save()
+    await roads.send("a", "SetPath", points=LAP)
+    (row,) = await roads.deliver()
+    if restarts:
+        await roads.restart()
+    roads.now += 60
+    await roads.ready()
+    await roads.at(*LAP[-1])
+    # What it did before it is sent once more.
+    await stopped(roads)
+    await roads.ack(row.id)
+    if stops_first:
+        await stopped(roads)
+    await roads.at(*LAP[-1])
+    if not stops_first:
+        assert (await roads.states())["a"] == "acknowledged"
+        await stopped(roads)
+    assert (await roads.states())["a"] == "reached"
+
+
+async def test_a_lap_is_not_reached_by_a_robot_that_was_seen_not_to_drive_it(roads):
+    await roads.ready()
+    await roads.take()
+    await roads.at(*LAP[-1])
+    await roads.drive("a", [LAP[-1], *LAP])
+    await roads.at(*LAP[-1])
+    await stopped(roads)
+    assert (await roads.states())["a"] == "acknowledged"
 
 
 @pytest.mark.parametrize("restarts", [True, False], ids=["the gateway restarts", "the database is back"])

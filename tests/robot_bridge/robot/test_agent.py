@@ -94,6 +94,24 @@ def test_a_repeated_message_is_acknowledged_twice_and_done_once(robot):
     assert robot.distance < 0.1 < math.hypot(*place[:2])
 
 
+def test_after_a_repeated_message_it_says_once_more_where_it_stands_and_that_it_has_nothing_to_do(robot):
+    robot.agent.receive(SetPosEnd(3.0, 0.0), 1)
+    robot.live(10)
+    robot.said.clear()
+    assert robot.agent.receive(SetPosEnd(3.0, 0.0), 1) == OpAck(id=1)
+    robot.live(1)
+    assert len(robot.heard(Stopped)) == 1
+    assert isinstance(robot.said[robot.said.index(Stopped()) - 1], SendPos)
+
+
+def test_while_it_drives_a_repeated_message_makes_it_say_nothing_more(robot):
+    robot.agent.receive(SetPosEnd(30.0, 0.0), 1)
+    robot.live(2)
+    robot.agent.receive(SetPosEnd(30.0, 0.0), 1)
+    robot.live(2)
+    assert robot.heard(Stopped) == []
+
+
 def test_abort_stops_it_and_it_stays(robot):
     robot.agent.receive(SetPath([(0.0, 0.0), (50.0, 0.0)]), 1)
     robot.live(3)
