@@ -51,6 +51,21 @@ def check_bounds(points: Sequence[Point], site: SiteReport) -> Findings:
     )
 
 
+def check_map(placement: Placement) -> Findings:
+    """Warn where the map has no CRS: then QGIS puts layers of every CRS into one map, each by its numbers."""
+    if placement.map_crs.isValid():
+        return Findings()
+    return Findings(
+        warnings=(
+            tr(
+                "The project has no CRS, so the map is taken to be in the site's, {crs}; a layer in another "
+                "CRS lies at a wrong place on it. Choose the project's CRS at the bottom right in QGIS.",
+                crs=placement.site_crs.authid(),
+            ),
+        )
+    )
+
+
 class LayerCheck(QObject):
     """Checks drafts against the project's layers that carry the roles of obstacles, keepouts and surfaces.
 

@@ -21,12 +21,12 @@ from ..wire.mailbox import News
 from ..wire.outbox import Order
 from ..wire.status import LinkStatus, Phase
 from .beat import PULL_EVERY_MS, Beat
-from .checks import LayerCheck, check_bounds
+from .checks import LayerCheck, check_bounds, check_map
 from .command_book import CommandBook
 from .drafting.draft_checker import DraftChecker
 from .drafting.slices import Steps
 from .drafting.target_check import TargetCheck
-from .drafts import Draft, DraftBoard, Findings, Point, in_brief
+from .drafts import Draft, DraftBoard, Point, in_brief
 from .observation_book import ObservationBook
 from .orders import Orders
 from .picture import RobotPicture
@@ -237,9 +237,9 @@ class Desk(QObject):
         """
         if self.site is None:
             raise PlacementError(tr("The site is not known yet. Connect to a gateway first."))
-        crs = self.canvas.mapSettings().destinationCrs()
-        if self._placement is None or self._placement.map_crs != crs:
-            self._placement = Placement(self.site, crs, self.project.transformContext())
+        way = self.canvas.mapSettings().destinationCrs(), self.project.transformContext()
+        if self._placement is None or not self._placement.leads_to(*way):
+            self._placement = Placement(self.site, *way)
         return self._placement
 
     def put_draft(self, draft: Draft) -> None:
@@ -254,8 +254,9 @@ class Desk(QObject):
 
         An override holds for what was found when it was given: it is gone when something else is found.
         """
-        found = check_bounds(draft.points, self.site) if self.site is not None else Findings()
-        found += yield from self._check_layers.look(draft, self.placement(), afresh)
+        placement = self.placement()
+        found = check_bounds(draft.points, self.site) + check_map(placement)
+        found += yield from self._check_layers.look(draft, placement, afresh)
         # At the end, so that nobody is sent there meanwhile.
         found += self._check_targets.look(draft)
         override = draft.override if found.overridable == draft.findings.overridable else None

@@ -45,8 +45,13 @@ class Placement:
                 )
             )
         self.map_crs = map_crs
+        self._context = context
         self.frame = SiteFrame(site.crs, site.origin, site.rotation)
         self._forward = QgsCoordinateTransform(self.site_crs, map_crs, context)
+
+    def leads_to(self, crs: QgsCoordinateReferenceSystem, context: QgsCoordinateTransformContext) -> bool:
+        """Tell whether this is the way to ``crs`` by the operations that ``context`` prefers."""
+        return self.map_crs == crs and self._context == context
 
     def to_map(self, xy: Points) -> Points:
         """Return (n, 2) metres in the site frame as (n, 2) coordinates of the map's CRS.

@@ -66,14 +66,16 @@ class LiveView(QObject):
         desk.commands_changed.connect(self._frame.start)
         desk.drafts.changed.connect(self._frame.start)
         desk.drafts.pointed.connect(self._frame.start)
-        desk.canvas.destinationCrsChanged.connect(self._crs_changed)
+        desk.canvas.destinationCrsChanged.connect(self._way_changed)
+        desk.project.transformContextChanged.connect(self._way_changed)
         desk.canvas.extentsChanged.connect(self._frame.start)
         self.layer.robots_selected.connect(self._selected_in_layer)
 
     def remove(self) -> None:
         """Take the overlay and the card off the canvas and the layer out of the project."""
         self._frame.stop()
-        self._desk.canvas.destinationCrsChanged.disconnect(self._crs_changed)
+        self._desk.canvas.destinationCrsChanged.disconnect(self._way_changed)
+        self._desk.project.transformContextChanged.disconnect(self._way_changed)
         self._desk.canvas.extentsChanged.disconnect(self._frame.start)
         self._hovering.remove()
         self.layer.remove()
@@ -153,7 +155,8 @@ class LiveView(QObject):
         self._placement = None
         self.show_now()
 
-    def _crs_changed(self) -> None:
+    def _way_changed(self) -> None:
+        """Place everything anew: the map has another CRS, or coordinates come to it by other operations."""
         self._placement = None
         self._frame.start()
 

@@ -47,10 +47,12 @@ class QueueMarks(QgsMapCanvasItem):
         desk.selection_changed.connect(self._place)
         desk.site_changed.connect(self._place)
         desk.canvas.destinationCrsChanged.connect(self._place)
+        desk.project.transformContextChanged.connect(self._place)
 
     def remove(self) -> None:
         """Take it off the canvas."""
         self._desk.canvas.destinationCrsChanged.disconnect(self._place)
+        self._desk.project.transformContextChanged.disconnect(self._place)
         if not sip.isdeleted(self._desk.canvas):
             self._desk.canvas.scene().removeItem(self)
 

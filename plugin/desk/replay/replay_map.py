@@ -123,7 +123,7 @@ class ReplayMap(QgsMapCanvas):
         self.overlay.show_scene(None)
 
     def _place(self) -> Placement:
-        crs = self.mapSettings().destinationCrs()
-        if self._placement is None or self._placement.map_crs != crs:
-            self._placement = Placement(self._site, crs, QgsProject.instance().transformContext())
+        way = self.mapSettings().destinationCrs(), QgsProject.instance().transformContext()
+        if self._placement is None or not self._placement.leads_to(*way):
+            self._placement = Placement(self._site, *way)
         return self._placement
