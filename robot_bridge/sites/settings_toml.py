@@ -26,11 +26,6 @@ def toml_value(value: Any) -> str:
     return repr(value)
 
 
-def toml_text(tables: Mapping[str, Mapping[str, Any]]) -> str:
-    """Return ``tables`` (name → key → value) as TOML."""
-    return changed_text("", tables)
-
-
 def changed_text(text: str, tables: Mapping[str, Mapping[str, Any]]) -> str:
     """Return ``text`` with the keys of ``tables`` set; comments, other keys and other tables stay."""
     lines = text.splitlines()

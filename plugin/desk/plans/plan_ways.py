@@ -63,11 +63,6 @@ class PlanWays:
 
         self._roads, self._keepouts = sources(ROAD_CENTRELINE), sources(KEEPOUT)
 
-    @property
-    def has_roads(self) -> bool:
-        """Whether the project has roads to plan along."""
-        return bool(self._roads)
-
     def travel_of(self, job: Job, goes_on: Callable[[], bool]) -> Travel:
         """Return the ways between the places of ``job``, clear of its cones and of what stands.
 
