@@ -24,6 +24,7 @@ from .beat import PULL_EVERY_MS, Beat
 from .checks import LayerCheck, check_bounds, check_map
 from .command_book import CommandBook
 from .drafting.draft_checker import DraftChecker
+from .drafting.order_check import check_orders
 from .drafting.slices import Steps
 from .drafting.target_check import TargetCheck
 from .drafts import Draft, DraftBoard, Point, in_brief
@@ -259,6 +260,7 @@ class Desk(QObject):
         found += yield from self._check_layers.look(draft, placement, afresh)
         # At the end, so that nobody is sent there meanwhile.
         found += self._check_targets.look(draft)
+        found += check_orders(draft, self.book.task_of(draft.robot), self.link.operator)
         override = draft.override if found.overridable == draft.findings.overridable else None
         return replace(draft, findings=found, override=override, is_checked=True)
 

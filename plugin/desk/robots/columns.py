@@ -38,7 +38,7 @@ COLUMNS = (
     Column("Task", tr("Task"), "", tr("What it is doing, or what it says")),
     Column("Speed", tr("Speed"), "0.0 m/s", tr("Its speed, as it says"), True, False),
     Column("Batt.", tr("Batt."), "100%", tr("How full its battery is"), True),
-    Column("Age", tr("Age"), "00.0 s", tr("How long ago anything was heard of it"), True),
+    Column("Age", tr("Age"), "00 min", tr("How long ago anything was heard of it"), True),
     Column("Ping", tr("Ping"), "000 ms", tr("How long its link takes there and back"), True),
     Column(
         "Off",
@@ -97,7 +97,9 @@ def number_in_words(title: str, value: float) -> str:
         return f"{value:.2f} m" if value < 10 else f"{value:.1f} m"
     if value < 99.95:
         return f"{value:.1f} s"
-    return f"{value / 60:.0f} min" if value < 3570 else f"{value / 3600:.1f} h"
+    if value < 3570:
+        return f"{value / 60:.0f} min"
+    return f"{value / 3600:.1f} h" if value < 48 * 3600 else f"{value / 86400:.1f} d"
 
 
 def state_in_words(code: int) -> str:

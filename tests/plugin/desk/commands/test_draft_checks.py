@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
+from fleet_supervisor.robot_bridge.messages import CommandState
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import QDialog, QLineEdit, QPushButton
@@ -104,6 +107,48 @@ def test_a_target_too_near_to_the_end_of_another_robots_route_is_refused(cone, g
     cone.wait(lambda: cone.window.desk.book.task_of("r2") is None)
     cone.click((70, 55.5))
     assert "Not to be sent" not in cone.told
+
+
+def asked_for_by(gateway, operator, robot="r1"):
+    report = gateway._queue(f"of-{operator}", robot, "SetPosEnd", {"x": 90.0, "y": 20.0, "cone": True})
+    gateway.commands[report.command] = replace(report, operator=operator)
+    gateway.step(report.command, CommandState.ACKNOWLEDGED, robot)
+
+
+@pytest.fixture
+def known(gateway):
+    """A gateway that tells the desk who its operator is."""
+    gateway.who = {"operator": "anna", "role": "operator"}
+
+
+def test_a_robot_that_works_for_somebody_else_is_told_before_it_is_taken_from_them(
+    known, cone, gateway, wait
+):
+    asked_for_by(gateway, "bert")
+    wait(lambda: cone.window.desk.book.task_of("r1") is not None)
+    cone.click((70, 55))
+    assert "r1 is at work for bert (cone at 90.00, 20.00): sending this takes its place." in cone.told
+    cone.key(Qt.Key.Key_Return)
+    assert cone.sent()["robot"] == "r1"
+
+
+def test_who_takes_it_meanwhile_is_told_in_place_of_sending(known, cone, gateway, wait):
+    cone.click((70, 55))
+    assert "is at work for" not in cone.told
+    asked_for_by(gateway, "bert")
+    wait(lambda: cone.window.desk.book.task_of("r1") is not None)
+    cone.key(Qt.Key.Key_Return)
+    assert cone.complained("only now this is known: r1 is at work for bert")
+    assert cone.nothing_sent()
+    cone.key(Qt.Key.Key_Return)
+    assert cone.sent()["robot"] == "r1"
+
+
+def test_ones_own_order_is_replaced_without_a_word(known, cone, gateway, wait):
+    asked_for_by(gateway, "anna")
+    wait(lambda: cone.window.desk.book.task_of("r1") is not None)
+    cone.click((70, 55))
+    assert "is at work for" not in cone.told
 
 
 def test_a_draft_is_looked_at_once_more_when_it_is_sent(cone, gateway):

@@ -283,10 +283,12 @@ def test_ten_thousand_are_sorted_and_searched(table, at_desk, gateway, make_robo
         ("Age", 100.0, "2 min"),
         ("Age", 3569.0, "59 min"),
         ("Age", 3600.0, "1.0 h"),
+        ("Age", 47.9 * 3600, "47.9 h"),
+        ("Age", 72 * 3600, "3.0 d"),
         ("Age", float("nan"), ""),
     ],
 )
-def test_a_number_is_no_longer_than_its_column_is_wide(title, value, text):
-    column = next(each for each in COLUMNS if each.title == title)
+def test_a_number_is_not_cut_off_in_its_column(table, title, value, text):
     assert number_in_words(title, value) == text
-    assert len(text) <= len(column.widest)
+    # Qt leaves three pixels free at either side.
+    assert table.fontMetrics().horizontalAdvance(text) + 6 <= table.columnWidth(TITLES.index(title))
