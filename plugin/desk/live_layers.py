@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from qgis.core import QgsLayerTreeGroup, QgsMapLayer, QgsMapLayerStyle, QgsProject
+from qgis.core import QgsLayerTreeGroup, QgsMapLayer, QgsMapLayerStyle, QgsProject, QgsVectorLayer
 from qgis.PyQt.QtCore import QObject
 from qgis.PyQt.QtXml import QDomDocument, QDomElement, QDomNode
 
@@ -70,6 +70,17 @@ class LiveLayers(QObject):
                 above: QgsLayerTreeGroup = group.parent()
                 above.removeChildNode(group)
         self._project.setDirty(was_dirty)
+
+
+def make_live(layer: QgsVectorLayer, kind: str) -> None:
+    """Make ``layer`` one that the desk alone fills with ``kind``.
+
+    It cannot be edited, as robots that somebody drew would look like those that there are, and QGIS does not
+    ask on closing whether its contents may be lost.
+    """
+    layer.setCustomProperty(MARK, kind)
+    layer.setCustomProperty("skipMemoryLayersCheck", 1)
+    layer.setReadOnly(True)
 
 
 def live_layers(project: QgsProject) -> list[QgsMapLayer]:

@@ -21,7 +21,7 @@ from qgis.PyQt.QtGui import QColor
 from ...robot_bridge.messages import SiteReport
 from ...robot_bridge.sites.frame import SiteFrame
 from ..sites.fleet_group import fleet_group, remove_if_empty
-from .live_layers import MARK, give_style
+from .live_layers import give_style, make_live
 
 Row = tuple[Sequence[tuple[float, float]], Sequence[Any]]
 """Points in the site frame, one for a point layer, and the values of the fields."""
@@ -103,8 +103,7 @@ class RowLayer:
         fields = "&".join(f"field={field}" for field in self._fields.split(","))
         layer = QgsVectorLayer(f"{self._kind}?{fields}", self._name, "memory")
         layer.setCrs(QgsCoordinateReferenceSystem(crs))
-        layer.setCustomProperty(MARK, self._mark)
-        layer.setCustomProperty("skipMemoryLayersCheck", 1)
+        make_live(layer, self._mark)
         if not give_style(self._project, layer):
             self._style(layer)
         self._project.addMapLayer(layer, False)

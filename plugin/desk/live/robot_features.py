@@ -76,8 +76,6 @@ def made_layer(crs: QgsCoordinateReferenceSystem) -> QgsVectorLayer:
     layer = QgsVectorLayer(f"Point?{fields}", NAME, "memory")
     layer.setCrs(crs)
     layer.setDisplayExpression('"robot" || \' · \' || "state"')
-    # QGIS would ask on closing whether the layer's contents may be lost; they come anew each second.
-    layer.setCustomProperty("skipMemoryLayersCheck", 1)
     layer.setRenderer(_renderer())
     for at, alias in enumerate(ALIASES):
         layer.setFieldAlias(at, alias)

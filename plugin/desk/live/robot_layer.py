@@ -18,7 +18,7 @@ from qgis.PyQt.QtCore import QObject, QTimer, pyqtSignal
 from ....robot_bridge.messages import RobotState, SiteReport
 from ....robot_bridge.sites.frame import SiteFrame
 from ...sites.fleet_group import fleet_group, remove_if_empty
-from ..live_layers import MARK, give_style
+from ..live_layers import give_style, make_live
 from ..picture import RobotPicture
 from .robot_features import AGE_AT, NAME_AT, STATE_AT, RobotFeature, features_of, geometry_at, made_layer
 
@@ -67,7 +67,7 @@ class RobotLayer(QObject):
         self._frame = frame
         was_dirty = self._project.isDirty()
         self._layer = made_layer(QgsCoordinateReferenceSystem(site.crs))
-        self._layer.setCustomProperty(MARK, KIND)
+        make_live(self._layer, KIND)
         if self._style is not None:
             self._style.writeToLayer(self._layer)
         else:

@@ -22,7 +22,7 @@ from ....robot_bridge.messages import SiteReport
 from ....robot_bridge.sites.frame import SiteFrame
 from ...language import tr
 from ...sites.fleet_group import fleet_group, remove_if_empty
-from ..live_layers import MARK, give_style
+from ..live_layers import give_style, make_live
 from .clockwork import local
 from .history import SILENT_AFTER, History
 from .replay_map import OWN_LAYER
@@ -96,8 +96,7 @@ class ReplayLayer(QObject):
         dirty = self._project.isDirty()
         layer = QgsVectorLayer(f"LineString?{FIELDS}", tr("Trajectories (replay)"), "memory")
         layer.setCrs(crs)
-        layer.setCustomProperty(MARK, OWN_LAYER)
-        layer.setCustomProperty("skipMemoryLayersCheck", 1)
+        make_live(layer, OWN_LAYER)
         if not give_style(self._project, layer):
             layer.loadNamedStyle(str(STYLE))
         self._project.addMapLayer(layer, False)

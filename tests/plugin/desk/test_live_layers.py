@@ -37,6 +37,12 @@ def test_the_file_has_no_live_layer_and_no_empty_group(saved):
     assert not [one for one in root.iter("layer-setting") if one.get("id") == live.id()]
 
 
+def test_nobody_edits_what_the_desk_fills(at_desk, wait):
+    layer = at_desk.view.layer.layer
+    assert not layer.startEditing()
+    wait(lambda: layer.featureCount() == 2, 3)
+
+
 def test_the_project_goes_on_with_its_robots_and_is_not_dirty(saved, at_desk):
     _, own, live = saved
     assert set(QgsProject.instance().mapLayers()) == {own.id(), live.id()}

@@ -93,6 +93,11 @@ def test_a_layer_that_the_user_took_out_comes_back_whole(points, project, site):
     assert points.layer.featureCount() == 2
 
 
+def test_nobody_edits_it(points, site):
+    points.show(TWO, site)
+    assert not points.layer.startEditing()
+
+
 def test_lines_are_written_as_lines(project, site):
     lines = RowLayer(project, "ways", "Ways", "LineString", "name:string", lambda layer: None)
     lines.show([(((0.0, 0.0), (10.0, 0.0)), ["way"]), (((0.0, 0.0), (0.0, 5.0), (5.0, 5.0)), ["bend"])], site)
