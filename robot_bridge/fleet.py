@@ -173,8 +173,12 @@ class Fleet:
         """Return what robots are told when the gateway begins to listen to them."""
         return Start(self._database_id)
 
-    async def receive(self, robot: str, link: str, request: Request, id: int | None) -> Outcome:
+    async def receive(
+        self, robot: str, link: str, request: Request, id: int | None, *, waited: bool = False
+    ) -> Outcome:
         """Deal with request ``id`` of a robot; its link sends what comes of it, through :meth:`finish`.
+
+        One that has ``waited`` until there was a gateway to read it tells what was, not what is.
 
         :raises NotReadyError: from a robot that never said Ready; RefusedError for what is not done, saying
             why; MessageError for what is wrong in itself.
@@ -187,12 +191,12 @@ class Fleet:
         if isinstance(request, SendGPS):
             request = self._pose_of(robot, request, now)
         if isinstance(request, SendPos):
-            if (rest := self._take_pose(robot, link, request, now)) is not None:
+            if (rest := self._take_pose(robot, link, request, now, waited=waited)) is not None:
                 await rest
             return Outcome(robot)
         # Only driving sets a robot that said Stopped in motion.
         stopped = isinstance(request, Stopped) or self.robots.get(robot).ended_in_order
-        known = self.robots.heard(robot, link, now, stopped=stopped)
+        known = self.robots.heard(robot, link, now, stopped=stopped, waited=waited)
         self._saving.touch(robot)
         answer, note = await self._deal_with(known, link, request, id)
         return Outcome(robot, OpAck(id=id, reason=note or None) if request.acknowledged else None, answer)
@@ -246,6 +250,17 @@ class Fleet:
         sent = self._undelivered(link)
         if sent:
             await self._book.delivered(sent - await self._database.run(answers.waiting, sorted(sent)))
+
+    async def take_up(self) -> int:
+        """Take note of what waits in RR from before it was read; return the id of the newest of it.
+
+        Acknowledgements among that may have been dealt with already: their commands are judged by positions
+        that come after them alone.
+        """
+        newest, acks = await self._database.read(requests.backlog)
+        for robot, id in acks:
+            self._book.await_again(robot, id)
+        return newest
 
     async def look(self, link: str) -> list[requests.RequestRow]:
         """Return the oldest requests in RR, which stay there until :meth:`finish`; note what was read."""
@@ -385,10 +400,10 @@ class Fleet:
         return await refusal(known, magic, self._clock() - known.received_at, limit, self.holds)
 
     def _take_pose(
-        self, robot: str, link: str, pose: SendPos, now: float
+        self, robot: str, link: str, pose: SendPos, now: float, *, waited: bool = False
     ) -> Coroutine[Any, Any, None] | None:
         unseen = self.robots.is_unseen(robot, now)
-        if not self.robots.observe(robot, pose, link, now):
+        if not self.robots.observe(robot, pose, link, now, waited=waited):
             return None
         if unseen:
             self._book.lose_sight(robot)

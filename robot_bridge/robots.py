@@ -12,11 +12,14 @@ from typing import TypeVar
 
 from .command_life.arrival import standing
 from .errors import NotReadyError
+from .clock_watch import ClockStep
 from .liveness import liveness
 from .messages import RobotReport, RobotState, SendPos
 from .pose_order import PoseOrder
 
 Report = TypeVar("Report")
+AWAY = (RobotState.LOST, RobotState.OFFLINE)
+"""States of robots that cannot be told anything."""
 
 
 @dataclass
@@ -51,6 +54,8 @@ class Robots:
         self._lost_after = lost_after
         self._robots: dict[str, Robot] = {}
         self.revision = 0
+        self.is_back: Callable[[str, float], None] = lambda _robot, _seconds: None
+        """Called when a robot is heard again that was lost or offline, with the seconds for which it was not."""
 
     def limit(self, stale_after: float, lost_after: float) -> None:
         """Judge liveness by other limits from now on, in seconds."""
@@ -116,22 +121,38 @@ class Robots:
         robot.magic, robot.link, robot.located = magic, link, False
         self.heard(name, link, now)
 
-    def heard(self, name: str, link: str, now: float, *, stopped: bool = False) -> Robot:
-        """Note that a message of the robot came in; ``stopped`` when it said Stopped."""
+    def heard(
+        self, name: str, link: str, now: float, *, stopped: bool = False, waited: bool = False
+    ) -> Robot:
+        """Note that a message of the robot came in; ``stopped`` when it said Stopped.
+
+        One that has ``waited`` until there was a gateway to read it does not show that the robot is there.
+        """
         robot = self.get(name)
-        robot.link, robot.received_at, robot.ended_in_order = link, now, stopped
-        robot.state = RobotState.FRESH
+        robot.link, robot.ended_in_order = link, stopped
+        if not waited:
+            if robot.state in AWAY:
+                self.is_back(name, now - robot.received_at)
+            robot.received_at = now
+        robot.state = self._judge(robot, now) if waited else RobotState.FRESH
         self._touch(robot)
         return robot
 
-    def observe(self, name: str, pose: SendPos, link: str, now: float) -> bool:
-        """Take in a pose; return false for a late one (see :mod:`.pose_order`), which moves nothing."""
+    def observe(self, name: str, pose: SendPos, link: str, now: float, *, waited: bool = False) -> bool:
+        """Take in a pose; return false for a late one (see :mod:`.pose_order`), which moves nothing.
+
+        One that has ``waited`` says where the robot was.
+        """
         robot = self.get(name)
         standing_still = robot.ended_in_order and standing(pose)
-        self.heard(name, link, now, stopped=standing_still)
+        self.heard(name, link, now, stopped=standing_still, waited=waited)
         if not robot.order.admit(pose.fix_t, pose.t, link, now):
             return False
-        robot.pose, robot.pose_at, robot.located = pose, now, True
+        robot.pose = pose
+        if waited:
+            robot.pose_at = robot.received_at
+        else:
+            robot.pose_at, robot.located = now, True
         return True
 
     def closed(self, name: str) -> None:
@@ -153,6 +174,12 @@ class Robots:
         if robot is not None and robot.command != command:
             robot.command = command
             self._touch(robot)
+
+    def clock_was_set(self, step: ClockStep) -> None:
+        """Go on counting from when robots were heard; a silent one would be fresh again, or all of them lost."""
+        for robot in self._robots.values():
+            robot.received_at = step.moved(robot.received_at)
+            robot.pose_at = None if robot.pose_at is None else step.moved(robot.pose_at)
 
     def age(self, now: float) -> None:
         """Bring the state of every robot up to ``now``; what changed gets a new revision."""

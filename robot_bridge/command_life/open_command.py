@@ -50,7 +50,8 @@ class OpenCommand:
     """A command with a step to come; ``sa_id`` is its message's row in SA, written at ``written_at``.
 
     ``handed`` is where the robot was, as far as it is known, before it can have read that. It was
-    ``out_of_sight`` where it may have driven since then without being seen.
+    ``out_of_sight`` where it may have driven since then without being seen. While its
+    ``acknowledgement_waits`` to be dealt with again the command is not judged.
     """
 
     report: CommandReport
@@ -61,6 +62,7 @@ class OpenCommand:
     written_at: float | None = None
     handed: SendPos | None = None
     out_of_sight: bool = False
+    acknowledgement_waits: bool = False
 
     @property
     def is_motion(self) -> bool:
@@ -97,8 +99,10 @@ class OpenCommand:
 
         The Abort of an emergency stop waits for its robot however long that is away.
         """
-        limit = self.report.steps[0].at + after if self.expires_at is None else self.expires_at
-        return not self.is_emergency and now >= limit
+        issued = self.report.steps[0].at
+        span = after if self.expires_at is None else self.expires_at - issued
+        # Issued so far in the future it is from before the clock was set back, and nobody knows how old it is.
+        return not self.is_emergency and abs(now - issued) >= span
 
     def step(
         self,

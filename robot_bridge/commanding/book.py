@@ -6,7 +6,7 @@ import asyncio
 import contextlib
 import dataclasses
 from collections import Counter
-from collections.abc import AsyncIterator, Awaitable, Callable, Coroutine, Iterable
+from collections.abc import AsyncIterator, Awaitable, Callable, Coroutine, Iterable, Sequence
 from typing import Any, TypeVar
 
 from sqlalchemy import Connection
@@ -179,9 +179,18 @@ class CommandBook:
             (command, deviation, pose)
             for command in mine
             if command.arrival
+            and not command.acknowledgement_waits
             and ((deviation := command.arrival.deviation(pose)) is not None or given_up_by(command, mine))
         ]
         return to_its_end(self._all_done(done)) if done else None
+
+    def await_again(self, robot: str, sa_id: int) -> None:
+        """Judge the command with this message only by positions that come after its acknowledgement.
+
+        It waits to be dealt with, if not for the first time; positions before it are older than the command.
+        """
+        for command in self._open.of(robot):
+            command.acknowledgement_waits |= command.sa_id == sa_id
 
     def lose_sight(self, robot: str) -> None:
         """Note that nobody saw for a while where a robot drove."""
@@ -288,6 +297,8 @@ class CommandBook:
             if command is None and ack.ok and ack.id is not None:
                 await self._note_late(robot, ack.id)
                 return None
+            if command is not None:
+                command.acknowledgement_waits = False
             steps = [] if command is None else self._taken(command, robot, ack)
             # One transaction: a message that is gone from SA with its step unsaved would be lost.
             await self._run(write_acknowledged, robot, ack.id, steps)
@@ -309,7 +320,7 @@ class CommandBook:
         if report is not None:
             self._changed(report)
 
-    async def _all_done(self, done: list[tuple[OpenCommand, float | None, SendPos]]) -> None:
+    async def _all_done(self, done: Sequence[tuple[OpenCommand, float | None, SendPos]]) -> None:
         for command, deviation, pose in done:
             await self._done(command, deviation, pose)
 

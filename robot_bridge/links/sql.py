@@ -32,6 +32,8 @@ class SqlLink:
         self._fleet = fleet
         self._database = database
         self._seen_version: int | None = None
+        self._waited_up_to: int | None = None
+        """the newest request from before this link read any; None until it is known."""
         self._greeted: set[str] = set()
 
     async def run(self) -> None:
@@ -47,16 +49,27 @@ class SqlLink:
                     await wakeup.wait(found=found)
                 except StoreError as error:
                     log.error("link sql: %s; trying again in %g s", error, RETRY_AFTER)
-                    self._seen_version = None
                     await asyncio.sleep(RETRY_AFTER)
         finally:
             await wakeup.close()
 
     async def poll(self) -> bool:
-        """Look once whether robots wrote or deleted something, and deal with it; tell whether they did."""
+        """Look once whether robots wrote or deleted something, and deal with it; tell whether they did.
+
+        Raises StoreError; what waits is then looked at anew.
+        """
+        try:
+            return await self._poll()
+        except StoreError:
+            self._seen_version = self._waited_up_to = None
+            raise
+
+    async def _poll(self) -> bool:
         version = await self._database.version()
         if version is not None and version == self._seen_version:
             return False
+        if self._waited_up_to is None:
+            self._waited_up_to = await self._fleet.take_up()
         found = False
         while rows := await self._fleet.look(NAME):
             found = True
@@ -93,7 +106,8 @@ class SqlLink:
         try:
             check_robot_name(row.robot)
             request = decode_request(row.op, parse_params(row.op, row.params), await self._payload(row))
-            return await self._fleet.receive(row.robot, NAME, request, row.id)
+            waited = row.id <= (self._waited_up_to or 0)
+            return await self._fleet.receive(row.robot, NAME, request, row.id, waited=waited)
         except NotReadyError:
             return self._greet(row.robot)
         except (MessageError, RefusedError, DataRefusedError) as error:

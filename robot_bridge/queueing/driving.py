@@ -34,7 +34,7 @@ from ..queues import life
 from ..queues.legs import legs, path_left, to_the_end
 from ..queues.life import Path
 from ..queues.queue import Queue, QueuedTask
-from ..robots import Robots
+from ..robots import AWAY, Robots
 from ..served_site import ServedSite
 from ..store import commands as stored_commands
 from ..store import queues
@@ -48,7 +48,6 @@ log = logging.getLogger(__name__)
 
 LOOK_INTERVAL = 1.0
 """seconds after which every queue with something to do is looked at, whether anything was heard or not."""
-AWAY = (RobotState.LOST, RobotState.OFFLINE)
 
 
 class QueueDriving:
@@ -75,9 +74,12 @@ class QueueDriving:
         self._event = asyncio.Event()
         self._sending: set[str] = set()
         self._told: dict[str, RobotState] = {}
+        self._returned: set[str] = set()
+        """robots that are back after nobody had heard them for long."""
         self.waits_for: Callable[[str, str], str | None] = lambda _robot, _task: None
         """Tells whom a robot is to let pass before it is sent a task, None for nobody."""
         book.due = self.look
+        robots.is_back = self._is_back
 
     async def run(self) -> None:
         """Keep them going until cancelled."""
@@ -183,11 +185,37 @@ class QueueDriving:
         try:
             async with self._book.holding([robot]):
                 await self._settling.settle(self._book.get(robot))
+                await self._hold_back(self._book.get(robot))
                 await self._go_on(self._book.get(robot))
         except OutdatedError:
             self.look(robot)
         except StoreError as error:
             log.error("queue of %s: %s; it is looked at again", robot, error)
+
+    def _is_back(self, robot: str, away: float) -> None:
+        queue = self._book.get(robot)
+        if away > self._longest_silence and queue.running and queue.tasks:
+            self._returned.add(robot)
+            self.look(robot)
+
+    @property
+    def _longest_silence(self) -> float:
+        return self._site.settings.commands.expire_after_s
+
+    async def _hold_back(self, queue: Queue) -> None:
+        """Pause the queue of a robot that was not heard for long, so that it does not set off by surprise.
+
+        Whether it was away itself, its link or the gateway: nobody saw what became of its surroundings.
+        """
+        robot = self._robots.get(queue.robot)
+        is_away = robot.state in AWAY and self._clock() - robot.received_at > self._longest_silence
+        if (is_away or robot.name in self._returned) and queue.running and queue.tasks:
+            reason = (
+                f"the robot was not heard for longer than {self._longest_silence:g} s, or no gateway was there "
+                "to hear it; resume when it may drive again"
+            )
+            await self._book.save(queue, queue.paused(reason, life.GATEWAY, self._clock()))
+        self._returned.discard(robot.name)
 
     def _is_beside(self, queue: Queue, report: CommandReport) -> bool:
         return queue.running and report.op != SetPosIni.__name__ and report.command not in self._sending
@@ -200,7 +228,6 @@ class QueueDriving:
         if head is None or not queue.running or (head.is_current and head.command is not None):
             return
         if self._robots.get(queue.robot).state in AWAY:
-            await self._wait_for_robot(queue)
             return
         if (why := await self._why_not_yet(queue.robot, head)) is not None:
             if head.reason != why:
@@ -226,13 +253,6 @@ class QueueDriving:
             return "waits for the robot to say where it is"
         # What was begun is not given up because of what another robot does.
         return None if head.is_current else await self._precedence.waits_for(robot, head.task)
-
-    async def _wait_for_robot(self, queue: Queue) -> None:
-        away = self._clock() - self._robots.get(queue.robot).received_at
-        limit = self._site.settings.commands.expire_after_s
-        if away > limit:
-            reason = f"the robot has been away for longer than {limit:g} s; resume when it may drive again"
-            await self._book.save(queue, life.held(queue, reason, self._clock()))
 
     async def _message(self, queue: Queue, head: QueuedTask) -> SetPath | SetPosEnd:
         message = legs(head.task, self._site.settings.cones.offset)[head.leg]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
@@ -30,6 +31,25 @@ class RequestRow(NamedTuple):
 def read(connection: Connection) -> list[RequestRow]:
     """Return the oldest requests, :data:`AT_ONCE` at most."""
     return [RequestRow(*row) for row in connection.execute(_READ)]
+
+
+def backlog(connection: Connection) -> tuple[int, list[tuple[str, int]]]:
+    """Return the id of the newest request, 0 without one, and which messages are acknowledged by which robot.
+
+    Of acknowledgements those that cannot be understood are left out.
+    """
+    newest = connection.scalar(select(func.max(rr.c.id))) or 0
+    waiting = connection.execute(select(*_ROW).where(rr.c.op == "OpAck", rr.c.id <= newest))
+    acks = [(robot, id) for _, robot, _, params in waiting if (id := _acknowledged(params)) is not None]
+    return newest, acks
+
+
+def _acknowledged(params: str | None) -> int | None:
+    try:
+        id = json.loads(params or "{}").get("id")
+    except (ValueError, AttributeError):
+        return None
+    return id if isinstance(id, int) else None
 
 
 def payload(connection: Connection, id: int, check_size: Callable[[int], None]) -> bytes | None:

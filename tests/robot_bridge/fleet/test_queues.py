@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 
+import pytest
 from queue_line import PLACES, task
 
 from robot_bridge.messages import (
@@ -184,17 +185,78 @@ async def test_a_path_waits_until_its_robot_has_said_where_it_is(line):
     assert (await line.seen()).tasks[0].reason is None
 
 
+UNHEARD = "not heard for longer than 300 s, or no gateway was there to hear it"
+
+
+async def is_held(line):
+    report = await line.seen()
+    return report.state.value == "paused" and UNHEARD in report.reason
+
+
 async def test_a_robot_that_was_away_for_long_is_not_sent_off_by_surprise(line):
     await line.set(task("a"), task("b"))
-    await line.yard.take()
-    await line.yard.at(*PLACES["a"])
+    await line.reach(*PLACES["a"])
+    await line.set(task("b", after=["task-000x"]))
     line.yard.now += 400
     line.yard.fleet.age()
     await line.go()
+    assert await is_held(line)
+
+
+@pytest.mark.parametrize("gateway_too", [False, True])
+async def test_nor_is_one_that_comes_to_the_end_of_its_task_while_it_is_away(line, gateway_too):
+    await line.set(task("a"), task("b"))
+    await line.yard.take()
+    await line.yard.at(30.0, 40.0, v=1.0)
+    await line.yard.fleet.save()
+    line.yard.now += 400
+    if gateway_too:
+        await line.yard.restart()
+    line.yard.fleet.age()
+    await line.yard.ready()
     await line.yard.at(*PLACES["a"])
     await line.go()
+    assert await line.states() == {"a": "done", "b": "waiting"}
     assert await line.sent() == [PLACES["a"]]
-    assert "away for longer than 300 s" in (await line.seen()).reason
+    assert await is_held(line)
+    await line.resume()
+    assert await line.sent() == [PLACES["a"], PLACES["b"]]
+
+
+@pytest.mark.parametrize("away", [290.0, 310.0])
+async def test_a_queue_goes_on_by_itself_when_the_gateway_was_away_for_less_than_that(line, away):
+    await line.set(task("a"), task("b"))
+    await line.yard.take()
+    await line.yard.at(*PLACES["a"])
+    await line.yard.fleet.save()
+    line.yard.now += away
+    await line.yard.restart()
+    assert await is_held(line) is False
+    await line.go()
+    assert await is_held(line) is (away > 300)
+
+
+async def test_a_robot_that_had_nothing_to_do_while_it_was_away_may_be_given_a_queue(line):
+    line.yard.now += 400
+    line.yard.fleet.age()
+    await line.go()
+    await line.yard.at(20.0, 40.0)
+    await line.set(task("a"))
+    assert await line.sent() == [PLACES["a"]]
+
+
+async def test_a_queue_is_held_back_for_that_also_when_this_cannot_be_stored_at_first(line):
+    await line.set(task("a"), task("b"))
+    await line.yard.take()
+    line.yard.now += 400
+    line.yard.fleet.age()
+    line.yard.client.break_table("queues")
+    await line.yard.at(*PLACES["a"])
+    await line.go()
+    line.yard.client.mend_table("queues")
+    await line.go()
+    assert await is_held(line)
+    assert await line.sent() == [PLACES["a"]]
 
 
 async def test_a_task_that_nobody_fetched_in_time_waits_in_a_paused_queue(line):

@@ -172,7 +172,7 @@ async def test_what_only_sqlite_takes_for_text_is_answered_too(yard, values, rea
 async def test_what_goes_wrong_inside_is_answered_without_a_word_of_it_and_logged(yard, monkeypatch, caplog):
     await hello(yard)
 
-    async def fail(*_):
+    async def fail(*_, **_how):
         raise ZeroDivisionError("the secret is 42")
 
     monkeypatch.setattr(yard.fleet, "receive", fail)
@@ -198,7 +198,9 @@ async def test_a_value_that_the_database_refuses_is_answered_and_holds_up_nobody
     monkeypatch.setattr(
         yard.fleet,
         "receive",
-        lambda robot, link, request, id: refuse() if id == 2 else receive(robot, link, request, id),
+        lambda robot, link, request, id, **how: (
+            refuse() if id == 2 else receive(robot, link, request, id, **how)
+        ),
     )
     yard.ask("r1", Stopped())
     await asked_junk(yard, "refuses a value")
