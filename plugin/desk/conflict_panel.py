@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from qgis.PyQt.QtCore import Qt
-from qgis.PyQt.QtWidgets import QHBoxLayout, QLabel, QSizePolicy, QToolButton, QVBoxLayout, QWidget
+from qgis.PyQt.QtWidgets import QHBoxLayout, QSizePolicy, QToolButton, QVBoxLayout, QWidget
 
 from ...robot_bridge.messages import ConflictReport, HoldReport
 from ..language import tr
 from .colours import DOUBTFUL_STYLE
 from .desk import Desk
 from .road_board import time_of_day
+from .state_words import MEETINGS
+from .whole_text import WholeText
 
 SHOWN = 3
 """Conflicts that are listed; all of them are in the layer."""
@@ -25,37 +26,48 @@ class ConflictPanel(QWidget):
         self._rows = QVBoxLayout(self)
         self._rows.setContentsMargins(0, 0, 0, 0)
         self._rows.setSpacing(2)
+        self._pairs: list[tuple[str, str]] = []
+        self._rows_shown: list[QWidget] = []
+        self._labels: list[WholeText] = []
+        self._rest = _label("fleet_waiting")
+        self._rows.addWidget(self._rest)
         desk.roads.conflicts_changed.connect(self._show)
         self._show()
 
     def _show(self) -> None:
-        while self._rows.count():
-            self._rows.takeAt(0).widget().deleteLater()
         roads = self._desk.roads.conflicts
-        for conflict in roads.conflicts[:SHOWN]:
-            self._rows.addWidget(self._row(conflict))
+        shown = roads.conflicts[:SHOWN]
+        pairs = [(conflict.robot, conflict.other) for conflict in shown]
+        if pairs != self._pairs:
+            self._lay_out(pairs)
+        for label, conflict in zip(self._labels, shown, strict=True):
+            label.setText(_in_words(conflict))
         more = len(roads.conflicts) - SHOWN
-        if more > 0:
-            self._rows.addWidget(
-                _label(
-                    tr(
-                        "and {more} more: see the layer Conflicts",
-                        more=more,
-                    ),
-                    "fleet_more_conflicts",
-                )
-            )
-        for hold in roads.waiting:
-            self._rows.addWidget(_label(_waiting(hold), "fleet_waiting"))
+        told = [tr("and {more} more: see the layer Conflicts", more=more)] if more > 0 else []
+        self._rest.setText("\n".join(told + [_waiting(hold) for hold in roads.waiting]))
+        self._rest.setVisible(bool(self._rest.text()))
         self.setVisible(bool(roads.conflicts or roads.waiting))
 
-    def _row(self, conflict: ConflictReport) -> QWidget:
+    def _lay_out(self, pairs: list[tuple[str, str]]) -> None:
+        """Make a row for each pair. Rows that stay are left alone: somebody may be pressing a button."""
+        for row in self._rows_shown:
+            self._rows.removeWidget(row)
+            row.deleteLater()
+        self._pairs, self._labels = pairs, []
+        self._rows_shown = [self._row(*pair) for pair in pairs]
+        for at, row in enumerate(self._rows_shown):
+            self._rows.insertWidget(at, row)
+
+    def _row(self, one: str, another: str) -> QWidget:
         row = QWidget()
         columns = QHBoxLayout(row)
         columns.setContentsMargins(0, 0, 0, 0)
         columns.setSpacing(4)
-        columns.addWidget(_label(_in_words(conflict), "fleet_conflict"), 1)
-        for robot, other in ((conflict.robot, conflict.other), (conflict.other, conflict.robot)):
+        label = _label("fleet_conflict")
+        label.setStyleSheet(DOUBTFUL_STYLE)
+        self._labels.append(label)
+        columns.addWidget(label, 1)
+        for robot, other in ((one, another), (another, one)):
             button = QToolButton()
             button.setObjectName(f"fleet_give_way_{robot}")
             button.setText(tr("{robot} gives way", robot=robot))
@@ -75,7 +87,8 @@ class ConflictPanel(QWidget):
 
 def _in_words(conflict: ConflictReport) -> str:
     where = tr("at {x:.0f}, {y:.0f} m", x=conflict.x, y=conflict.y)
-    return f"{time_of_day(conflict.nearest_at)}  {conflict.robot} × {conflict.other}: {conflict.kind} {where}"
+    kind = MEETINGS.get(conflict.kind, conflict.kind)
+    return f"{time_of_day(conflict.nearest_at)}  {conflict.robot} × {conflict.other}: {kind} {where}"
 
 
 def _waiting(hold: HoldReport) -> str:
@@ -87,11 +100,8 @@ def _waiting(hold: HoldReport) -> str:
     )
 
 
-def _label(text: str, name: str) -> QLabel:
-    label = QLabel(text)
+def _label(name: str) -> WholeText:
+    label = WholeText()
     label.setObjectName(name)
-    label.setTextFormat(Qt.TextFormat.PlainText)
-    label.setWordWrap(True)
     label.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Preferred)
-    label.setStyleSheet(DOUBTFUL_STYLE if name == "fleet_conflict" else "")
     return label

@@ -29,6 +29,13 @@ TASK_STATES = {
     TaskState.SKIPPED: tr("skipped"),
     TaskState.REMOVED: tr("removed"),
 }
+MEETINGS = {
+    "head-on": tr("head-on"),
+    "crossing": tr("crossing"),
+    "following": tr("following"),
+    "standing": tr("standing"),
+}
+"""How two robots come into each other's way, by the kind of a ConflictReport."""
 
 
 def longest(words: dict) -> str:
