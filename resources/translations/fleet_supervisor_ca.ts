@@ -947,7 +947,7 @@
         <message>
             <location filename="../../plugin/desk/checks.py" />
             <source>The project has no CRS, so the map is taken to be in the site's, {crs}; a layer in another CRS lies at a wrong place on it. Choose the project's CRS at the bottom right in QGIS.</source>
-            <translation type="unfinished" />
+            <translation>El projecte no té SRC, de manera que es considera que el mapa és en el del recinte, {crs}; una capa en un altre SRC hi surt en un lloc equivocat. Trieu el SRC del projecte a baix a la dreta del QGIS.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/checks.py" />
@@ -1516,7 +1516,7 @@
         <message>
             <location filename="../../plugin/desk/desk.py" />
             <source>{words} was not sent: another site is served now. Draw it anew.</source>
-            <translation type="unfinished" />
+            <translation>{words}: no s'ha enviat, perquè ara se serveix un altre recinte. Torneu-ho a dibuixar.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/dock.py" />
@@ -1672,6 +1672,11 @@
             <location filename="../../plugin/desk/drafting/obstacle_check.py" />
             <source>{spot} {where} {name}. Choose a place or way beside it.</source>
             <translation>{spot} {where} {name}. Trieu un lloc o recorregut al costat.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/order_check.py" />
+            <source>{robot} is at work for {operator} ({task}): sending this takes its place.</source>
+            <translation>{robot} treballa per a {operator} ({task}): si s'envia, ho substitueix.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/drafting/place_text.py" />
@@ -3998,6 +4003,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/state_words.py" />
+            <source>crossing</source>
+            <translation>encreuament</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/state_words.py" />
             <source>delivered</source>
             <translation>lliurada</translation>
         </message>
@@ -4013,8 +4023,18 @@
         </message>
         <message>
             <location filename="../../plugin/desk/state_words.py" />
+            <source>following</source>
+            <translation>seguiment</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/state_words.py" />
             <source>fresh</source>
             <translation>actual</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/state_words.py" />
+            <source>head-on</source>
+            <translation>de cara</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/state_words.py" />
@@ -4045,6 +4065,11 @@
             <location filename="../../plugin/desk/state_words.py" />
             <source>stale</source>
             <translation>desactualitzat</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/state_words.py" />
+            <source>standing</source>
+            <translation>aturat</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/state_words.py" />
@@ -8095,7 +8120,7 @@
         <message>
             <location filename="../../plugin/wire/client.py" />
             <source>This computer slept, or did nothing, for {seconds:.0f} s: what waits for it is old. The link is opened anew.</source>
-            <translation type="unfinished" />
+            <translation>Aquest ordinador ha dormit, o no ha fet res, durant {seconds:.0f} s: el que l'espera és antic. La connexió es torna a obrir.</translation>
         </message>
         <message>
             <location filename="../../plugin/wire/client.py" />

@@ -947,7 +947,7 @@
         <message>
             <location filename="../../plugin/desk/checks.py" />
             <source>The project has no CRS, so the map is taken to be in the site's, {crs}; a layer in another CRS lies at a wrong place on it. Choose the project's CRS at the bottom right in QGIS.</source>
-            <translation type="unfinished" />
+            <translation>El proyecto no tiene SRC, así que se considera que el mapa está en el del recinto, {crs}; una capa en otro SRC aparece en un lugar equivocado. Elija el SRC del proyecto abajo a la derecha en QGIS.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/checks.py" />
@@ -1516,7 +1516,7 @@
         <message>
             <location filename="../../plugin/desk/desk.py" />
             <source>{words} was not sent: another site is served now. Draw it anew.</source>
-            <translation type="unfinished" />
+            <translation>{words}: no se envió, porque ahora se sirve otro recinto. Dibújelo de nuevo.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/dock.py" />
@@ -1672,6 +1672,11 @@
             <location filename="../../plugin/desk/drafting/obstacle_check.py" />
             <source>{spot} {where} {name}. Choose a place or way beside it.</source>
             <translation>{spot} {where} {name}. Elija un lugar o recorrido al lado.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/order_check.py" />
+            <source>{robot} is at work for {operator} ({task}): sending this takes its place.</source>
+            <translation>{robot} trabaja para {operator} ({task}): al enviarlo lo sustituye.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/drafting/place_text.py" />
@@ -3998,6 +4003,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/state_words.py" />
+            <source>crossing</source>
+            <translation>cruce</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/state_words.py" />
             <source>delivered</source>
             <translation>entregada</translation>
         </message>
@@ -4013,8 +4023,18 @@
         </message>
         <message>
             <location filename="../../plugin/desk/state_words.py" />
+            <source>following</source>
+            <translation>seguimiento</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/state_words.py" />
             <source>fresh</source>
             <translation>actual</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/state_words.py" />
+            <source>head-on</source>
+            <translation>de frente</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/state_words.py" />
@@ -4045,6 +4065,11 @@
             <location filename="../../plugin/desk/state_words.py" />
             <source>stale</source>
             <translation>desactualizado</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/state_words.py" />
+            <source>standing</source>
+            <translation>parado</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/state_words.py" />
@@ -8095,7 +8120,7 @@
         <message>
             <location filename="../../plugin/wire/client.py" />
             <source>This computer slept, or did nothing, for {seconds:.0f} s: what waits for it is old. The link is opened anew.</source>
-            <translation type="unfinished" />
+            <translation>Este ordenador durmió, o no hizo nada, durante {seconds:.0f} s: lo que le espera es antiguo. La conexión se abre de nuevo.</translation>
         </message>
         <message>
             <location filename="../../plugin/wire/client.py" />

@@ -945,7 +945,7 @@
         <message>
             <location filename="../../plugin/desk/checks.py" />
             <source>The project has no CRS, so the map is taken to be in the site's, {crs}; a layer in another CRS lies at a wrong place on it. Choose the project's CRS at the bottom right in QGIS.</source>
-            <translation type="unfinished" />
+            <translation>A projektnek nincs vetülete, ezért a térkép a telephelyében, {crs} vetületben értendő; más vetületű réteg rossz helyen látszik rajta. Válassza ki a projekt vetületét a QGIS jobb alsó sarkában.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/checks.py" />
@@ -1514,7 +1514,7 @@
         <message>
             <location filename="../../plugin/desk/desk.py" />
             <source>{words} was not sent: another site is served now. Draw it anew.</source>
-            <translation type="unfinished" />
+            <translation>{words}: nem lett elküldve, mert már másik telephely van szolgáltatva. Rajzolja meg újra.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/dock.py" />
@@ -1670,6 +1670,11 @@
             <location filename="../../plugin/desk/drafting/obstacle_check.py" />
             <source>{spot} {where} {name}. Choose a place or way beside it.</source>
             <translation>{spot} {where} {name}. Válasszon helyet vagy utat mellette.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/order_check.py" />
+            <source>{robot} is at work for {operator} ({task}): sending this takes its place.</source>
+            <translation>{robot} éppen {operator} megbízásán dolgozik ({task}): az elküldés ennek a helyébe lép.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/drafting/place_text.py" />
@@ -3994,6 +3999,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/state_words.py" />
+            <source>crossing</source>
+            <translation>keresztezés</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/state_words.py" />
             <source>delivered</source>
             <translation>kézbesítve</translation>
         </message>
@@ -4009,8 +4019,18 @@
         </message>
         <message>
             <location filename="../../plugin/desk/state_words.py" />
+            <source>following</source>
+            <translation>követés</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/state_words.py" />
             <source>fresh</source>
             <translation>friss</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/state_words.py" />
+            <source>head-on</source>
+            <translation>szemből</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/state_words.py" />
@@ -4041,6 +4061,11 @@
             <location filename="../../plugin/desk/state_words.py" />
             <source>stale</source>
             <translation>elavult</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/state_words.py" />
+            <source>standing</source>
+            <translation>álló robot</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/state_words.py" />
@@ -8087,7 +8112,7 @@
         <message>
             <location filename="../../plugin/wire/client.py" />
             <source>This computer slept, or did nothing, for {seconds:.0f} s: what waits for it is old. The link is opened anew.</source>
-            <translation type="unfinished" />
+            <translation>Ez a számítógép {seconds:.0f} másodpercig aludt vagy állt: ami közben várt rá, az elavult. A kapcsolat újra megnyílik.</translation>
         </message>
         <message>
             <location filename="../../plugin/wire/client.py" />
