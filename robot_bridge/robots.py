@@ -10,9 +10,9 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import TypeVar
 
+from .clock_watch import ClockStep
 from .command_life.arrival import standing
 from .errors import NotReadyError
-from .clock_watch import ClockStep
 from .liveness import liveness
 from .messages import RobotReport, RobotState, SendPos
 from .pose_order import PoseOrder
@@ -55,7 +55,7 @@ class Robots:
         self._robots: dict[str, Robot] = {}
         self.revision = 0
         self.is_back: Callable[[str, float], None] = lambda _robot, _seconds: None
-        """Called when a robot is heard again that was lost or offline, with the seconds for which it was not."""
+        """Called when a robot is heard again that was lost or offline, with how many seconds it was silent."""
 
     def limit(self, stale_after: float, lost_after: float) -> None:
         """Judge liveness by other limits from now on, in seconds."""
@@ -176,7 +176,7 @@ class Robots:
             self._touch(robot)
 
     def clock_was_set(self, step: ClockStep) -> None:
-        """Go on counting from when robots were heard; a silent one would be fresh again, or all of them lost."""
+        """Keep the times since robots were heard: silent ones would be fresh again, or all of them lost."""
         for robot in self._robots.values():
             robot.received_at = step.moved(robot.received_at)
             robot.pose_at = None if robot.pose_at is None else step.moved(robot.pose_at)

@@ -211,8 +211,8 @@ class QueueDriving:
         is_away = robot.state in AWAY and self._clock() - robot.received_at > self._longest_silence
         if (is_away or robot.name in self._returned) and queue.running and queue.tasks:
             reason = (
-                f"the robot was not heard for longer than {self._longest_silence:g} s, or no gateway was there "
-                "to hear it; resume when it may drive again"
+                f"the robot was not heard for longer than {self._longest_silence:g} s, or no gateway was "
+                "there to hear it; resume when it may drive again"
             )
             await self._book.save(queue, queue.paused(reason, life.GATEWAY, self._clock()))
         self._returned.discard(robot.name)
