@@ -1,6 +1,6 @@
 """Noticing that this computer's clock was set, while the gateway goes by it.
 
-A small computer without a battery for its clock begins with a wrong time and is corrected once it has a network.
+A small computer without a battery for its clock begins with a wrong time, set right once it has a network.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ class ClockStep(NamedTuple):
 
 
 def steady_time() -> float:
-    """Return seconds that nobody sets; they pass while the computer sleeps, too, where the system can tell."""
+    """Return seconds that nobody sets; where the system can tell they pass while it sleeps, too."""
     if hasattr(time, "CLOCK_BOOTTIME"):
         return time.clock_gettime(time.CLOCK_BOOTTIME)
     return time.monotonic()

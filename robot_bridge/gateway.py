@@ -24,6 +24,7 @@ from .access.reach import check_reach, is_loopback
 from .access.tls import ServerFiles, ServerTls
 from .access.tokens import TokenKind
 from .access.visitor import Visitor
+from .clock_watch import ClockWatch
 from .desk_server import DeskSession
 from .emergency.journal import StopJournal, journal_file
 from .errors import BridgeError, StoreError
@@ -97,6 +98,7 @@ class Gateway:
         metrics = Metrics(fleet.tally)
         fleet.database.observe = metrics.database.observe
         self._status = StatusPages(fleet, metrics)
+        self._clock_watch = ClockWatch(time.time)
         self._retention = Retention(fleet.database, lambda: fleet.site.settings, time.time)
 
     async def serve(self, host: str, port: int) -> Server:
@@ -126,6 +128,10 @@ class Gateway:
         return works
 
     async def _age(self) -> None:
+        if (step := self._clock_watch.look()) is not None:
+            way = "forward" if step.by > 0 else "back"
+            log.warning("the clock of this computer was set %s by %.0f s", way, abs(step.by))
+            self._fleet.robots.clock_was_set(step)
         self._fleet.age()
         self._robots.measure()
 

@@ -10,6 +10,7 @@ from typing import NamedTuple
 from sqlalchemy import Connection
 
 from .access import audit, session_rows
+from .clock_watch import ClockWatch, steady_time
 from .sites.settings import SiteSettings
 from .store import closures, commands, emergency_stops, observations, placements, queues, trajectories
 from .store.database import Database
@@ -22,6 +23,10 @@ IMAGES_AT_ONCE = 20
 """in one transaction; an image may be 15 MiB."""
 PAUSE = 0.05
 """seconds between two deletions, in which robots and operators have the database."""
+LARGEST_STEP = 3600.0
+DOUBT = DAY
+"""seconds without deletions after the clock was set forward by more than :data:`LARGEST_STEP`: were it wrong,
+everything would be too old at once, and nothing brings back what is deleted."""
 
 
 class Kept(NamedTuple):
@@ -48,20 +53,43 @@ def kept(settings: SiteSettings) -> Iterator[Kept]:
 
 
 class Retention:
-    """Deletes what is too old; ``settings`` is asked each time, so they may change."""
+    """Deletes what is too old; ``settings`` is asked each time, so they may change.
+
+    The ``steady`` clock is one that nobody sets.
+    """
 
     def __init__(
-        self, database: Database, settings: Callable[[], SiteSettings], clock: Callable[[], float]
+        self,
+        database: Database,
+        settings: Callable[[], SiteSettings],
+        clock: Callable[[], float],
+        steady: Callable[[], float] = steady_time,
     ) -> None:
         self._database = database
         self._settings = settings
         self._clock = clock
+        self._steady = steady
+        self._clock_watch = ClockWatch(clock, steady)
+        self._doubtful_until = steady()
 
     async def prune(self) -> None:
         """Delete what the settings do not keep any longer; raises StoreError."""
+        if not self._trusts_clock():
+            return
         for kind in kept(self._settings()):
             if removed := await self._forget(kind):
                 log.info("deleted %d %s, older than %g days", removed, kind.name, kind.days)
+
+    def _trusts_clock(self) -> bool:
+        step = self._clock_watch.look()
+        if step is not None and step.by > LARGEST_STEP:
+            self._doubtful_until = self._steady() + DOUBT
+            log.warning(
+                "the clock of this computer was set forward by %.1f days; for a day nothing is deleted for "
+                "its age. If it is wrong, set it right before then, and before the gateway is started anew",
+                step.by / DAY,
+            )
+        return self._steady() >= self._doubtful_until
 
     async def _forget(self, kind: Kept) -> int:
         before, removed = self._clock() - kind.days * DAY, 0

@@ -101,7 +101,7 @@ class OpenCommand:
         """
         issued = self.report.steps[0].at
         span = after if self.expires_at is None else self.expires_at - issued
-        # Issued so far in the future it is from before the clock was set back, and nobody knows how old it is.
+        # One from so far in the future was issued before the clock was set back, nobody knows how long ago.
         return not self.is_emergency and abs(now - issued) >= span
 
     def step(

@@ -195,6 +195,47 @@ async def test_nothing_goes_before_the_times_that_hold_without_settings(database
     assert set((await database.run(left))[commands.c.id]) == {"old-open"}
 
 
+class Clocks:
+    """The computer's clock, which is set, and one that nobody sets."""
+
+    def __init__(self):
+        self.now, self.steady = NOW, 5000.0
+
+    def pass_by(self, seconds):
+        self.now += seconds
+        self.steady += seconds
+
+
+async def test_a_clock_that_was_set_far_ahead_deletes_nothing_for_a_day(database, settings, caplog):
+    await database.run(fill)
+    clocks, count = Clocks(), await database.run(rows)
+    keeping = Retention(database, lambda: settings, lambda: clocks.now, lambda: clocks.steady)
+    clocks.now += 4000 * DAY
+    await keeping.prune()
+    clocks.pass_by(DAY - 60)
+    await keeping.prune()
+    assert await database.run(rows) == count
+    assert "set forward by 4000.0 days; for a day nothing is deleted for its age" in caplog.text
+    clocks.pass_by(120)
+    await keeping.prune()
+    assert (await database.run(left))[audit.c.who] == set()
+
+
+async def test_a_clock_that_was_set_right_again_deletes_no_more_than_before(database, settings):
+    await database.run(fill)
+    clocks = Clocks()
+    keeping = Retention(database, lambda: settings, lambda: clocks.now, lambda: clocks.steady)
+    clocks.now += 4000 * DAY
+    await keeping.prune()
+    clocks.now -= 4000 * DAY
+    clocks.pass_by(60)
+    await keeping.prune()
+    clocks.steady += DAY
+    clocks.now += DAY / 100
+    await keeping.prune()
+    assert await database.run(left) == KEPT
+
+
 def rows(connection):
     return {t.name: connection.scalar(select(func.count()).select_from(t)) for t in metadata.sorted_tables}
 
