@@ -17,6 +17,7 @@ from qgis.PyQt.QtWidgets import (
 )
 
 from ..language import tr
+from .push_button import push_button
 from .whole_text import WholeText
 
 WIDTH = 460
@@ -93,8 +94,7 @@ class QuestionDialog(QDialog):
 
 
 def _button(name: str, text: str) -> QPushButton:
-    button = QPushButton(text)
-    button.setObjectName(name)
+    button = push_button(name, text)
     # Otherwise Enter presses whichever was used last.
     button.setAutoDefault(False)
     return button

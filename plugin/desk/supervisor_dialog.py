@@ -26,6 +26,7 @@ from ..wire.status import LinkStatus, Phase
 from .column_heads import fit_heads
 from .desk import Desk
 from .inquiries import Inquiries, Take
+from .push_button import push_button
 from .role_words import role_in_words
 from .row_model import RowModel
 from .whole_text import WholeText
@@ -109,10 +110,8 @@ class SupervisorDialog(QDialog):
             self.said.setText(text)
 
     def _button(self, name: str, text: str, press: Callable[[], None], *, for_row: bool) -> None:
-        button = QPushButton(text)
-        button.setObjectName(name)
+        button = push_button(name, text, pressed=press)
         button.setAutoDefault(False)
-        button.clicked.connect(lambda _=False: press())
         self._buttons.append((button, for_row))
 
     def _lay_out(self) -> None:

@@ -16,6 +16,7 @@ from qgis.PyQt.QtWidgets import (
 )
 
 from ...language import tr
+from ..push_button import push_button
 from ..small_views import shrink
 from .alarm import Alarm
 from .alarm_model import AlarmModel
@@ -156,9 +157,7 @@ class AlarmPanel(QWidget):
 
 
 def _button(name: str, text: str, tip: str) -> QPushButton:
-    button = QPushButton(text)
-    button.setObjectName(name)
-    button.setToolTip(tip)
+    button = push_button(name, text, tip)
     button.setAutoDefault(False)
     button.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
     # Four of them have to fit into a panel of 420 pixels, in longer languages as well.

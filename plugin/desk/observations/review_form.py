@@ -12,7 +12,6 @@ from qgis.PyQt.QtWidgets import (
     QHBoxLayout,
     QLabel,
     QLineEdit,
-    QPushButton,
     QVBoxLayout,
     QWidget,
 )
@@ -20,6 +19,7 @@ from qgis.PyQt.QtWidgets import (
 from ....robot_bridge.messages import ObservationReport, ReviewObservation
 from ...language import tr
 from ..observation_book import is_pending
+from ..push_button import push_button
 from .observation_model import STATES
 
 WORDS = ("traffic cone", "barrier", "bin", "bench", "column", "vehicle", "object")
@@ -50,13 +50,13 @@ class ReviewForm(QWidget):
         self.reason.setObjectName("fleet_observation_reason")
         self.reason.setMaxLength(ReviewObservation.texts["reason"])
         self.reason.setPlaceholderText(tr("optional"))
-        self.go = _button("fleet_observation_go", tr("Sho&w"), tr("Go to it on the map"))
-        self.accept = _button(
+        self.go = push_button("fleet_observation_go", tr("Sho&w"), tr("Go to it on the map"))
+        self.accept = push_button(
             "fleet_observation_accept",
             tr("&Accept"),
             tr("It stands there: draw it on the maps that robots get from now on"),
         )
-        self.reject = _button("fleet_observation_reject", tr("Re&ject"), tr("Draw it on no map"))
+        self.reject = push_button("fleet_observation_reject", tr("Re&ject"), tr("Draw it on no map"))
         self._lay_out()
         self.go.clicked.connect(lambda: self._report and self.place_wanted.emit(self._report.observation))
         self.accept.clicked.connect(lambda: self._want(accept=True))
@@ -162,10 +162,3 @@ def _metres(name: str, largest: float) -> QDoubleSpinBox:
     box.setSuffix(" m")
     box.setSpecialValueText(tr("not known"))
     return box
-
-
-def _button(name: str, text: str, tip: str) -> QPushButton:
-    button = QPushButton(text)
-    button.setObjectName(name)
-    button.setToolTip(tip)
-    return button

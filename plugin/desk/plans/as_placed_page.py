@@ -10,7 +10,6 @@ from qgis.PyQt.QtWidgets import (
     QComboBox,
     QHBoxLayout,
     QLabel,
-    QPushButton,
     QTableWidget,
     QTableWidgetItem,
     QVBoxLayout,
@@ -23,6 +22,7 @@ from ...language import tr
 from ...settings.preferences import export_path
 from ..column_heads import fit_heads
 from ..desk import Desk
+from ..push_button import push_button
 from ..road_board import time_of_day
 from .as_placed import as_csv, chosen, tally
 from .as_placed_pdf import ReportError, open_report_dialog
@@ -69,7 +69,12 @@ class AsPlacedPage(QWidget):
         self.table.setSelectionBehavior(QAbstractItemView.SelectionBehavior.SelectRows)
         fit_heads(self.table)
         self.table.cellDoubleClicked.connect(self._go_there)
-        self.report = QPushButton(tr("Report…"))
+        self.report = push_button(
+            "fleet_placed_report",
+            tr("Report…"),
+            tr("Figures, histogram, map and table of these cones as a PDF"),
+            self._open_report,
+        )
         self.placements: list[PlacementReport] = []
         self._lay_out()
         self._fill_choices()
@@ -166,14 +171,8 @@ class AsPlacedPage(QWidget):
             (foot, tr("Save as CSV…"), "fleet_placed_save", self._save_as),
             (foot, tr("Plan collecting"), "fleet_placed_collect", self._collect),
         ):
-            button = QPushButton(text)
-            button.setObjectName(name)
-            button.clicked.connect(lambda _=False, action=action: action())
-            row.addWidget(button)
-        self.report.setObjectName("fleet_placed_report")
-        self.report.setToolTip(tr("Figures, histogram, map and table of these cones as a PDF"))
+            row.addWidget(push_button(name, text, pressed=action))
         self.report.setEnabled(False)
-        self.report.clicked.connect(self._open_report)
         foot.insertWidget(1, self.report)
         rows.addLayout(top)
         rows.addWidget(self.figures)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from qgis.PyQt.QtCore import pyqtBoundSignal, pyqtSignal
-from qgis.PyQt.QtWidgets import QCheckBox, QGridLayout, QLabel, QPushButton, QWidget
+from qgis.PyQt.QtCore import pyqtSignal
+from qgis.PyQt.QtWidgets import QCheckBox, QGridLayout, QLabel, QWidget
 
 from ...language import tr
 from ..colours import WRONG_STYLE
+from ..push_button import push_button
 from .draft_plan import DraftPlan
 from .driven_plan import DrivenPlan
 from .plan_rows import summary
@@ -27,19 +28,23 @@ class DrivingBar(QWidget):
         self._drafts, self._driven = drafts, driven
         self.text, self.trouble = _label("fleet_plan_text"), _label("fleet_plan_trouble")
         self.trouble.setStyleSheet(WRONG_STYLE)
-        self.send = _button(tr("Send…"), "fleet_plan_send", self.send_wanted)
-        self.clear = _button(tr("Clear"), "fleet_plan_clear", self.clear_wanted)
-        self.rest = QPushButton(tr("Plan what is left"))
-        self.rest.setObjectName("fleet_plan_rest")
-        self.rest.setToolTip(
+        self.send = push_button("fleet_plan_send", tr("Send…"), pressed=self.send_wanted.emit)
+        self.clear = push_button("fleet_plan_clear", tr("Clear"), pressed=self.clear_wanted.emit)
+        self.rest = push_button(
+            "fleet_plan_rest",
+            tr("Plan what is left"),
             tr(
                 "Hold the robots once they have finished what they are doing, and plan what is left; "
                 "nothing else is sent before you confirm"
-            )
+            ),
+            lambda: self.rest_wanted.emit(self.again.isChecked()),
         )
-        self.rest.clicked.connect(lambda: self.rest_wanted.emit(self.again.isChecked()))
-        self.confirm = _button(tr("Confirm new plan"), "fleet_plan_confirm", self.confirm_wanted)
-        self.discard = _button(tr("Go on as before"), "fleet_plan_discard", self.discard_wanted)
+        self.confirm = push_button(
+            "fleet_plan_confirm", tr("Confirm new plan"), pressed=self.confirm_wanted.emit
+        )
+        self.discard = push_button(
+            "fleet_plan_discard", tr("Go on as before"), pressed=self.discard_wanted.emit
+        )
         self.again = QCheckBox(tr("try failed cones again"))
         self.again.setObjectName("fleet_plan_again")
         self.by_itself = QCheckBox(tr("Send new plans without asking"))
@@ -114,10 +119,3 @@ def _label(name: str) -> QLabel:
     label.setObjectName(name)
     label.setWordWrap(True)
     return label
-
-
-def _button(text: str, name: str, wanted: pyqtBoundSignal) -> QPushButton:
-    button = QPushButton(text)
-    button.setObjectName(name)
-    button.clicked.connect(lambda _=False: wanted.emit())
-    return button

@@ -10,7 +10,6 @@ from qgis.PyQt.QtWidgets import (
     QHBoxLayout,
     QMessageBox,
     QProgressBar,
-    QPushButton,
     QSizePolicy,
     QTabWidget,
     QVBoxLayout,
@@ -23,6 +22,7 @@ from ...language import tr
 from ..desk import Desk
 from ..dock_action import ActionDock
 from ..placement_book import MOST_ASKED
+from ..push_button import push_button
 from ..safe_question import safe_question
 from ..tall_content import TallContent
 from .as_placed_page import AsPlacedPage
@@ -55,11 +55,11 @@ class PlanDock(ActionDock):
         self.tree = PlanTree()
         self.bar = DrivingBar(self.drafts, self.driven)
         self.placed = AsPlacedPage(desk)
-        self.preview = _button(tr("Preview"), "fleet_plan_preview", tr("A quick plan, to look at"))
-        self.solve = _button(
-            tr("Solve"), "fleet_plan_solve", tr("A good plan, within the time that is given")
+        self.preview = push_button("fleet_plan_preview", tr("Preview"), tr("A quick plan, to look at"))
+        self.solve = push_button(
+            "fleet_plan_solve", tr("Solve"), tr("A good plan, within the time that is given")
         )
-        self.cancel = _button(tr("Cancel"), "fleet_plan_cancel", tr("Give up what is being planned"))
+        self.cancel = push_button("fleet_plan_cancel", tr("Cancel"), tr("Give up what is being planned"))
         self.progress = QProgressBar()
         self._turn = desk.beat.turn()
         self.question: QMessageBox | None = None
@@ -248,10 +248,3 @@ class PlanDock(ActionDock):
         self.visibilityChanged.connect(self._shown)
         desk.site_changed.connect(self._site_changed)
         desk.project.readProject.connect(self._read_settings)
-
-
-def _button(text: str, name: str, tip: str) -> QPushButton:
-    button = QPushButton(text)
-    button.setObjectName(name)
-    button.setToolTip(tip)
-    return button

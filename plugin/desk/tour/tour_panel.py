@@ -9,6 +9,7 @@ from qgis.PyQt.QtGui import QKeySequence, QMouseEvent
 from qgis.PyQt.QtWidgets import QFrame, QHBoxLayout, QLabel, QPushButton, QShortcut, QVBoxLayout, QWidget
 
 from ...language import tr
+from ..push_button import push_button
 from .steps import STEPS, Step
 
 WIDTH = 400
@@ -146,8 +147,6 @@ def _label(name: str) -> QLabel:
 
 
 def _button(name: str, text: str, pressed: Callable[[], object]) -> QPushButton:
-    button = QPushButton(text)
-    button.setObjectName(name)
+    button = push_button(name, text, pressed=pressed)
     button.setAutoDefault(True)
-    button.clicked.connect(lambda: pressed())
     return button
