@@ -8,7 +8,6 @@ import numpy as np
 
 from ....robot_bridge.messages import CommandReport, CommandState, SetPath, SetPosEnd
 from ...language import tr
-from ...wire.sightings import STATES
 from ..state_words import COMMAND_STATES, ROBOT_STATES, longest
 
 
@@ -100,8 +99,3 @@ def number_in_words(title: str, value: float) -> str:
     if value < 3570:
         return f"{value / 60:.0f} min"
     return f"{value / 3600:.1f} h" if value < 48 * 3600 else f"{value / 86400:.1f} d"
-
-
-def state_in_words(code: int) -> str:
-    """Return a state by its number."""
-    return ROBOT_STATES[STATES[code]]

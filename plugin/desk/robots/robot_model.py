@@ -18,7 +18,7 @@ from ..command_book import CommandBook, in_words
 from ..glyphs import state_icon
 from ..item_values import TO_THE_RIGHT
 from ..picture import RobotPicture
-from ..state_words import COMMAND_STATES
+from ..state_words import COMMAND_STATES, ROBOT_STATES
 from .columns import COLUMNS, POSITION, TITLES, number_in_words, short_link
 from .fleet_rows import FleetRows, Rows, Which, fleet_rows
 
@@ -142,7 +142,7 @@ class RobotModel(QAbstractTableModel):
         if title == "Robot":
             return fleet.names[row]
         if title == "State":
-            return self._state(row).value
+            return ROBOT_STATES[self._state(row)]
         if title == "Task":
             return fleet.task(row)
         if title == "Link":
@@ -155,7 +155,7 @@ class RobotModel(QAbstractTableModel):
     def _tip(self, row: int) -> str:
         fleet, told = self._fleet, self._fleet.told(row)
         name, age = fleet.names[row], fleet.numbers["Age"][row]
-        state, link = self._state(row).value, told.get("link")
+        state, link = ROBOT_STATES[self._state(row)], told.get("link")
         heard = tr("{state}, last heard {age:.1f} s ago over {link}", state=state, age=age, link=link)
         lines = [f"{name}: {heard}"]
         ping = fleet.numbers["Ping"][row]

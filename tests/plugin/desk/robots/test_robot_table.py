@@ -6,6 +6,7 @@ from fleet_supervisor.plugin.desk.robots.columns import COLUMNS, TITLES, number_
 from fleet_supervisor.plugin.desk.robots.deviations import beside
 from fleet_supervisor.plugin.desk.robots.fleet_rows import Which
 from fleet_supervisor.plugin.desk.robots.robot_panel import WHICH
+from fleet_supervisor.plugin.desk.state_words import ROBOT_STATES
 from fleet_supervisor.robot_bridge.messages import CommandState, RobotState
 from qgis.core import (
     QgsCoordinateReferenceSystem,
@@ -254,6 +255,13 @@ def test_the_first_columns_fit_into_the_panel(table, at_desk):
     shown = [c for c in range(len(COLUMNS)) if not table.isColumnHidden(c)]
     assert sum(table.columnWidth(c) for c in shown) <= table.viewport().width()
     assert not table.horizontalScrollBar().isVisible()
+
+
+def test_states_stand_in_the_operators_words(table, monkeypatch):
+    monkeypatch.setitem(ROBOT_STATES, RobotState.LOST, "elveszett")
+    row = column(table, "State").index("elveszett")
+    tip = table.model().index(row, 0).data(Qt.ItemDataRole.ToolTipRole)
+    assert tip.startswith("a9: elveszett, last heard")
 
 
 # --- many ---
