@@ -55,7 +55,7 @@ class Robots:
         self._robots: dict[str, Robot] = {}
         self.revision = 0
         self.is_back: Callable[[str, float], None] = lambda _robot, _seconds: None
-        """Called when a robot is heard again that was lost or offline, with how many seconds it was silent."""
+        """Called when a robot is heard again that was lost or offline, with how many seconds it was not."""
 
     def limit(self, stale_after: float, lost_after: float) -> None:
         """Judge liveness by other limits from now on, in seconds."""

@@ -14,7 +14,7 @@ from .roads.surfaces.surface import Surface
 from .robotmap.binary import encode
 from .robotmap.errors import RobotMapError
 from .sites.any_crs import AnyCrs
-from .sites.earth import Earth
+from .sites.earth import Earth, is_near
 from .sites.errors import CrsError
 from .sites.settings import SiteSettings
 from .sites.site import Site
@@ -120,10 +120,21 @@ class SiteMaps:
     ) -> tuple[tuple[float, float], float | None]:
         """Return (x, y) in metres and theta in radians, site frame, of a GPS position in degrees.
 
-        ``heading`` is clockwise from true north. Raises RefusedError where the site's CRS has no such place.
+        ``heading`` is clockwise from true north. Raises RefusedError where the site's CRS has no such place,
+        and where the two numbers look swapped.
         """
         try:
-            theta = None if heading is None else self._earth.theta(lat, lon, heading)
-            return self._earth.place(lat, lon), theta
+            place = self._earth.place(lat, lon)
+            if not is_near(place, self._site.bounds):
+                self._check_order(lat, lon)
+            return place, None if heading is None else self._earth.theta(lat, lon, heading)
         except CrsError as error:
+            self._check_order(lat, lon)
             raise RefusedError(f"SendGPS: {error}") from error
+
+    def _check_order(self, lat: float, lon: float) -> None:
+        if self._earth.looks_swapped(lat, lon, self._site.bounds):
+            raise RefusedError(
+                f"SendGPS: lat {lat:.6f}, lon {lon:.6f} is far from site {self._site.id}, and the other way "
+                "round it lies there: latitude and longitude look swapped; correct it in the robot's program"
+            )

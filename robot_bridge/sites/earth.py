@@ -9,9 +9,21 @@ from typing import Any
 from .errors import CrsError
 from .frame import SiteFrame
 from .projections import crs_of, projections
+from .settings import Bounds
 
 _STEP = 10.0
 """metres ahead at which it is looked where a heading leads; short against the curvature of any projection."""
+
+
+NEAR = 10_000.0
+"""metres beside a site within which its robots may come from; swapped coordinates lie much farther off."""
+
+
+def is_near(place: tuple[float, float], bounds: Bounds) -> bool:
+    """Tell whether (x, y), metres in the site frame, is on the site or beside it."""
+    x, y = place
+    beside = bounds.x_min - x, x - bounds.x_max, bounds.y_min - y, y - bounds.y_max
+    return max(beside) <= NEAR
 
 
 class Earth:
@@ -33,6 +45,13 @@ class Earth:
             )
         ((x, y),) = self._frame.to_site([(easting, northing)]).tolist()
         return x, y
+
+    def looks_swapped(self, lat: float, lon: float, bounds: Bounds) -> bool:
+        """Tell whether a position lies near a site's ``bounds`` with latitude and longitude swapped."""
+        try:
+            return abs(lon) <= 90 and is_near(self.place(lon, lat), bounds)
+        except CrsError:
+            return False
 
     def theta(self, lat: float, lon: float, heading: float) -> float:
         """Return a heading, degrees clockwise from true north at that place, as a site theta in (-π, π].

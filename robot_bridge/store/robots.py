@@ -44,3 +44,8 @@ def load(connection: Connection) -> list[Robot]:
         )
         for row in connection.execute(select(robots)).mappings()
     ]
+
+
+def names(connection: Connection) -> list[str]:
+    """Return the names of the robots that an earlier gateway knew, sorted."""
+    return sorted(connection.scalars(select(robots.c.name)))

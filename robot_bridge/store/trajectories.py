@@ -76,6 +76,16 @@ def read(connection: Connection, wanted: Wanted, limit: int, after: Mark | None 
     return [Place(*row) for row in connection.execute(query.order_by(at, id).limit(limit))]
 
 
+def never_seen(connection: Connection, robots: Sequence[str]) -> list[str]:
+    """Return those of ``robots`` of which no position is stored."""
+    column = trajectories.c.robot
+    return [
+        robot
+        for robot in robots
+        if connection.scalar(select(trajectories.c.id).where(column == robot).limit(1)) is None
+    ]
+
+
 def forget(connection: Connection, before: float, limit: int) -> int:
     """Delete at most ``limit`` positions from before a time; return how many."""
     return len(delete_oldest(connection, trajectories.c.id, trajectories.c.received_at, before, limit))

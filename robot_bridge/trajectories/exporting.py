@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import asyncio
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
 
 from ..errors import BridgeError
 from ..sites.frame import SiteFrame
+from ..store import robots as stored_robots
 from ..store import trajectories
 from ..store.database import Database
 from ..store.trajectories import Mark, Wanted
@@ -15,6 +17,8 @@ from .geopackage import TrajectoryFile
 
 PAGE = 20_000
 """positions read and written at once."""
+NAMED = 10
+"""robots that are named where another one is not known; the others are counted."""
 
 
 async def export(
@@ -22,8 +26,10 @@ async def export(
 ) -> TrajectoryFile:
     """Write what is ``wanted`` into the new GeoPackage ``file``; return what was written.
 
-    :raises BridgeError: when the file cannot be written; StoreError for the database.
+    :raises BridgeError: for a robot of which nothing is stored, and when the file cannot be written;
+        StoreError for the database.
     """
+    await _check_robots(database, wanted.robots)
     try:
         # A folder beside the file, so that the finished one is put into its place at once.
         with tempfile.TemporaryDirectory(prefix=".exporting-", dir=file.parent) as folder:
@@ -34,6 +40,17 @@ async def export(
     except OSError as error:
         raise BridgeError(f"{file} cannot be written: {error.strerror or error}; check its folder") from error
     return written
+
+
+async def _check_robots(database: Database, robots: Sequence[str]) -> None:
+    unknown = await database.run(trajectories.never_seen, robots)
+    if unknown:
+        known = await database.run(stored_robots.names)
+        told = ", ".join(known[:NAMED]) + (f" and {len(known) - NAMED} more" if len(known) > NAMED else "")
+        raise BridgeError(
+            f"no position of robot {unknown[0]!r} is stored in this database; robots that are known in it: "
+            f"{told or 'none'}. Nothing was written"
+        )
 
 
 async def _copy(database: Database, wanted: Wanted, written: TrajectoryFile) -> None:

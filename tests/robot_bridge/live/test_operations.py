@@ -68,6 +68,14 @@ def test_a_gps_position_that_has_no_place_on_the_site_frame_is_refused(robot):
         robot.ask("SendGPS", {"lat": 0, "lon": 105})
 
 
+def test_a_gps_position_with_latitude_and_longitude_swapped_is_refused_and_named_so(robot, desk):
+    lon, lat = earth(desk, 61.0, 42.0)
+    with pytest.raises(RefusedError, match="latitude and longitude look swapped"):
+        robot.ask("SendGPS", {"lat": lon, "lon": lat})
+    robot.tell("SendGPS", {"lat": lat, "lon": lon})
+    assert seen(desk, robot, theta_from="last")["x"] == pytest.approx(61.0, abs=0.002)
+
+
 # --- SetPosIni, GetPosIni, GetPosEnd ----------------------------------------------------------------------
 
 

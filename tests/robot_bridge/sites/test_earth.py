@@ -9,10 +9,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robot_bridge.sites.earth import Earth
+from robot_bridge.sites.earth import Earth, is_near
 from robot_bridge.sites.errors import CrsError
 from robot_bridge.sites.frame import SiteFrame
 from robot_bridge.sites.map_frame import lonlat_of
+from robot_bridge.sites.settings import Bounds
 
 metres = st.floats(-5_000, 5_000)
 angles = st.floats(-math.pi, math.pi)
@@ -72,3 +73,39 @@ def test_a_crs_of_nowhere_is_named():
     local = 'LOCAL_CS["hall",UNIT["metre",1],AXIS["x",EAST],AXIS["y",NORTH]]'
     with pytest.raises(CrsError, match=r"has no known place on the earth"):
         Earth(SiteFrame(local, (0.0, 0.0))).place(50.0, 15.0)
+
+
+BOUNDS = Bounds(0.0, 0.0, 100.0, 80.0)
+
+
+@pytest.mark.parametrize("crs", PLACES)
+@pytest.mark.parametrize(("x", "y"), [(50.0, 50.0), (-2_000.0, 50.0), (50.0, 9_000.0)])
+def test_swapped_coordinates_are_seen_on_and_beside_the_site(crs, x, y):
+    earth = Earth(SiteFrame(crs, PLACES[crs]))
+    ((lon, lat),) = lonlat_of(SiteFrame(crs, PLACES[crs]))([(x, y)]).tolist()
+    assert earth.looks_swapped(lon, lat, BOUNDS)
+    assert not earth.looks_swapped(lat, lon, BOUNDS)
+
+
+@pytest.mark.parametrize(
+    ("lat", "lon"), [(48.1, 11.6), (0.0, 0.0), (-33.4, -70.6), (10.0, 120.0), (89.0, -170.0)]
+)
+def test_what_lies_nowhere_near_the_site_either_way_round_is_not_taken_for_swapped(lat, lon):
+    earth = Earth(SiteFrame("EPSG:32633", PLACES["EPSG:32633"]))
+    assert not earth.looks_swapped(lat, lon, BOUNDS)
+
+
+@pytest.mark.parametrize(
+    ("place", "near"),
+    [
+        ((50.0, 50.0), True),
+        ((10_099.0, 0.0), True),
+        ((10_101.0, 0.0), False),
+        ((0.0, 10_081.0), False),
+        ((-9_999.0, -9_999.0), True),
+        ((-10_001.0, 0.0), False),
+        ((0.0, -10_001.0), False),
+    ],
+)
+def test_near_is_on_the_site_and_ten_kilometres_beside_it(place, near):
+    assert is_near(place, BOUNDS) is near

@@ -10,6 +10,8 @@ from osgeo import ogr
 
 from robot_bridge.commands.database_option import database_address
 from robot_bridge.messages import SendPos
+from robot_bridge.robots import Robot
+from robot_bridge.store import robots as stored_robots
 from robot_bridge.store import trajectories
 from robot_bridge.store.database import Database
 from robot_bridge.store.trajectories import Fix, Mark, Wanted
@@ -128,7 +130,7 @@ def test_a_longer_gap_keeps_a_track_whole(export):
         (["--since", "2026-09-21T16:15:00+02:00"], 5),
         (["--until", "2026-09-21T14:13:20.5"], 1),
         (["--bounds", "1.5,-1,3.5,1"], 2),
-        (["--robot", "nobody"], 0),
+        (["--robot", "r2", "--since", "2026-09-22T00:00"], 0),
     ],
 )
 def test_it_may_be_some_robots_a_time_and_an_area(export, options, count):
@@ -157,6 +159,19 @@ def test_what_is_wrong_is_named(turned_site, tmp_path, monkeypatch, options, say
     assert (done.returncode, "Traceback" in done.stderr) == (1, False)
     assert says in done.stderr
     assert not re.search("out|exporting", " ".join(file.name for file in tmp_path.iterdir()))
+
+
+@pytest.mark.parametrize("more", [[], ["--robot", "r1"]])
+async def test_a_robot_that_is_not_known_is_named_and_nothing_is_written(driven, turned_site, tmp_path, more):
+    await driven.run(
+        stored_robots.save, [stored_robots.row(Robot(name, 1, "sql", 0.0)) for name in ("r1", "r2")]
+    )
+    where = ["--site", turned_site, "--database", f"sqlite:///{tmp_path}/fleet.db"]
+    done = run("trajectories", "export", tmp_path / "out.gpkg", *where, *more, "--robot", "r11")
+    assert done.returncode == 1
+    assert "no position of robot 'r11' is stored in this database" in done.stderr
+    assert "known in it: r1, r2." in done.stderr
+    assert not (tmp_path / "out.gpkg").exists()
 
 
 def test_a_file_that_is_there_is_replaced_only_when_told(export, tmp_path, turned_site):
