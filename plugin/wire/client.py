@@ -148,10 +148,8 @@ class DeskClient:
                 )
             ) from error
         self._backoff.reset()
-        who = self._protocol.operator, self._protocol.role
-        self._mailbox.put_link(
-            LinkStatus(Phase.CONNECTED, ", ".join(filter(None, who)), operator=who[0], role=who[1])
-        )
+        who = {"operator": self._protocol.operator, "role": self._protocol.role}
+        self._mailbox.put_link(LinkStatus(Phase.CONNECTED, **who))
         async for text in socket:
             self._check_awake()
             self._send_all(self._protocol.receive(text))

@@ -20,9 +20,8 @@ class Phase(str, Enum):
 class LinkStatus:
     """The link's stage, why it is not connected, and when the next attempt is due (monotonic clock).
 
-    While connected, ``reason`` is who the desk is to the gateway, as people read it, and ``operator`` and
-    ``role`` are the same apart; a role that is changed meanwhile is not told. ``wants_token`` is true when
-    it takes another token or CA file to connect.
+    While connected, ``operator`` and ``role`` are who the desk is to the gateway; a role that is changed
+    meanwhile is not told. ``wants_token`` is true when it takes another token or CA file to connect.
     """
 
     phase: Phase

@@ -38,6 +38,8 @@ NOW, ALARMS, RECEIVED, QUEUE, COMMANDS = SECTIONS = (
     tr("Commands"),
 )
 IMAGE_WIDTH = 150
+AROUND_NAME = 40
+"""Pixels of a row's indentation and margins."""
 HISTORY = 200
 
 
@@ -161,6 +163,14 @@ class RobotDetails(QWidget):
             rows = sections.get(name, [])
             item.setHidden(not rows)
             _write(item, rows)
+        self._make_room_for([name for name, _ in sections.get(NOW, [])])
+
+    def _make_room_for(self, names: list[str]) -> None:
+        """Widen the first column to what its longest name takes, up to a half; it is never made narrower."""
+        widest = max(map(self._tree.fontMetrics().horizontalAdvance, names), default=0) + AROUND_NAME
+        width = min(widest, self._tree.viewport().width() // 2)
+        if width > self._tree.columnWidth(0):
+            self._tree.setColumnWidth(0, width)
 
     def _show_image(self) -> None:
         self._about.setText(self._image.text)
@@ -209,7 +219,8 @@ def _tree() -> QTreeWidget:
     shrink(tree)
     tree.header().setStretchLastSection(True)
     tree.header().setSectionResizeMode(0, QHeaderView.ResizeMode.Interactive)
-    tree.setColumnWidth(0, tree.fontMetrics().horizontalAdvance(tr("Position, {crs}", crs="EPSG:00000")) + 40)
+    name = tr("Position, {crs}", crs="EPSG:00000")
+    tree.setColumnWidth(0, tree.fontMetrics().horizontalAdvance(name) + AROUND_NAME)
     return tree
 
 

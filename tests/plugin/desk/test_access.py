@@ -10,10 +10,12 @@ from pathlib import Path
 import pytest
 from fleet_supervisor.plugin.connection import Connection
 from fleet_supervisor.plugin.desk.access_fields import AccessFields
+from fleet_supervisor.plugin.desk.role_words import ROLES
 from fleet_supervisor.plugin.errors import AddressError
 from fleet_supervisor.plugin.settings.token_store import TokenStore
 from fleet_supervisor.plugin.wire.addresses import Credentials
 from fleet_supervisor.plugin.wire.status import LinkStatus, Phase
+from fleet_supervisor.robot_bridge.messages import Role
 from qgis.core import QgsApplication, QgsSettings
 from qgis.gui import QgsFileWidget
 from qgis.PyQt.QtCore import Qt
@@ -267,6 +269,13 @@ def test_an_operator_connects_by_the_panel_alone_and_sees_what_is_missing(plugin
     picture = os.environ.get("FLEET_PICTURE")
     if picture:
         window.dock.grab().save(picture)
+
+
+def test_the_role_stands_there_in_the_operators_words(plugin, site, monkeypatch):
+    monkeypatch.setitem(ROLES, Role.SUPERVISOR, "felügyelő")
+    panel = plugin.window.dock.connection_panel
+    panel.show_link(LinkStatus(Phase.CONNECTED, operator="Ada", role="supervisor"), site, 0.0)
+    assert panel.findChild(QLabel, "fleet_link_state").text().endswith("Yard · Ada, felügyelő")
 
 
 def test_the_fields_open_when_the_gateway_asks_for_a_token(plugin, bridge, wait):

@@ -3,6 +3,7 @@
 import base64
 
 import pytest
+from fleet_supervisor.plugin.desk.robots import detail_rows
 from fleet_supervisor.plugin.desk.robots.detail_rows import received_rows
 from fleet_supervisor.robot_bridge.messages import CommandState
 from qgis.PyQt.QtCore import QBuffer, QIODevice, Qt
@@ -46,6 +47,19 @@ def seen(number, op="SendImage", **more):
 def test_without_a_selection_it_says_what_to_do(details):
     assert details.findChild(QLabel, "fleet_details_title").text().startswith("Select a robot")
     assert sections(details) == {}
+
+
+def test_a_long_name_of_a_row_is_not_cut_off(details, at_desk, monkeypatch):
+    name = "Eltérés a pályától vagy céltól"
+    monkeypatch.setattr(
+        detail_rows, "tr", lambda text, **values: name if text == "Task" else text.format(**values)
+    )
+    at_desk.desk.select("r1")
+    assert name in dict(sections(details)["Now"])
+    tree = details.findChild(QTreeWidget, "fleet_details")
+    child = tree.findItems(name, Qt.MatchFlag.MatchRecursive)[0]
+    room = tree.visualItemRect(child).left() + tree.fontMetrics().horizontalAdvance(name)
+    assert room < tree.columnWidth(0) <= tree.viewport().width() // 2
 
 
 def test_diagnostics_are_shown_as_received_with_their_units(details, at_desk, gateway, make_robot, wait):
