@@ -23,6 +23,8 @@ from .fleet_rows import Which
 from .robot_table import RobotTable
 
 WGS84 = "EPSG:4326"
+AROUND_SEARCH = 40
+"""Pixels of the magnifying glass and of the field's margins."""
 WHICH = {
     Which.ALL: tr("All robots"),
     Which.TROUBLED: tr("With alarms, or not fresh"),
@@ -127,8 +129,11 @@ def _search_field() -> QgsFilterLineEdit:
     field = QgsFilterLineEdit()
     field.setObjectName("fleet_robot_search")
     field.setShowSearchIcon(True)
-    field.setPlaceholderText(tr("Search robots"))
+    field.setPlaceholderText(tr("Search"))
+    field.setAccessibleName(tr("Search robots"))
     field.setToolTip(tr("Name, state, task or link; several words have to be there all"))
+    # In a narrow panel it is the first to give way.
+    field.setMinimumWidth(field.fontMetrics().horizontalAdvance(field.placeholderText()) + AROUND_SEARCH)
     return field
 
 

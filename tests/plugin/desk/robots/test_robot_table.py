@@ -5,7 +5,7 @@ import pytest
 from fleet_supervisor.plugin.desk.robots.columns import COLUMNS, TITLES, number_in_words
 from fleet_supervisor.plugin.desk.robots.deviations import beside
 from fleet_supervisor.plugin.desk.robots.fleet_rows import Which
-from fleet_supervisor.plugin.desk.robots.robot_panel import WHICH
+from fleet_supervisor.plugin.desk.robots.robot_panel import AROUND_SEARCH, WHICH
 from fleet_supervisor.plugin.desk.state_words import ROBOT_STATES
 from fleet_supervisor.robot_bridge.messages import CommandState, RobotState
 from qgis.core import (
@@ -181,6 +181,13 @@ def test_what_changes_is_put_in_order_again_and_stays_selected(table, at_desk, g
 
 
 # --- which ---
+
+
+def test_the_field_can_be_read_in_the_narrowest_panel(table, at_desk, iface):
+    iface.resizeDocks([at_desk.dock], [1], Qt.Orientation.Horizontal)
+    field = at_desk.dock.findChild(QLineEdit, "fleet_robot_search")
+    words = field.fontMetrics().horizontalAdvance(field.placeholderText())
+    assert field.width() >= words + AROUND_SEARCH
 
 
 def test_what_is_typed_narrows_the_list_at_once(table, at_desk):
