@@ -135,7 +135,7 @@ class LiveView(QObject):
     def _pulled(self) -> None:
         self._pulls += 1
         picture = self._desk.picture
-        is_new = self.shown != (picture.generation, picture.revision)
+        is_new = self.shown != (picture.generation, picture.revision) or not self.overlay.is_whole
         rested = time.perf_counter() - self._last_frame
         costs = self._took + self.overlay.took
         if (is_new or self._pulls % EVERY_HALF == 0) and rested >= costs * (1 / PART_OF_THE_WINDOW - 1):
@@ -202,11 +202,11 @@ class LiveView(QObject):
         robots = desk.picture.arrays(now)
         self._trails.extend(robots.xy, now)
         plans = self._plans.of(desk.book.under_way())
-        named = {*desk.selection, *(plan.robot for plan in plans)}
+        measured = plans if len(plans) <= MANY else [p for p in plans if p.robot in desk.selection][:MANY]
+        named = {*desk.selection, *(plan.robot for plan in measured)}
         if desk.drafts.draft is not None:
             named.add(desk.drafts.draft.robot)
         rows = {name: row for name in named if (row := desk.picture.row(name)) is not None}
-        measured = plans if len(plans) <= MANY else [p for p in plans if p.robot in desk.selection][:MANY]
         return Scene(
             robots=robots,
             now=now,

@@ -60,6 +60,11 @@ class FleetOverlay(QgsMapCanvasItem):
         self.took = time.perf_counter() - began
         self.frames += 1
 
+    @property
+    def is_whole(self) -> bool:
+        """Whether nothing is left to be painted by more frames."""
+        return self._painter.is_whole
+
     def magnify(self, times: float) -> None:
         """Draw robots so many times as large as they come."""
         self._painter.robots.magnification = times

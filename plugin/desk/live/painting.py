@@ -36,6 +36,11 @@ class ScenePainter:
         """The arrows at the border that were painted last."""
         return self._borders.hints
 
+    @property
+    def is_whole(self) -> bool:
+        """Whether nothing is left to be painted by more frames."""
+        return self._plans.is_whole
+
     def prepare(self, placed: PlacedScene | None, screen: Screen) -> None:
         """Take in a new scene: what is drawn once for each and not for each time it is painted."""
         if placed is None:

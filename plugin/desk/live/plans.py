@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -33,27 +34,42 @@ class Plan:
         """Whether the robot was told which way to go."""
         return len(self.points) > 1
 
+    @cached_property
+    def steps(self) -> Points:
+        """The way from each point to the next, (n - 1, 2)."""
+        return np.diff(self.points, axis=0)
+
+    @cached_property
+    def lengths(self) -> Points:
+        """Metres of each step, (n - 1,), more than nothing."""
+        return np.maximum(np.hypot(*self.steps.T), 1e-9)
+
 
 class Plans:
     """Makes the plans of commands once each, and follows the robots along them."""
 
     def __init__(self) -> None:
+        self._tasks: list[CommandReport] = []
+        self._plans: list[Plan] = []
         self._known: dict[str, Plan | None] = {}
         self._driven: dict[str, float] = {}
 
     def of(self, tasks: Iterable[CommandReport]) -> list[Plan]:
-        """Return the plans of ``tasks``; those that say no place have none."""
+        """Return the plans of ``tasks`` that say a place, in one list for as long as they are the same."""
+        tasks = list(tasks)
+        if tasks == self._tasks:
+            return self._plans
         known = {task.command: self._known.get(task.command) or _plan(task) for task in tasks}
         self._driven = {command: self._driven[command] for command in known if command in self._driven}
-        self._known = known
-        return [plan for plan in known.values() if plan is not None]
+        self._tasks, self._known = tasks, known
+        self._plans = [plan for plan in known.values() if plan is not None]
+        return self._plans
 
     def remaining(self, plan: Plan, at: Points) -> float:
         """Return the metres that a robot at (2,) ``at`` still has to go, along its way if it has one."""
         if not plan.is_way:
             return float(np.hypot(*(plan.points[-1] - at)))
-        start, step = plan.points[:-1], np.diff(plan.points, axis=0)
-        length = np.maximum(np.hypot(*step.T), 1e-9)
+        start, step, length = plan.points[:-1], plan.steps, plan.lengths
         part = np.clip(((at - start) * step).sum(axis=1) / length**2, 0.0, 1.0)
         away = np.hypot(*(start + step * part[:, None] - at).T)
         along = plan.along[:-1] + part * length

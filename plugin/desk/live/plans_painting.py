@@ -2,38 +2,46 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 import numpy.typing as npt
 from qgis.PyQt.QtCore import QPointF, Qt
-from qgis.PyQt.QtGui import QImage, QPainter, QPen
+from qgis.PyQt.QtGui import QPainter
 
 from ...language import tr
-from ..colours import PAPER, ROUTE
+from ..colours import PAPER
 from .atlases import CONE_TARGET, TARGET
 from .labels import Labels
 from .scene import PlacedScene
 from .screen import Screen
-from .screen_image import screen_image
 from .sprites import Sprites
-from .strokes import dashes, polygon, route
+from .strokes import broken, lines
+from .ways_image import WaysImage
 
 Points = npt.NDArray[np.float64]
 MANY = 60
-"""With more plans ways are thin, targets small, and only selected robots have their lines and distances."""
+"""With more plans targets are small, and only selected robots have their lines and distances."""
 SMALL = 0.5
 
 
 class PlansPainter:
-    """Keeps an image of the ways, which change seldom."""
+    """Keeps what changes only with the plans."""
 
     def __init__(self, labels: Labels) -> None:
         self._labels = labels
-        self._image: QImage | None = None
+        self._ways = WaysImage()
+        self._of: list[Points] | None = None
+        """The plans, as they are placed, that these are of:"""
+        self._ends = np.empty((0, 2))
+        self._kinds = np.empty(0, dtype=np.intp)
         self.distances: list[tuple[float, float]] = []
         """The targets, in pixels, below which a distance was written last."""
-        self._made_for: tuple = ()
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether nothing is left to be painted by more frames."""
+        return self._ways.is_whole
 
     def paint(
         self,
@@ -50,30 +58,32 @@ class PlansPainter:
         plans = placed.scene.plans
         self.distances = []
         if not plans:
-            self._image, self._made_for = None, ()
+            self._ways.forget()
+            self._of = None
             return
-        self._ways(painter, placed, screen)
-        targets = screen.pixels(np.array([points[-1] for points in placed.plans]))
-        shown = range(len(plans)) if len(plans) <= MANY else self._of_chosen(placed)
-        for k in shown:
-            if not plans[k].is_way and plans[k].robot in placed.scene.rows:
-                start = pixels[placed.scene.rows[plans[k].robot]]
-                if np.isfinite(start).all():
-                    dashes(painter, np.array([start, targets[k]]), PAPER, Qt.PenStyle.DotLine)
-        kind = np.array([CONE_TARGET if plan.cone else TARGET for plan in plans])
+        if placed.plans is not self._of:
+            self._take(placed)
+        self._ways.paint(painter, placed, screen)
+        targets = screen.pixels(self._ends)
+        shown = list(range(len(plans))) if len(plans) <= MANY else _of_chosen(placed)
+        _lines_to_targets(painter, placed, shown, pixels, targets)
         on = screen.seen(targets, 30.0)
-        large = np.isin(np.arange(len(plans)), shown)
-        marks(screen.ratio, SMALL).paint(painter, targets[on & ~large], kind[on & ~large])
-        marks(screen.ratio, 1.0).paint(painter, targets[on & large], kind[on & large])
-        self.distances = [(float(targets[k, 0]), float(targets[k, 1])) for k in shown if on[k]]
-        for k in shown:
-            self._distance(painter, placed.scene.remaining.get(plans[k].command), targets[k], screen)
+        small = on.copy()
+        small[shown] = False
+        large = on & ~small
+        marks(screen.ratio, SMALL).paint(painter, targets[small], self._kinds[small])
+        marks(screen.ratio, 1.0).paint(painter, targets[large], self._kinds[large])
+        seen = [k for k in shown if on[k]]
+        self.distances = [(x, y) for x, y in targets[seen].tolist()]
+        for k, (x, y) in zip(seen, self.distances, strict=True):
+            self._distance(painter, placed.scene.remaining.get(plans[k].command), x, y, screen)
 
-    def _of_chosen(self, placed: PlacedScene) -> list[int]:
-        chosen = set(placed.scene.chosen)
-        return [k for k, plan in enumerate(placed.scene.plans) if plan.robot in chosen][:MANY]
+    def _take(self, placed: PlacedScene) -> None:
+        self._of = placed.plans
+        self._ends = np.array([points[-1] for points in placed.plans])
+        self._kinds = np.array([CONE_TARGET if plan.cone else TARGET for plan in placed.scene.plans])
 
-    def _distance(self, painter: QPainter, metres: float | None, at: Points, screen: Screen) -> None:
+    def _distance(self, painter: QPainter, metres: float | None, x: float, y: float, screen: Screen) -> None:
         if metres is None:
             return
         text = (
@@ -85,27 +95,20 @@ class PlansPainter:
             else tr("{km:.0f} km", km=metres / 1000)
         )
         label = self._labels.picture(text, screen.ratio)
-        painter.drawPixmap(QPointF(at[0] - label.width() / screen.ratio / 2, at[1] + 5), label)
-
-    def _ways(self, painter: QPainter, placed: PlacedScene, screen: Screen) -> None:
-        ways = [k for k, plan in enumerate(placed.scene.plans) if plan.is_way]
-        made_for = (screen, placed.to_map, tuple(placed.scene.plans[k].command for k in ways))
-        if made_for != self._made_for:
-            self._image = _drawn([screen.pixels(placed.plans[k]) for k in ways], screen) if ways else None
-            self._made_for = made_for
-        if self._image is not None:
-            painter.drawImage(QPointF(0.0, 0.0), self._image)
+        painter.drawPixmap(QPointF(x - label.width() / screen.ratio / 2, y + 5), label)
 
 
-def _drawn(ways: list[Points], screen: Screen) -> QImage:
-    def paint(painter: QPainter) -> None:
-        if len(ways) <= MANY:
-            painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-            for way in ways:
-                route(painter, way, ROUTE)
-        else:
-            painter.setPen(QPen(ROUTE, 0.0))
-            for way in ways:
-                painter.drawPolyline(polygon(way))
+def _of_chosen(placed: PlacedScene) -> list[int]:
+    chosen = set(placed.scene.chosen)
+    return [k for k, plan in enumerate(placed.scene.plans) if plan.robot in chosen][:MANY]
 
-    return screen_image(screen, paint)
+
+def _lines_to_targets(
+    painter: QPainter, placed: PlacedScene, shown: Sequence[int], pixels: Points, targets: Points
+) -> None:
+    """Paint broken lines from robots at ``pixels`` to ``targets`` to which no way leads."""
+    scene = placed.scene
+    there = [k for k in shown if not scene.plans[k].is_way and scene.plans[k].robot in scene.rows]
+    start = pixels[[scene.rows[scene.plans[k].robot] for k in there]]
+    is_known = np.isfinite(start).all(axis=1)
+    broken(painter, lines(start[is_known], targets[there][is_known]), PAPER, Qt.PenStyle.DotLine)

@@ -34,7 +34,7 @@ class Scene:
     draft: Draft | None = None
     cursor: Point | None = None
     rows: dict[str, int] = field(default_factory=dict)
-    """The rows of the robots that plans, draft and selection name."""
+    """The rows of the robots that draft and selection name, and of those with a distance in ``remaining``."""
 
 
 @dataclass(frozen=True)
@@ -60,6 +60,9 @@ class Placer:
     def __init__(self) -> None:
         self._placement: Placement | None = None
         self._plans: dict[Plan, Points] = {}
+        self._of: list[Plan] | None = None
+        self._ways: list[Points] = []
+        """Where the plans lead, of those in the list of the scene before."""
         self._outline: object = None
         self._draft = _NOWHERE
 
@@ -69,9 +72,9 @@ class Placer:
         :raises PlacementError: when a position has no place in the map's CRS.
         """
         if placement is not self._placement:
-            self._placement, self._plans, self._outline = placement, {}, None
+            self._placement, self._plans, self._of, self._outline = placement, {}, None, None
         known = self._plans
-        new = [plan for plan in scene.plans if plan not in known]
+        new = [] if scene.plans is self._of else [plan for plan in scene.plans if plan not in known]
         outline = scene.draft.outline if scene.draft else ()
         is_known = outline is self._outline
         robots = scene.robots
@@ -87,15 +90,17 @@ class Placer:
             *[plan.points for plan in new],
         ]
         at, before, draft, cursor, *ways = _parted(placement.to_map(np.concatenate(parts)), parts)
-        known.update(zip(new, ways, strict=True))
+        if scene.plans is not self._of:
+            known.update(zip(new, ways, strict=True))
+            self._plans = {plan: known[plan] for plan in scene.plans}
+            self._of, self._ways = scene.plans, list(self._plans.values())
         if not is_known:
             self._outline, self._draft = outline, draft
-        self._plans = {plan: known[plan] for plan in scene.plans}
         return PlacedScene(
             scene,
             _spread(at, there, len(robots.xy)),
             _spread(before - at if axes is None else metre @ axes, there, len(robots.xy)),
-            list(self._plans.values()),
+            self._ways,
             self._draft,
             cursor,
             placement.to_map,
