@@ -52,6 +52,7 @@ from .tile_plan import (
     tiles_problem,
 )
 from .tile_windows import Tile, area_of
+from .whole_file import replaced_whole
 
 _FIELDS = {
     "tile": "string",
@@ -170,13 +171,20 @@ class ExportRobotMapTiles(FleetAlgorithm):
                 return {}
             folder.publish()
             # Only now, so that no index tells of tiles that are not there.
-            sink, index = self.parameterAsSink(
-                parameters, INDEX, context, self._fields, QgsWkbTypes.Type.Polygon, layer_crs(plan.site.crs)
-            )
-            fill(sink, self._fields, maker.rows, QgsProcessingFeedback())
+            with replaced_whole(plan.index, tr("The index")):
+                index = self._write_index(parameters, context, maker.rows)
         self.remember({INDEX: index})
         feedback.setProgress(100)
         return {FOLDER: str(plan.folder), INDEX: index, **maker.reported(feedback)}
+
+    def _write_index(self, parameters: Parameters, context: QgsProcessingContext, rows: list) -> str:
+        """Write the index; return the layer that it is."""
+        crs = layer_crs(self._plan.site.crs)
+        sink, index = self.parameterAsSink(
+            parameters, INDEX, context, self._fields, QgsWkbTypes.Type.Polygon, crs
+        )
+        fill(sink, self._fields, rows, QgsProcessingFeedback())
+        return index
 
 
 class _TileMaker:

@@ -14,8 +14,9 @@ from .whole_file import OutputError
 class TileFolder:
     """Collects files beside ``target``'s own and moves them there at the end.
 
-    To be used in a ``with`` block; what was not published when it ends is removed, and so is a folder that
-    was made for it. Files of other names in ``target`` are left alone.
+    To be used in a ``with`` block. What was not published when it ends is removed, and so is a folder that
+    was made for it; what was published when it ends by an exception is taken back, and what was there before
+    put in its place. Files of other names in ``target`` are left alone.
 
     :raises OutputError: when the folder or a file in it cannot be written.
     """
@@ -23,12 +24,15 @@ class TileFolder:
     def __init__(self, target: Path):
         self.target = target
         self._stage = target / f".tiles.{os.getpid()}.part"
+        self._new, self._earlier = self._stage / "new", self._stage / "earlier"
         self._made: list[Path] = []
+        self._published: list[str] = []
 
     def __enter__(self) -> TileFolder:
         self._made = [path for path in (self.target, *self.target.parents) if not path.exists()]
         try:
-            self._stage.mkdir(parents=True)
+            self._new.mkdir(parents=True)
+            self._earlier.mkdir()
         except OSError as error:
             self._clear()
             raise self._failed(error) from error
@@ -38,27 +42,46 @@ class TileFolder:
         """Keep ``content`` to become the file ``name``."""
         if (self.target / name).is_dir():
             raise OutputError(
-                tr("{path} is a folder: choose another folder for the tiles.", path=self.target / name)
+                tr(
+                    "{path} is a folder: choose another folder for the tiles.",
+                    path=self.target / name,
+                )
             )
         try:
-            (self._stage / name).write_bytes(content)
+            (self._new / name).write_bytes(content)
         except OSError as error:
             raise self._failed(error) from error
 
     def publish(self) -> None:
         """Put every file into its place."""
         try:
-            for file in sorted(self._stage.iterdir()):
-                file.replace(self.target / file.name)
+            for file in sorted(self._new.iterdir()):
+                place = self.target / file.name
+                if place.exists():
+                    place.replace(self._earlier / file.name)
+                self._published.append(file.name)
+                file.replace(place)
         except OSError as error:
             raise self._failed(error) from error
-        self._made = []
 
-    def __exit__(self, *exception: object) -> None:
+    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
+        if kind is not None:
+            self._take_back()
         self._clear()
+
+    def _take_back(self) -> None:
+        for name in self._published:
+            with suppress(OSError):
+                (self.target / name).unlink()
+        self._published = []
+        for file in self._earlier.glob("*"):
+            with suppress(OSError):
+                file.replace(self.target / file.name)
 
     def _clear(self) -> None:
         shutil.rmtree(self._stage, ignore_errors=True)
+        if self._published:
+            return
         for folder in self._made:
             with suppress(OSError):
                 folder.rmdir()

@@ -33,10 +33,14 @@ FOLDER, INDEX, SKIP_EMPTY = "OUTPUT", "INDEX", "SKIP_EMPTY"
 
 @dataclass(frozen=True)
 class TilePlan(ObstaclePlan):
-    """Everything that is needed of the parameters and layers to export tiles."""
+    """Everything that is needed of the parameters and layers to export tiles.
+
+    ``index`` is the file that the index is to be, None where it is none.
+    """
 
     tiles: list[Tile]
     folder: Path
+    index: Path | None
 
 
 def tiles_problem(parameters: Parameters) -> str:
@@ -72,20 +76,21 @@ def tile_plan_of(
     folder = Path(algorithm.parameterAsFileOutput(parameters, FOLDER, context))
     if folder.exists() and not folder.is_dir():
         raise ParameterError(tr("OUTPUT {folder} is a file: choose a folder for the tiles.", folder=folder))
-    _check_index(parameters, folder)
-    return TilePlan(**vars(plan), tiles=tiles, folder=folder)
+    index = _index_file(parameters)
+    if index is not None and index.parent != folder:
+        # It comes after the tiles are there.
+        check_target(index, tr("The index"))
+    return TilePlan(**vars(plan), tiles=tiles, folder=folder, index=index)
 
 
-def _check_index(parameters: Parameters, folder: Path) -> None:
-    """Raise :class:`OutputError` for an index that cannot be written: it comes after the tiles are there."""
+def _index_file(parameters: Parameters) -> Path | None:
+    """Return the file that the index is to be, None where it is none."""
     value = parameters.get(INDEX)
     if isinstance(value, QgsProcessingOutputLayerDefinition):
         value = value.sink.staticValue()
     # Neither TEMPORARY_OUTPUT nor what begins with a provider, such as memory: or postgres:, is a file.
-    if isinstance(value, str) and Path(value).suffix and not re.match(r"\w{2,}:", value):
-        file = Path(value)
-        if folder != file.parent:
-            check_target(file, tr("The index"))
+    is_file = isinstance(value, str) and Path(value).suffix and not re.match(r"\w{2,}:", value)
+    return Path(value) if is_file else None
 
 
 def _routes(

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from contextlib import suppress
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from uuid import uuid4
 
@@ -46,6 +47,50 @@ def write_whole(target: Path, content: bytes, what: str = tr("The robot map")) -
         with suppress(OSError):
             part.unlink()
         raise _not_written(what, target, error.strerror or str(error)) from error
+
+
+@contextmanager
+def replaced_whole(target: Path | None, what: str) -> Iterator[None]:
+    """Let the block write the layer file ``target`` whole or not at all: if it fails all is as it was before.
+
+    With None the block writes no file. ``what`` it is, is said when what stood there is in the way.
+
+    :raises OutputError: naming the file and what to do.
+    """
+    file = None if target is None else Path(os.path.realpath(target))
+    aside: dict[Path, Path] = {}
+    try:
+        for part in _parts_of(file):
+            if part.exists():
+                part.replace(aside.setdefault(part, part.with_name(f".{uuid4().hex}.part")))
+    except OSError as error:
+        _put_back(aside)
+        raise _not_written(what, file, error.strerror or str(error)) from error
+    try:
+        yield
+    except BaseException:
+        for part in _parts_of(file):
+            part.unlink(missing_ok=True)
+        _put_back(aside)
+        raise
+    for kept in aside.values():
+        kept.unlink(missing_ok=True)
+
+
+def _parts_of(file: Path | None) -> list[Path]:
+    """Return the files that a layer in ``file`` consists of, or that are beside it while it is written."""
+    if file is None:
+        return []
+    beside = [Path(f"{file}{ending}") for ending in ("-journal", "-wal", "-shm")]
+    if file.suffix.lower() == ".shp":
+        beside = [file.with_suffix(suffix) for suffix in (".dbf", ".shx", ".prj", ".cpg")]
+    return [file, *beside]
+
+
+def _put_back(aside: Mapping[Path, Path]) -> None:
+    for part, kept in aside.items():
+        if kept.exists():
+            kept.replace(part)
 
 
 def _hindrance(file: Path) -> str:

@@ -23,6 +23,7 @@ def only_publication(folder: Path) -> Iterator[None]:
     :raises PublicationError: when another publication is under way, or the folder cannot be written.
     """
     is_new = not folder.exists()
+    _check_is_folder(folder)
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
@@ -51,6 +52,21 @@ def unwritable(folder: Path, reason: str) -> PublicationError:
             reason=reason,
         )
     )
+
+
+def _check_is_folder(folder: Path) -> None:
+    in_the_way = next(
+        (path for path in (folder, *folder.parents) if path.exists() and not path.is_dir()), None
+    )
+    if in_the_way is not None:
+        raise PublicationError(
+            tr(
+                "The site cannot be published in {folder}: {file} is a file. Choose a folder: a new one, or "
+                "the one that the site was published in before.",
+                folder=folder,
+                file=in_the_way,
+            )
+        )
 
 
 def _why_not(lock: QLockFile, folder: Path) -> PublicationError:

@@ -3795,6 +3795,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/robots/robot_panel.py" />
+            <source>Search</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_panel.py" />
             <source>Search robots</source>
             <translation>Cerca robots</translation>
         </message>
@@ -5742,6 +5747,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/export_robot_map_tiles.py" />
+            <source>The index</source>
+            <translation>L'índex</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map_tiles.py" />
             <source>There is no obstacle in any tile: check their place and the site CRS.</source>
             <translation>No hi ha cap obstacle a cap tessel·la: comproveu el lloc i el SRC del recinte.</translation>
         </message>
@@ -6981,11 +6991,6 @@
             <translation>ROUTE: l'entitat {id} de {sourcename} no té lloc al SRC del recinte ({error}): corregiu-ne la geometria o el SRC.</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/tile_plan.py" />
-            <source>The index</source>
-            <translation>L'índex</translation>
-        </message>
-        <message>
             <location filename="../../plugin/processing/tile_windows.py" />
             <source>OVERLAP is {overlap} m: give 0 or more, and at most nine tenths of a tile's side.</source>
             <translation>OVERLAP és {overlap} m: doneu 0 o més, i com a màxim nou dècimes del costat d'una tessel·la.</translation>
@@ -7830,6 +7835,11 @@
             <location filename="../../plugin/sites/publication_lock.py" />
             <source>Another publication into {folder} is under way, by {who}: wait until it has ended, or choose another folder. If it ended on another computer without a word, remove {file}.</source>
             <translation>Una altra publicació a {folder} és en curs, de {who}: espereu que acabi, o trieu una altra carpeta. Si va acabar en un altre ordinador sense dir res, esborreu {file}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/publication_lock.py" />
+            <source>The site cannot be published in {folder}: {file} is a file. Choose a folder: a new one, or the one that the site was published in before.</source>
+            <translation>El recinte no es pot publicar a {folder}: {file} és un fitxer. Trieu una carpeta: una de nova o la mateixa on ja es va publicar el recinte.</translation>
         </message>
         <message>
             <location filename="../../plugin/sites/publication_lock.py" />

@@ -3795,6 +3795,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/robots/robot_panel.py" />
+            <source>Search</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_panel.py" />
             <source>Search robots</source>
             <translation>Buscar robots</translation>
         </message>
@@ -5742,6 +5747,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/export_robot_map_tiles.py" />
+            <source>The index</source>
+            <translation>El índice</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map_tiles.py" />
             <source>There is no obstacle in any tile: check their place and the site CRS.</source>
             <translation>No hay ningún obstáculo en ninguna tesela: compruebe su lugar y el SRC del recinto.</translation>
         </message>
@@ -6981,11 +6991,6 @@
             <translation>ROUTE: el objeto {id} de {sourcename} no tiene lugar en el SRC del recinto ({error}): corrija su geometría o el SRC.</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/tile_plan.py" />
-            <source>The index</source>
-            <translation>El índice</translation>
-        </message>
-        <message>
             <location filename="../../plugin/processing/tile_windows.py" />
             <source>OVERLAP is {overlap} m: give 0 or more, and at most nine tenths of a tile's side.</source>
             <translation>OVERLAP es {overlap} m: dé 0 o más, y como máximo nueve décimas del lado de una tesela.</translation>
@@ -7830,6 +7835,11 @@
             <location filename="../../plugin/sites/publication_lock.py" />
             <source>Another publication into {folder} is under way, by {who}: wait until it has ended, or choose another folder. If it ended on another computer without a word, remove {file}.</source>
             <translation>Otra publicación en {folder} está en curso, de {who}: espere a que acabe, o elija otra carpeta. Si acabó en otro ordenador sin decir nada, borre {file}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/publication_lock.py" />
+            <source>The site cannot be published in {folder}: {file} is a file. Choose a folder: a new one, or the one that the site was published in before.</source>
+            <translation>El recinto no se puede publicar en {folder}: {file} es un archivo. Elija una carpeta: una nueva o la misma en la que ya se publicó el recinto.</translation>
         </message>
         <message>
             <location filename="../../plugin/sites/publication_lock.py" />

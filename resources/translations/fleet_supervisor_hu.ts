@@ -3792,6 +3792,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/robots/robot_panel.py" />
+            <source>Search</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/robot_panel.py" />
             <source>Search robots</source>
             <translation>Robotok keresése</translation>
         </message>
@@ -5738,6 +5743,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/export_robot_map_tiles.py" />
+            <source>The index</source>
+            <translation>Az index</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map_tiles.py" />
             <source>There is no obstacle in any tile: check their place and the site CRS.</source>
             <translation>Egyik csempén sincs akadály: ellenőrizze a helyüket és a telephely vetületét.</translation>
         </message>
@@ -6977,11 +6987,6 @@
             <translation>ROUTE: {sourcename} {id}. elemének nincs helye a telephely vetületében ({error}): javítsa ki a geometriáját vagy a vetületet.</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/tile_plan.py" />
-            <source>The index</source>
-            <translation>Az index</translation>
-        </message>
-        <message>
             <location filename="../../plugin/processing/tile_windows.py" />
             <source>OVERLAP is {overlap} m: give 0 or more, and at most nine tenths of a tile's side.</source>
             <translation>OVERLAP értéke {overlap} m: adjon meg 0-t vagy többet, legfeljebb a csempe oldalának kilenctizedét.</translation>
@@ -7824,6 +7829,11 @@
             <location filename="../../plugin/sites/publication_lock.py" />
             <source>Another publication into {folder} is under way, by {who}: wait until it has ended, or choose another folder. If it ended on another computer without a word, remove {file}.</source>
             <translation>Másik közzététel folyik ide: {folder} ({who}): várjon, amíg véget ér, vagy válasszon másik mappát. Ha másik számítógépen szó nélkül ért véget, törölje ezt: {file}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/publication_lock.py" />
+            <source>The site cannot be published in {folder}: {file} is a file. Choose a folder: a new one, or the one that the site was published in before.</source>
+            <translation>A telephely nem tehető közzé itt: {folder}: {file} egy fájl. Válasszon mappát: újat, vagy azt, amelyben a telephely korábban megjelent.</translation>
         </message>
         <message>
             <location filename="../../plugin/sites/publication_lock.py" />

@@ -226,10 +226,14 @@ def test_a_second_file_that_cannot_be_replaced_gives_back_the_first(publish, yar
     assert (folder / "site.gpkg").read_bytes() == layers
 
 
-def test_a_folder_that_cannot_be_written_is_named(refused, yard, tmp_path):
+@pytest.mark.parametrize("folder", ["file", "file/site", "file/site/today"])
+def test_a_file_in_place_of_the_folder_is_named_with_what_to_do(refused, yard, tmp_path, folder):
     (tmp_path / "file").write_text("in the way")
-    said = refused(**yard, FOLDER=str(tmp_path / "file" / "site"))
-    assert f"cannot be published in {tmp_path / 'file' / 'site'}" in said
+    said = refused(**yard, FOLDER=str(tmp_path / folder))
+    assert (
+        f"cannot be published in {tmp_path / folder}: {tmp_path / 'file'} is a file. Choose a folder" in said
+    )
+    assert (tmp_path / "file").read_text() == "in the way"
 
 
 @pytest.mark.parametrize("name", ["OBSTACLES", "ROAD_CENTRELINES", "ROAD_SURFACES", "KEEPOUTS"])

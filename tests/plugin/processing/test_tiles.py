@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from itertools import pairwise
 
 import numpy as np
@@ -18,6 +19,8 @@ from qgis.core import (
     QgsProject,
     QgsVectorLayer,
 )
+from stage.errors import StageError
+from stage.faults.disk import Disk
 
 UTM = "EPSG:32633"
 EXTENT = "600000,600100,5100000,5100060"
@@ -62,6 +65,10 @@ def tiles(provider, tmp_path, listener):
 
 def names(folder):
     return sorted(file.name for file in folder.iterdir())
+
+
+def contents(folder):
+    return {file.name: file.read_bytes() for file in folder.iterdir()} if folder.exists() else None
 
 
 def test_a_grid_covers_the_area_and_neighbours_share_the_overlap():
@@ -218,6 +225,55 @@ def test_a_folder_that_cannot_be_written_is_named_and_nothing_is_left(tiles, wal
     (tmp_path / "file").write_text("")
     with pytest.raises(QgsProcessingException, match="is a file: choose a folder"):
         tiles(wall, EXTENT=EXTENT, OUTPUT=str(tmp_path / "file"))
+
+
+@pytest.fixture
+def small_disk(tmp_path):
+    """A disk that can be filled up."""
+    try:
+        with Disk(tmp_path / "disk", megabytes=2) as disk:
+            yield disk
+    except StageError as error:
+        pytest.skip(str(error))
+
+
+def full_but_for(disk, kilobytes):
+    """Fill the disk but for so many kilobytes."""
+    disk.fill()
+    filler = disk.folder / "filler"
+    os.truncate(filler, filler.stat().st_size - kilobytes * 1024)
+
+
+@pytest.mark.parametrize("kilobytes", [0, 40, 90, 110])
+@pytest.mark.parametrize("suffix", ["gpkg", "shp"])
+@pytest.mark.parametrize("earlier", [False, True])
+def test_a_disk_that_is_full_when_the_index_is_written_leaves_all_as_it_was(
+    tiles, wall, tmp_path, small_disk, earlier, suffix, kilobytes
+):
+    """The schema of a GeoPackage takes about 100 kB, before any tile is in it."""
+    out, index = tmp_path / "out", small_disk.folder / f"index.{suffix}"
+    if earlier:
+        tiles(wall, EXTENT=EXTENT, TILE_WIDTH=50, TILE_HEIGHT=30, INDEX=str(index))
+    before = contents(out), contents(small_disk.folder)
+    full_but_for(small_disk, kilobytes)
+    many = {"EXTENT": EXTENT, "TILE_WIDTH": 5, "TILE_HEIGHT": 5, "SKIP_EMPTY": False, "INDEX": str(index)}
+    with pytest.raises(QgsProcessingException):
+        tiles(wall, **many)
+    small_disk.free()
+    assert (contents(out), contents(small_disk.folder)) == before
+    tiles(wall, **many)
+    assert len(names(out)) == 240
+    assert QgsVectorLayer(str(index)).featureCount() == 240
+
+
+def test_a_disk_that_is_full_when_tiles_are_written_leaves_what_was_there(tiles, wall, small_disk):
+    out = small_disk.folder / "out"
+    tiles(wall, EXTENT=EXTENT, TILE_WIDTH=50, OUTPUT=str(out))
+    before = contents(out)
+    small_disk.fill()
+    with pytest.raises(QgsProcessingException, match="cannot be written"):
+        tiles(wall, EXTENT=EXTENT, TILE_WIDTH=30, OUTPUT=str(out))
+    assert contents(out) == before
 
 
 def test_an_index_that_cannot_be_written_leaves_no_tiles(tiles, wall, tmp_path):
