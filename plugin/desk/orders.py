@@ -130,13 +130,10 @@ class Orders(QObject):
             self.accepted.emit(f"{pending.words}: {result['text']}")
         elif "closure" in result:
             self.accepted.emit(tr("{words}: done", words=pending.words))
-        elif "in_force" in result:
-            self.accepted.emit(
-                tr("{words}: in force", words=pending.words)
-                if result["in_force"]
-                else tr("{words}: done", words=pending.words)
-            )
-        elif result.keys() & {"revision", "queues", "placements", "tasks"}:
+        elif result.get("in_force"):
+            # The banner says so, for as long as it is true.
+            return
+        elif result.keys() & {"in_force", "revision", "queues", "placements", "tasks"}:
             self.accepted.emit(tr("{words}: done", words=pending.words))
         elif commands is None:
             self.accepted.emit(tr("{words}: queued", words=pending.words))

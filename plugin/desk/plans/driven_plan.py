@@ -83,6 +83,33 @@ class DrivenPlan(QObject):
         return self._followed.trouble
 
     @property
+    def paused(self) -> dict[str, float | None]:
+        """Robots that stand still with work to do because somebody paused their queues, and since when.
+
+        Not those that are held for a new plan, nor those that are away or whose cone failed: it takes a new
+        plan to let these go on.
+        """
+        if self.driven is None or self.held:
+            return {}
+        away = self.trouble.away
+        ours = [one.robot.id for one in self.driven.plan.robots if not one.lost and one.robot.id not in away]
+        return {
+            robot: moment
+            for robot, moment in paused_at(self._desk, ours).items()
+            if self._desk.queues.get(robot).tasks and not has_failed(self._desk, robot)
+        }
+
+    def pauses_in_words(self) -> list[str]:
+        """Return a text for each reason why robots are :attr:`paused`."""
+        reports = [self._desk.queues.get(robot) for robot in self.paused]
+        robots: dict[str, list[str]] = {}
+        for one in reports:
+            robots.setdefault(one.reason or one.by or "", []).append(one.robot)
+        return [
+            tr("Paused: {robots} ({why})", robots=", ".join(names), why=why) for why, names in robots.items()
+        ]
+
+    @property
     def busy(self) -> bool:
         """Whether something is being sent or planned."""
         return self.sending is not None or self._drafts.busy
@@ -152,6 +179,17 @@ class DrivenPlan(QObject):
         held, self.offer, self.held = self.held, None, {}
         self._drafts.cancel()
         self._start(going_on_steps(self._desk, held), lambda done: None)
+
+    def resume(self) -> None:
+        """Let the robots go on that are :attr:`paused`.
+
+        :raises PlanningError: when there are none, or an emergency stop is in force.
+        """
+        paused = self.paused
+        if not paused or self.busy:
+            raise PlanningError(tr("No queue of the plan is paused, or something is still being sent."))
+        self._check_no_emergency()
+        self._start(going_on_steps(self._desk, paused), lambda done: None)
 
     def clear(self) -> None:
         """Watch no plan any more, and send no more of it; robots go on with what is in their queues."""

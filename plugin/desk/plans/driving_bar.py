@@ -20,6 +20,7 @@ class DrivingBar(QWidget):
     rest_wanted = pyqtSignal(bool)
     confirm_wanted = pyqtSignal()
     discard_wanted = pyqtSignal()
+    resume_wanted = pyqtSignal()
     clear_wanted = pyqtSignal()
     by_itself_changed = pyqtSignal(bool)
 
@@ -45,6 +46,12 @@ class DrivingBar(QWidget):
         self.discard = push_button(
             "fleet_plan_discard", tr("Go on as before"), pressed=self.discard_wanted.emit
         )
+        self.resume = push_button(
+            "fleet_plan_resume",
+            tr("Let them go on"),
+            tr("Resume the queues of the plan's robots that somebody paused"),
+            self.resume_wanted.emit,
+        )
         self.again = QCheckBox(tr("try failed cones again"))
         self.again.setObjectName("fleet_plan_again")
         self.by_itself = QCheckBox(tr("Send new plans without asking"))
@@ -64,6 +71,8 @@ class DrivingBar(QWidget):
         grid.addWidget(self.again, 3, 1)
         grid.addWidget(self.confirm, 4, 0)
         grid.addWidget(self.discard, 4, 1)
+        # Shown only while there is no new plan to confirm.
+        grid.addWidget(self.resume, 4, 0)
         grid.addWidget(self.by_itself, 5, 0, 1, 2)
 
     def refresh(self) -> None:
@@ -81,6 +90,8 @@ class DrivingBar(QWidget):
         self.confirm.setEnabled(idle)
         self.discard.setVisible(bool(driven.held))
         self.discard.setEnabled(driven.sending is None)
+        self.resume.setVisible(watching and driven.offer is None and bool(driven.paused))
+        self.resume.setEnabled(idle)
         self.text.setText(self._in_words())
         self.trouble.setText(self._wrong())
         self.trouble.setVisible(bool(self.trouble.text()))
@@ -95,7 +106,8 @@ class DrivingBar(QWidget):
             done, all_of_them = len(driven.progress.done), len(driven.driven.plan.targets)
             if driven.progress.is_finished(driven.driven.plan):
                 return tr("Done: {done} of {cones} cones", done=done, cones=all_of_them)
-            return tr("Under way: {done} of {cones} cones", done=done, cones=all_of_them)
+            under_way = tr("Under way: {done} of {cones} cones", done=done, cones=all_of_them)
+            return ". ".join([under_way, *driven.pauses_in_words()])
         if drafts.draft is not None:
             return tr("Not sent yet: {summary}", summary=summary(drafts.draft))
         return tr("No plan. Choose cones and robots, then Preview or Solve.")

@@ -232,6 +232,7 @@ class PlanDock(ActionDock):
         bar.rest_wanted.connect(lambda again: self._try(lambda: self.driven.plan_rest(try_again=again)))
         bar.confirm_wanted.connect(lambda: self._try(self.driven.confirm))
         bar.discard_wanted.connect(lambda: self._try(self.driven.discard))
+        bar.resume_wanted.connect(lambda: self._try(self.driven.resume))
         bar.by_itself_changed.connect(self._set_by_itself)
         self.drafts.changed.connect(self._refresh)
         self.driven.changed.connect(self._refresh)

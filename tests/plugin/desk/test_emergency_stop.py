@@ -183,6 +183,12 @@ def test_a_stop_pressed_while_the_link_is_down_is_sent_when_it_is_back_and_says_
     assert [text for text in iface.texts() if any(part in text for part in over)] == []
 
 
+def test_nothing_says_that_a_stop_is_in_force_once_another_desk_has_cleared_it(stopped, gateway, wait):
+    gateway.stand(in_force=False)
+    wait(lambda: banner(stopped) == "")
+    assert "in force" not in stopped.dock.findChild(QLabel, "fleet_draft_text").text()
+
+
 def test_it_is_cleared_by_who_confirms_with_a_reason(stopped, gateway, iface, wait):
     QTest.mouseClick(stopped.dock.findChild(QToolButton, "fleet_clear_emergency_button"), LEFT)
     asks = dialog(iface)

@@ -139,3 +139,38 @@ def test_what_was_told_of_a_lost_robot_is_taken_down_when_a_new_plan_is_agreed_t
     press(under_way, "fleet_plan_confirm")
     wait(lambda: not under_way.driven.busy, 10)
     assert not any("r1 is lost or offline" in text for text in iface.texts())
+
+
+def pause(under_way, gateway, wait, **why):
+    """Pause both queues, as an emergency stop does."""
+    for robot in ("r1", "r2"):
+        told = {"state": "paused", "at": 50.0, "by": "bert", "reason": "emergency stop by bert", **why}
+        gateway.tell("queue", queue(under_way, robot, ["waiting"] * 3, **told))
+    wait(lambda: len(under_way.driven.paused) == 2, 5, "the pauses")
+
+
+def test_a_plan_that_somebody_paused_says_so_and_goes_on_by_one_button(under_way, gateway, wait):
+    assert not under_way.bar.resume.isVisible()
+    pause(under_way, gateway, wait)
+    assert under_way.bar.text.text() == "Under way: 0 of 6 cones. Paused: r1, r2 (emergency stop by bert)"
+    press(under_way, "fleet_plan_resume")
+    wait(lambda: len(gateway.asked("resume_queue")) == 2 and not under_way.driven.busy, 10)
+    assert [one["robot"] for one in gateway.asked("resume_queue")] == ["r1", "r2"]
+
+
+def test_no_robot_goes_on_while_an_emergency_stop_is_in_force(under_way, gateway, wait, iface):
+    gateway.stand(in_force=True, stop="stop-1", at=1.0, by="bert")
+    wait(lambda: under_way._desk.emergency is not None and under_way._desk.emergency.in_force, 5)
+    pause(under_way, gateway, wait)
+    press(under_way, "fleet_plan_resume")
+    wait(lambda: any("An emergency stop is in force" in text for text in iface.texts()), 5)
+    assert gateway.asked("resume_queue") == []
+
+
+def test_a_robot_whose_cone_failed_does_not_go_on_with_the_others(under_way, gateway, wait):
+    pause(under_way, gateway, wait)
+    gateway.tell("queue", queue(under_way, "r1", ["failed", "waiting", "waiting"], state="paused", at=60.0))
+    wait(lambda: list(under_way.driven.paused) == ["r2"], 5)
+    press(under_way, "fleet_plan_resume")
+    wait(lambda: gateway.asked("resume_queue") and not under_way.driven.busy, 10)
+    assert [one["robot"] for one in gateway.asked("resume_queue")] == ["r2"]
