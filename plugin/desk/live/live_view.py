@@ -32,6 +32,8 @@ EVERY_HALF = EVERY_SECOND // 2
 PART_OF_THE_WINDOW = 0.5
 """The part of the window's time that painting may take; on a slow computer frames come less often."""
 ZOOM_METRES = 30.0
+NEW_PLANS = 100
+"""Plans that are made for one frame: a desk that connects is told of a thousand at once."""
 
 
 class LiveView(QObject):
@@ -135,7 +137,8 @@ class LiveView(QObject):
     def _pulled(self) -> None:
         self._pulls += 1
         picture = self._desk.picture
-        is_new = self.shown != (picture.generation, picture.revision) or not self.overlay.is_whole
+        is_whole = self._plans.is_whole and self.overlay.is_whole
+        is_new = self.shown != (picture.generation, picture.revision) or not is_whole
         rested = time.perf_counter() - self._last_frame
         costs = self._took + self.overlay.took
         if (is_new or self._pulls % EVERY_HALF == 0) and rested >= costs * (1 / PART_OF_THE_WINDOW - 1):
@@ -201,7 +204,7 @@ class LiveView(QObject):
         desk, now = self._desk, self._desk.clock()
         robots = desk.picture.arrays(now)
         self._trails.extend(robots.xy, now)
-        plans = self._plans.of(desk.book.under_way())
+        plans = self._plans.of(desk.book.under_way(), NEW_PLANS)
         measured = plans if len(plans) <= MANY else [p for p in plans if p.robot in desk.selection][:MANY]
         named = {*desk.selection, *(plan.robot for plan in measured)}
         if desk.drafts.draft is not None:

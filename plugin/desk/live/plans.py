@@ -53,16 +53,24 @@ class Plans:
         self._plans: list[Plan] = []
         self._known: dict[str, Plan | None] = {}
         self._driven: dict[str, float] = {}
+        self.is_whole = True
+        """Whether every plan that was asked for last is made."""
 
-    def of(self, tasks: Iterable[CommandReport]) -> list[Plan]:
-        """Return the plans of ``tasks`` that say a place, in one list for as long as they are the same."""
+    def of(self, tasks: Iterable[CommandReport], at_once: int | None = None) -> list[Plan]:
+        """Return the plans of ``tasks`` that say a place, in one list for as long as they are the same.
+
+        At most ``at_once`` new ones are made, and the others when it is called again.
+        """
         tasks = list(tasks)
-        if tasks == self._tasks:
+        if tasks == self._tasks and self.is_whole:
             return self._plans
-        known = {task.command: self._known.get(task.command) or _plan(task) for task in tasks}
-        self._driven = {command: self._driven[command] for command in known if command in self._driven}
-        self._tasks, self._known = tasks, known
-        self._plans = [plan for plan in known.values() if plan is not None]
+        new = [task for task in tasks if task.command not in self._known]
+        made = {task.command: _plan(task) for task in new[:at_once]}
+        known = {**self._known, **made}
+        self._known = {task.command: known[task.command] for task in tasks if task.command in known}
+        self._driven = {command: self._driven[command] for command in self._known if command in self._driven}
+        self._tasks, self.is_whole = tasks, len(made) == len(new)
+        self._plans = [plan for plan in self._known.values() if plan is not None]
         return self._plans
 
     def remaining(self, plan: Plan, at: Points) -> float:

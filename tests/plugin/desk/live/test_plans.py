@@ -56,3 +56,23 @@ def test_a_plan_is_made_once_and_forgotten_with_its_command():
     assert plans.of(wanted)[0] is plans.of(wanted)[0]
     assert plans.of([]) == []
     assert not plans._known
+
+
+def test_many_new_plans_are_made_bit_by_bit_and_each_once():
+    plans, wanted = Plans(), [task("SetPosEnd", {"x": 1.0, "y": 1.0}, f"c{k}") for k in range(5)]
+    counts, first = [], plans.of(wanted, at_once=2)[0]
+    while not plans.is_whole:
+        counts.append(len(plans.of(wanted, at_once=2)))
+    assert counts == [4, 5]
+    assert plans.of(wanted, at_once=2)[0] is first
+
+
+def test_the_list_of_plans_is_another_when_and_only_when_a_task_is():
+    plans, wanted = (
+        Plans(),
+        [task("SetPosEnd", {"x": 1.0, "y": 1.0}), task("SetPosEnd", {"x": 2.0, "y": 1.0}, "c2")],
+    )
+    before = plans.of(wanted)
+    assert plans.of(list(wanted)) is before
+    assert plans.of(wanted[:1]) is not before
+    assert [plan.command for plan in plans.of(wanted[:1])] == ["c1"]
