@@ -111,7 +111,8 @@ class Ground:
             feedback.pushWarning(warning)
         unknown = self._allowed - {area.label for area in reading.items}
         if unknown and reading.complete:
-            there = ", ".join(sorted({area.label or "(none)" for area in reading.items})) or "none"
+            none = tr("none")
+            there = ", ".join(sorted({area.label or f"({none})" for area in reading.items})) or none
             feedback.pushWarning(
                 tr(
                     "No surface is of class {classes}: the layers have {classes_there}.",

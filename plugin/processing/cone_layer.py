@@ -6,7 +6,6 @@ import math
 from collections.abc import Sequence
 
 from qgis.core import (
-    QgsCoordinateReferenceSystem,
     QgsGeometry,
     QgsPointXY,
     QgsProcessing,
@@ -24,12 +23,11 @@ from qgis.core import (
 from ...robot_bridge.layouts.checks import Finding
 from ...robot_bridge.layouts.cone import Cone
 from ..language import tr
-from ..sites.site_crs import site_crs_for
 from .cone_ground import Ground
 from .errors import ParameterError
 from .fleet_algorithm import FleetAlgorithm, Parameters, fields_of
-from .map_window import SITE_CRS
 from .sinks import fill
+from .site_crs_choice import SITE_CRS, chosen_crs
 
 CONES, FINDINGS = "CONES", "FINDINGS"
 CONE_COUNT, FINDING_COUNT = "CONE_COUNT", "FINDING_COUNT"
@@ -77,12 +75,8 @@ class ConeSetup:
         """:raises SiteCrsError: when the CRS cannot carry a site."""
         self._fields = {CONES: fields_of(CONE_FIELDS), FINDINGS: fields_of(_FINDINGS)}
         self._ground = Ground(algorithm, parameters, context)
-        project = context.project()
-        self.crs = site_crs_for(
-            algorithm.parameterAsCrs(parameters, SITE_CRS, context),
-            project.crs() if project is not None else QgsCoordinateReferenceSystem(),
-            [source.sourceCrs()] if source is not None else [],
-        )
+        own = [source.sourceCrs()] if source is not None else []
+        self.crs = chosen_crs(algorithm, parameters, context, own)
         if not self.crs.isValid():
             raise ParameterError(tr("The CRS of the site is not known: give SITE_CRS, such as EPSG:32633."))
 

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from qgis.core import (
-    QgsCoordinateReferenceSystem,
     QgsProcessingAlgorithm,
     QgsProcessingContext,
     QgsProviderRegistry,
@@ -23,14 +21,14 @@ from ..sites.obstacle_source import ObstacleSource, obstacle_sources
 from ..sites.placing import SitePlacing
 from ..sites.reading import check_sources
 from ..sites.roles import LayerExpressions
-from ..sites.site_crs import site_crs_for
 from .errors import ParameterError
 from .fleet_algorithm import Parameters
 from .given_layers import layers_problem
 from .map_format import MapFormat, format_of
 from .map_profile import setups_of
 from .map_shaping import shaping_of
-from .map_window import LOCAL, SITE_CRS, map_window, site_frame
+from .map_window import LOCAL, map_window, site_frame
+from .site_crs_choice import chosen_crs
 from .whole_file import OutputError, check_target
 
 OBSTACLES, OUTPUT = "OBSTACLES", "OUTPUT"
@@ -109,7 +107,7 @@ def obstacle_plan_of(
     setups = setups_of(algorithm, parameters, context)
     scopes = algorithm.createExpressionContext(parameters, context)
     sources = obstacle_sources(layers, general, scopes, setups)
-    crs = site_crs(algorithm, parameters, context, sources)
+    crs = chosen_crs(algorithm, parameters, context, [source.crs for source in sources])
     frame = site_frame(algorithm, parameters, context, crs)
     local = algorithm.parameterAsBool(parameters, LOCAL, context)
     site = SitePlacing(crs, frame, context.transformContext(), local)
@@ -141,29 +139,6 @@ def obstacle_layers(
                 tr("The layer {layer} is no vector layer: leave it out.", layer=layer.name())
             )
     return layers
-
-
-def site_crs(
-    algorithm: QgsProcessingAlgorithm,
-    parameters: Parameters,
-    context: QgsProcessingContext,
-    sources: Sequence[ObstacleSource],
-) -> QgsCoordinateReferenceSystem:
-    """Return the CRS of the site: SITE_CRS, else the project's or the layers' own.
-
-    :raises FleetError: when it is no CRS or cannot carry a site.
-    """
-    chosen = algorithm.parameterAsCrs(parameters, SITE_CRS, context)
-    if parameters.get(SITE_CRS) and not chosen.isValid():
-        raise ParameterError(
-            tr(
-                "SITE_CRS {crs} is no CRS that QGIS knows: write a code such as EPSG:32633.",
-                crs=parameters[SITE_CRS],
-            )
-        )
-    project = context.project()
-    project_crs = project.crs() if project is not None else QgsCoordinateReferenceSystem()
-    return site_crs_for(chosen, project_crs, [source.crs for source in sources])
 
 
 def default_height(

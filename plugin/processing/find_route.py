@@ -159,18 +159,7 @@ class FindRoute(FleetAlgorithm):
                 return {}
             network, _ = built
             router = _router(network, self.parameterAsEnumString(parameters, ENGINE, context))
-            closed, warnings = self._keepouts.edges_through(network, reading.crs, feedback)
-            for warning in warnings:
-                feedback.pushWarning(warning)
-            reading.warnings += warnings
-            if closed:
-                feedback.pushInfo(
-                    tr(
-                        "{closed} edges lead through areas to be avoided, and are closed",
-                        closed=len(closed),
-                    )
-                )
-                router.close(closed)
+            reading.warnings += self._keepouts.close(router, reading.crs, feedback)
             feedback.setProgress(80)
             wanted = self._restrictions(parameters, context, lengths["LEAST_WIDTH"])
             route = router.route(

@@ -9,8 +9,6 @@ from typing import Any
 
 from qgis.core import (
     NULL,
-    QgsCoordinateTransform,
-    QgsCsException,
     QgsFeature,
     QgsProcessing,
     QgsProcessingContext,
@@ -26,7 +24,11 @@ from qgis.core import (
 from ...robot_bridge.layouts.cone import Cone
 from ...robot_bridge.layouts.placing import placed
 from ...robot_bridge.layouts.table import Columns, cones_of, read_csv
+from ...robot_bridge.sites.frame import SiteFrame
 from ..language import tr, tr_page
+from ..sites.placing import SitePlacing
+from ..sites.point_rows import point_rows
+from ..sites.site_crs import stated_crs
 from .cone_ground import ground_parameters
 from .cone_layer import STYLES, ConeSetup, add_layers, site_crs_parameter
 from .errors import ParameterError, shown_by_processing
@@ -129,7 +131,7 @@ class ImportConeLayout(FleetAlgorithm):
     def _lies(self) -> bool:
         """Whether the cones come from points that have a place already."""
         source = self._source
-        if source is None or not source.sourceCrs().isValid():
+        if source is None or not stated_crs(source.sourceCrs()).isValid():
             return False
         return QgsWkbTypes.geometryType(source.wkbType()) == QgsWkbTypes.GeometryType.PointGeometry
 
@@ -151,28 +153,12 @@ class ImportConeLayout(FleetAlgorithm):
 
     def _as_it_lies(self, columns: Columns, name: str, context: QgsProcessingContext) -> list[Cone]:
         """Return the cones of the layer's points, in the site CRS."""
-        transform = QgsCoordinateTransform(
-            self._source.sourceCrs(), self._setup.crs, context.transformContext()
-        )
-        rows = []
-        for feature in self._source.getFeatures():
-            geometry = feature.geometry()
-            try:
-                geometry.transform(transform)
-                points = list(geometry.vertices())
-            except QgsCsException:
-                points = []
-            if len(points) != 1:
-                raise ParameterError(
-                    tr(
-                        "Feature {id} of {sourcename} is not one point with a place in the site's CRS: "
-                        "correct it or leave it out.",
-                        id=feature.id(),
-                        sourcename=self._source.sourceName(),
-                    )
-                )
-            rows.append({**_attributes(feature), "$x": points[0].x(), "$y": points[0].y()})
-        head = [*self._source.fields().names(), "$x", "$y"]
+        crs, source = self._setup.crs, self._source
+        site = SitePlacing(crs, SiteFrame(crs.authid(), (0.0, 0.0)), context.transformContext())
+        placing = site.of_layer(source.sourceName(), source.sourceCrs())
+        points = point_rows(source.sourceName(), source.getFeatures(), placing, ())
+        rows = [{**point.values, "$x": point.x, "$y": point.y} for point in points]
+        head = [*source.fields().names(), "$x", "$y"]
         return cones_of(rows, head, replace(columns, x="$x", y="$y"), name, first=1)
 
     def _moved(self, cones: list[Cone], parameters: Parameters, context: QgsProcessingContext) -> list[Cone]:

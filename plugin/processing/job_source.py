@@ -23,7 +23,6 @@ from ...robot_bridge.sites.frame import SiteFrame
 from ..language import tr
 from ..sites.placing import SitePlacing
 from ..sites.point_rows import PointRow, point_rows
-from ..sites.site_crs import stated_crs
 from .cone_layer import theta_of
 from .errors import ParameterError
 from .fleet_algorithm import Parameters
@@ -144,7 +143,7 @@ class JobSource:
         if source is None:
             return
         site = SitePlacing(crs, SiteFrame(crs.authid(), (0.0, 0.0)), self._context.transformContext())
-        placing = site.of_layer(source.sourceName(), stated_crs(source.sourceCrs()))
+        placing = site.of_layer(source.sourceName(), source.sourceCrs())
         yield from point_rows(source.sourceName(), source.getFeatures(), placing, _NAMES)
 
 

@@ -6,12 +6,10 @@ from collections.abc import Callable
 
 from qgis.core import (
     QgsCoordinateReferenceSystem,
-    QgsProcessing,
     QgsProcessingAlgorithm,
     QgsProcessingContext,
     QgsProcessingFeedback,
     QgsProcessingParameterDefinition,
-    QgsProcessingParameterMultipleLayers,
     QgsProcessingParameterNumber,
     QgsProcessingParameterString,
 )
@@ -20,23 +18,17 @@ from ...robot_bridge.assignment.job import Job
 from ...robot_bridge.assignment.road_travel import RoadTravel
 from ...robot_bridge.assignment.travel import StraightTravel, Travel
 from ...robot_bridge.roads.dense import Driving
-from ...robot_bridge.roads.keepouts import edges_through
 from ...robot_bridge.roads.network import Network
 from ...robot_bridge.roads.routes import REACH, Restrictions, Router
-from ...robot_bridge.sites.frame import SiteFrame
 from ..language import tr
-from ..sites.ground_reading import read_areas
-from ..sites.obstacle_source import obstacle_sources
-from ..sites.placing import SitePlacing
-from ..sites.roles import KEEPOUT, LayerExpressions
-from ..sites.site_crs import site_crs_for
 from .errors import ParameterError
 from .fleet_algorithm import Parameters
 from .job_source import CONES, ROBOTS, JobSource, layers_crs
-from .map_window import SITE_CRS
+from .keepout_areas import KeepoutAreas, keepout_parameter
 from .road_source import ROADS, RoadSource, network_of_roads, repair_parameter, road_parameters
+from .site_crs_choice import chosen_crs
 
-SURFACES, KEEPOUTS = "SURFACES", "KEEPOUTS"
+SURFACES = "SURFACES"
 _REAL = QgsProcessingParameterNumber.Type.Double
 _DRIVING = Driving()
 _LENGTHS = {
@@ -52,12 +44,9 @@ def travel_parameters() -> list[QgsProcessingParameterDefinition]:
     """Return the parameters that say which roads may be driven, and how."""
     roads, tolerance, *others = road_parameters()
     roads.setDescription(tr("Road centrelines (default: straight lines)"))
-    areas = QgsProcessing.SourceType.TypeVectorPolygon
     made = [
         QgsProcessingParameterString(SURFACES, tr("Surfaces that may be used (default: all)"), optional=True),
-        QgsProcessingParameterMultipleLayers(
-            KEEPOUTS, tr("Areas that no road leads through"), areas, optional=True
-        ),
+        keepout_parameter(),
         *(
             QgsProcessingParameterNumber(name, title, _REAL, value, minValue=least)
             for name, (title, value, least) in _LENGTHS.items()
@@ -82,9 +71,7 @@ class TravelSource:
         self._algorithm, self._parameters, self._context = algorithm, parameters, context
         given = parameters.get(ROADS) not in (None, "")
         self._roads = RoadSource(algorithm, parameters, context) if given else None
-        layers = algorithm.parameterAsLayerList(parameters, KEEPOUTS, context)
-        expressions = algorithm.createExpressionContext(parameters, context)
-        self._keepouts = obstacle_sources(layers, LayerExpressions(), expressions) if layers else []
+        self._keepouts = KeepoutAreas(algorithm, parameters, context)
         self._network: Network | None = None
 
     def open(self, jobs: JobSource, feedback: QgsProcessingFeedback) -> QgsCoordinateReferenceSystem | None:
@@ -105,23 +92,8 @@ class TravelSource:
         return reading.crs
 
     def _crs(self, jobs: JobSource) -> QgsCoordinateReferenceSystem:
-        algorithm, parameters, context = self._algorithm, self._parameters, self._context
-        chosen = algorithm.parameterAsCrs(parameters, SITE_CRS, context)
-        if parameters.get(SITE_CRS) and not chosen.isValid():
-            given = parameters[SITE_CRS]
-            raise ParameterError(
-                tr(
-                    "SITE_CRS {given} is no CRS that QGIS knows: write a code such as EPSG:32633.",
-                    given=given,
-                )
-            )
         own = layers_crs([jobs.source(CONES), jobs.source(ROBOTS)])
-        if not chosen.isValid() and own and own[0].isValid() and not own[0].isGeographic():
-            chosen = own[0]
-        project = context.project()
-        crs = site_crs_for(
-            chosen, project.crs() if project is not None else QgsCoordinateReferenceSystem(), own
-        )
+        crs = chosen_crs(self._algorithm, self._parameters, self._context, own, layer_first=True)
         if not crs.isValid():
             raise ParameterError(tr("The CRS of the cones is not known: give SITE_CRS, such as EPSG:32633."))
         return crs
@@ -149,18 +121,5 @@ class TravelSource:
         wanted = Restrictions(False, surfaces or None, value["LEAST_WIDTH"])
         router = Router(self._network)
         progress(0.0)
-        self._close(router, crs, feedback)
+        self._keepouts.close(router, crs, feedback)
         return RoadTravel(job, router, driving, wanted, value["DISTANCE"], progress)
-
-    def _close(
-        self, router: Router, crs: QgsCoordinateReferenceSystem, feedback: QgsProcessingFeedback
-    ) -> None:
-        if not self._keepouts:
-            return
-        site = SitePlacing(crs, SiteFrame(crs.authid(), (0.0, 0.0)), self._context.transformContext())
-        areas = read_areas(self._keepouts, site, KEEPOUT, feedback)
-        for warning in areas.warnings:
-            feedback.pushWarning(warning)
-        closed = edges_through(router.network, [area.rings for area in areas.items])
-        router.close(closed.tolist())
-        feedback.pushInfo(tr("{closed} edges lead through keepouts and are not used", closed=len(closed)))

@@ -1,25 +1,22 @@
-"""Areas that a route must not lead through, from polygon layers; by QGIS's own geometry alone."""
+"""Areas that a route must not lead through, from polygon layers."""
 
 from __future__ import annotations
 
 from qgis.core import (
     QgsCoordinateReferenceSystem,
-    QgsFeedback,
-    QgsGeometry,
-    QgsPointXY,
     QgsProcessing,
     QgsProcessingAlgorithm,
     QgsProcessingContext,
+    QgsProcessingFeedback,
     QgsProcessingParameterDefinition,
     QgsProcessingParameterMultipleLayers,
-    QgsRectangle,
-    QgsSpatialIndex,
 )
 
-from ...robot_bridge.roads.network import Network
+from ...robot_bridge.roads.routes import Router
 from ...robot_bridge.sites.frame import SiteFrame
 from ..language import tr
 from ..sites.ground_reading import read_areas
+from ..sites.keepout_edges import edges_through
 from ..sites.obstacle_source import obstacle_sources
 from ..sites.placing import SitePlacing
 from ..sites.roles import KEEPOUT, LayerExpressions
@@ -49,35 +46,25 @@ class KeepoutAreas:
         self._transforms = context.transformContext()
         self._sources = obstacle_sources(layers, LayerExpressions(), expressions) if layers else []
 
-    def edges_through(
-        self, network: Network, crs: QgsCoordinateReferenceSystem, feedback: QgsFeedback
-    ) -> tuple[list[int], list[str]]:
-        """Return the edges of ``network``, which is in ``crs``, that come into an area, and warnings.
+    def close(
+        self, router: Router, crs: QgsCoordinateReferenceSystem, feedback: QgsProcessingFeedback
+    ) -> list[str]:
+        """Close the edges of ``router``, whose network is in ``crs``, that come into an area.
 
-        What runs along the rim of an area does not come into it.
+        Return what was warned of. What runs along the rim of an area does not come into it.
 
         :raises LayerReadingError: when a layer has no known place in ``crs``.
         """
         if not self._sources:
-            return [], []
+            return []
         site = SitePlacing(crs, SiteFrame(crs.authid(), (0.0, 0.0)), self._transforms)
         reading = read_areas(self._sources, site, KEEPOUT, feedback)
-        lines = [_line(network, edge) for edge in range(len(network))]
-        index = QgsSpatialIndex()
-        for edge, line in enumerate(lines):
-            index.addFeature(edge, line.boundingBox())
-        found: set[int] = set()
-        for area in reading.items:
-            polygon = _valid([[QgsPointXY(x, y) for x, y in ring.tolist()] for ring in area.rings])
-            near = index.intersects(QgsRectangle(polygon.boundingBox()))
-            found |= {edge for edge in near if lines[edge].crosses(polygon) or lines[edge].within(polygon)}
-        return sorted(found), list(reading.warnings)
-
-
-def _line(network: Network, edge: int) -> QgsGeometry:
-    return QgsGeometry.fromPolylineXY([QgsPointXY(x, y) for x, y in network.edges.line(edge).tolist()])
-
-
-def _valid(rings: list[list[QgsPointXY]]) -> QgsGeometry:
-    polygon = QgsGeometry.fromPolygonXY(rings)
-    return polygon if polygon.isGeosValid() else polygon.makeValid()
+        for warning in reading.warnings:
+            feedback.pushWarning(warning)
+        closed = edges_through(router.network, [area.rings for area in reading.items])
+        if closed:
+            router.close(closed)
+            feedback.pushInfo(
+                tr("{closed} edges lead through areas to be avoided, and are closed", closed=len(closed))
+            )
+        return reading.warnings

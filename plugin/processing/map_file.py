@@ -31,7 +31,8 @@ from ..language import tr
 from ..sites.site_crs import check_site_crs
 from .errors import ParameterError
 from .fleet_algorithm import Parameters
-from .map_window import ORIGIN, ROTATION, SITE_CRS
+from .map_window import ORIGIN, ROTATION
+from .site_crs_choice import SITE_CRS, given_crs
 
 MAP = "MAP"
 SITE_METRES = (
@@ -173,15 +174,8 @@ def _crs(
     meta: Mapping[str, str],
     feedback: QgsProcessingFeedback,
 ) -> QgsCoordinateReferenceSystem:
-    chosen = algorithm.parameterAsCrs(parameters, SITE_CRS, context)
-    if parameters.get(SITE_CRS):
-        if not chosen.isValid():
-            raise ParameterError(
-                tr(
-                    "SITE_CRS {crs} is no CRS that QGIS knows: write a code such as EPSG:32633.",
-                    crs=parameters[SITE_CRS],
-                )
-            )
+    chosen = given_crs(algorithm, parameters, context)
+    if chosen.isValid():
         check_site_crs(chosen)
         return chosen
     stated = meta.get("crs", "")

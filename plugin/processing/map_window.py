@@ -25,9 +25,10 @@ from ..sites.project_site import frame_in_project
 from ..sites.site_crs import crs_name
 from .errors import ParameterError
 from .fleet_algorithm import Parameters
+from .site_crs_choice import SITE_CRS
 
 CENTER, WIDTH, HEIGHT, EXTENT = "CENTER", "WIDTH", "HEIGHT", "EXTENT"
-SITE_CRS, ORIGIN, ROTATION, LOCAL = "SITE_CRS", "ORIGIN", "ROTATION", "LOCAL"
+ORIGIN, ROTATION, LOCAL = "ORIGIN", "ROTATION", "LOCAL"
 PAPERS_SIDE_M = 100.0
 
 _REAL = QgsProcessingParameterNumber.Type.Double

@@ -39,11 +39,12 @@ from ..sites.roles import (
 )
 from ..sites.site_crs import crs_name, is_engineering
 from .errors import ParameterError
-from .export_plan import default_height, site_crs
+from .export_plan import default_height
 from .fleet_algorithm import Parameters
 from .given_layers import layers_problem
 from .map_profile import setups_of
 from .map_window import LOCAL, site_frame
+from .site_crs_choice import chosen_crs
 
 FOLDER, REPLACE = "FOLDER", "REPLACE"
 SITE_ID, SITE_NAME, BOUNDS = "SITE_ID", "SITE_NAME", "BOUNDS"
@@ -105,7 +106,8 @@ def publish_plan(
                 "Give roles (Fleet Supervisor > Layer roles), a PROFILE, or layers."
             )
         )
-    crs = site_crs(algorithm, parameters, context, sources.all())
+    own = [source.crs for source in sources.all()]
+    crs = chosen_crs(algorithm, parameters, context, own)
     _check_published_crs(crs)
     frame = site_frame(algorithm, parameters, context, crs)
     local = algorithm.parameterAsBool(parameters, LOCAL, context)

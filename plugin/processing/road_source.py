@@ -34,10 +34,9 @@ from ..sites.layer_rules import LayerRules
 from ..sites.placing import LayerPlacing, PlacingError, SitePlacing
 from ..sites.road_attributes import RoadAttributes, RoadExpressions, RoadRules
 from ..sites.roles import LayerExpressions, expressions_of
-from ..sites.site_crs import site_crs_for
 from .errors import ParameterError
 from .fleet_algorithm import Parameters
-from .map_window import SITE_CRS
+from .site_crs_choice import SITE_CRS, chosen_crs
 
 ROADS, DEFAULT_WIDTH, SPEED_DEFAULT = "ROADS", "DEFAULT_WIDTH", "DEFAULT_SPEED"
 TOLERANCE, REPAIR = "TOLERANCE", "REPAIR"
@@ -144,27 +143,11 @@ class RoadSource:
                     roads=self._parameters.get(ROADS),
                 )
             )
-        crs = self._crs(source)
+        given = self._algorithm, self._parameters, self._context
+        crs = chosen_crs(*given, [source.sourceCrs()], layer_first=True)
         site = SitePlacing(crs, SiteFrame("", (0.0, 0.0)), self._context.transformContext())
         placing = site.of_layer(source.sourceName(), source.sourceCrs())
         return self._read(source, crs, placing, feedback)
-
-    def _crs(self, source: QgsProcessingFeatureSource) -> QgsCoordinateReferenceSystem:
-        chosen = self._algorithm.parameterAsCrs(self._parameters, SITE_CRS, self._context)
-        if self._parameters.get(SITE_CRS) and not chosen.isValid():
-            given = self._parameters[SITE_CRS]
-            raise ParameterError(
-                tr(
-                    "SITE_CRS {given} is no CRS that QGIS knows: write a code such as EPSG:32633.",
-                    given=given,
-                )
-            )
-        own = source.sourceCrs()
-        if not chosen.isValid() and own.isValid() and not own.isGeographic():
-            chosen = own
-        project = self._context.project()
-        other = project.crs() if project is not None else QgsCoordinateReferenceSystem()
-        return site_crs_for(chosen, other, [own])
 
     def _read(
         self,

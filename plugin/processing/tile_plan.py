@@ -18,7 +18,6 @@ from ..language import tr
 from ..sites.feature_filter import FeatureFilter
 from ..sites.placing import PlacingError, SitePlacing
 from ..sites.shapes import shapes_of
-from ..sites.site_crs import stated_crs
 from .errors import ParameterError
 from .export_plan import ObstaclePlan, obstacle_plan_of
 from .fleet_algorithm import Parameters
@@ -105,7 +104,7 @@ def _routes(
         raise ParameterError(
             tr("ROUTE {route} cannot be opened: choose a layer of lines.", route=parameters[ROUTE])
         )
-    placing = site.of_layer(source.sourceName(), stated_crs(source.sourceCrs()))
+    placing = site.of_layer(source.sourceName(), source.sourceCrs())
     counted = filter_in(algorithm, parameters, ROUTE, context)
     routes = []
     for feature in source.getFeatures():

@@ -29,6 +29,7 @@ from qgis.core import (
 )
 
 from ..language import tr, tr_page
+from ..sites.site_crs import is_mercator
 from .drives import Drive, Positions, drives
 from .errors import shown_by_processing
 from .fleet_algorithm import FleetAlgorithm, Parameters, fields_of
@@ -52,8 +53,6 @@ _FIELDS = {
     "top_speed": "double",
     "count": "integer",
 }
-_STRETCHED = ("EPSG:3857", "EPSG:3395", "EPSG:900913")
-"""Their metres are not metres."""
 
 
 class Trajectories(FleetAlgorithm):
@@ -183,7 +182,7 @@ class Metres:
     def __init__(self, crs: QgsCoordinateReferenceSystem, transforms: QgsCoordinateTransformContext) -> None:
         true = crs.mapUnits() == QgsUnitTypes.DistanceUnit.DistanceMeters and not crs.isGeographic()
         self._measure = None
-        if crs.isValid() and (not true or crs.authid() in _STRETCHED):
+        if crs.isValid() and (not true or is_mercator(crs)):
             self._measure = QgsDistanceArea()
             self._measure.setSourceCrs(crs, transforms)
             self._measure.setEllipsoid(crs.ellipsoidAcronym() or "WGS84")

@@ -19,7 +19,7 @@ from qgis.core import (
 from ...robot_bridge.sites.frame import SiteFrame
 from ..language import tr
 from .errors import LayerCrsError
-from .site_crs import crs_name, is_engineering
+from .site_crs import crs_name, is_engineering, stated_crs
 
 Bounds = tuple[float, float, float, float]
 """x_min, y_min, x_max, y_max."""
@@ -47,6 +47,7 @@ class SitePlacing:
 
         :raises LayerCrsError: when they do not.
         """
+        crs = stated_crs(crs)
         if crs.isValid() and crs == self.crs:
             return LayerPlacing(None, self.frame)
         unrelated = not crs.isValid() or is_engineering(crs) or is_engineering(self.crs)

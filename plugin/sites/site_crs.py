@@ -54,7 +54,7 @@ def check_site_crs(crs: QgsCoordinateReferenceSystem) -> None:
                 suggestion=_suggestion(crs),
             )
         )
-    if crs.projectionAcronym() in ("merc", "webmerc"):
+    if is_mercator(crs):
         raise SiteCrsError(
             tr(
                 "{named}: its metres are not metres; 1 m on the ground is 1.56 m there at latitude 50°. "
@@ -72,6 +72,11 @@ def check_site_crs(crs: QgsCoordinateReferenceSystem) -> None:
                 suggestion=_suggestion(crs),
             )
         )
+
+
+def is_mercator(crs: QgsCoordinateReferenceSystem) -> bool:
+    """Tell whether ``crs`` is a Mercator one, such as EPSG:3857: its metres are not metres on the ground."""
+    return crs.projectionAcronym() in ("merc", "webmerc")
 
 
 def is_engineering(crs: QgsCoordinateReferenceSystem) -> bool:

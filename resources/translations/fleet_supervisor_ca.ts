@@ -2315,11 +2315,6 @@
         </message>
         <message>
             <location filename="../../plugin/desk/orders.py" />
-            <source>{words}: in force</source>
-            <translation>{words}: en vigor</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/orders.py" />
             <source>{words}: queued</source>
             <translation>{words}: en cua</translation>
         </message>
@@ -2560,8 +2555,18 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driven_plan.py" />
+            <source>No queue of the plan is paused, or something is still being sent.</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driven_plan.py" />
             <source>No robot is left to take over: connect one, and plan anew.</source>
             <translation>No queda cap robot que se'n faci càrrec: connecteu-ne un i torneu a planificar.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driven_plan.py" />
+            <source>Paused: {robots} ({why})</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driven_plan.py" />
@@ -2640,6 +2645,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>Let them go on</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
             <source>New plan, not sent yet: {summary}</source>
             <translation>Pla nou, encara no enviat: {summary}</translation>
         </message>
@@ -2657,6 +2667,11 @@
             <location filename="../../plugin/desk/plans/driving_bar.py" />
             <source>Plan what is left</source>
             <translation>Planifica el que queda</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>Resume the queues of the plan's robots that somebody paused</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driving_bar.py" />
@@ -4897,6 +4912,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>It is written: {link}</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/as_placed_report.py" />
             <source>Largest deviation [m]</source>
             <translation>Desviació més gran [m]</translation>
         </message>
@@ -5577,11 +5597,6 @@
         </message>
         <message>
             <location filename="../../plugin/processing/export_plan.py" />
-            <source>SITE_CRS {crs} is no CRS that QGIS knows: write a code such as EPSG:32633.</source>
-            <translation>SITE_CRS {crs} no és un SRC que QGIS conegui: escriviu un codi com ara EPSG:32633.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/export_plan.py" />
             <source>The layer {layer} is no vector layer: leave it out.</source>
             <translation>La capa {layer} no és vectorial: ometeu-la.</translation>
         </message>
@@ -5877,11 +5892,6 @@
         </message>
         <message>
             <location filename="../../plugin/processing/find_route.py" />
-            <source>{closed} edges lead through areas to be avoided, and are closed</source>
-            <translation>{closed} arestes passen per zones que cal evitar, i es tanquen</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/find_route.py" />
             <source>{metres:.1f} m, {seconds:.1f} s, {points} points, found by {engine}; start {off_start:.2f} m and goal {off_goal:.2f} m from the road</source>
             <translation>{metres:.1f} m, {seconds:.1f} s, {points} punts, trobada per {engine}; inici a {off_start:.2f} m i final a {off_goal:.2f} m de la via</translation>
         </message>
@@ -5979,11 +5989,6 @@
             <location filename="../../plugin/processing/import_cone_layout.py" />
             <source>Column that names the layout of each row</source>
             <translation>Columna que anomena la disposició de cada fila</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/import_cone_layout.py" />
-            <source>Feature {id} of {sourcename} is not one point with a place in the site's CRS: correct it or leave it out.</source>
-            <translation>L'entitat {id} de {sourcename} no és un sol punt amb lloc al SRC del recinte: corregiu-la o ometeu-la.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/import_cone_layout.py" />
@@ -6092,11 +6097,6 @@
         </message>
         <message>
             <location filename="../../plugin/processing/job_travel.py" />
-            <source>Areas that no road leads through</source>
-            <translation>Zones per on no passa cap via</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/job_travel.py" />
             <source>Cones, robots and stores at most this far from a road [m]</source>
             <translation>Cons, robots i magatzems com a màxim a aquesta distància d'una via [m]</translation>
         </message>
@@ -6117,11 +6117,6 @@
         </message>
         <message>
             <location filename="../../plugin/processing/job_travel.py" />
-            <source>SITE_CRS {given} is no CRS that QGIS knows: write a code such as EPSG:32633.</source>
-            <translation>SITE_CRS {given} no és un SRC que QGIS conegui: escriviu un codi com ara EPSG:32633.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/job_travel.py" />
             <source>The CRS of the cones is not known: give SITE_CRS, such as EPSG:32633.</source>
             <translation>El SRC dels cons no es coneix: doneu SITE_CRS, com ara EPSG:32633.</translation>
         </message>
@@ -6136,14 +6131,14 @@
             <translation>Amplada dels robots [m]</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/job_travel.py" />
-            <source>{closed} edges lead through keepouts and are not used</source>
-            <translation>{closed} arestes passen per zones prohibides i no es fan servir</translation>
-        </message>
-        <message>
             <location filename="../../plugin/processing/keepout_areas.py" />
             <source>Areas that must not be driven through</source>
             <translation>Zones que no s'han de travessar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/keepout_areas.py" />
+            <source>{closed} edges lead through areas to be avoided, and are closed</source>
+            <translation>{closed} arestes passen per zones que cal evitar, i es tanquen</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/load_robot_map.py" />
@@ -6884,6 +6879,11 @@
             <location filename="../../plugin/processing/sinks.py" />
             <source>no reason is given</source>
             <translation>no se'n dona cap motiu</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/site_crs_choice.py" />
+            <source>SITE_CRS {crs} is no CRS that QGIS knows: write a code such as EPSG:32633.</source>
+            <translation>SITE_CRS {crs} no és un SRC que QGIS conegui: escriviu un codi com ara EPSG:32633.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/surface_at_point.py" />

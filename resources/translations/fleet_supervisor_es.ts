@@ -2315,11 +2315,6 @@
         </message>
         <message>
             <location filename="../../plugin/desk/orders.py" />
-            <source>{words}: in force</source>
-            <translation>{words}: en vigor</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/orders.py" />
             <source>{words}: queued</source>
             <translation>{words}: en cola</translation>
         </message>
@@ -2560,8 +2555,18 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driven_plan.py" />
+            <source>No queue of the plan is paused, or something is still being sent.</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driven_plan.py" />
             <source>No robot is left to take over: connect one, and plan anew.</source>
             <translation>No queda ningún robot que lo asuma: conecte uno y planifique de nuevo.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driven_plan.py" />
+            <source>Paused: {robots} ({why})</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driven_plan.py" />
@@ -2640,6 +2645,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>Let them go on</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
             <source>New plan, not sent yet: {summary}</source>
             <translation>Plan nuevo, aún no enviado: {summary}</translation>
         </message>
@@ -2657,6 +2667,11 @@
             <location filename="../../plugin/desk/plans/driving_bar.py" />
             <source>Plan what is left</source>
             <translation>Planificar lo que queda</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>Resume the queues of the plan's robots that somebody paused</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driving_bar.py" />
@@ -4897,6 +4912,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>It is written: {link}</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/as_placed_report.py" />
             <source>Largest deviation [m]</source>
             <translation>Mayor desviación [m]</translation>
         </message>
@@ -5577,11 +5597,6 @@
         </message>
         <message>
             <location filename="../../plugin/processing/export_plan.py" />
-            <source>SITE_CRS {crs} is no CRS that QGIS knows: write a code such as EPSG:32633.</source>
-            <translation>SITE_CRS {crs} no es un SRC que QGIS conozca: escriba un código como EPSG:32633.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/export_plan.py" />
             <source>The layer {layer} is no vector layer: leave it out.</source>
             <translation>La capa {layer} no es vectorial: omítala.</translation>
         </message>
@@ -5877,11 +5892,6 @@
         </message>
         <message>
             <location filename="../../plugin/processing/find_route.py" />
-            <source>{closed} edges lead through areas to be avoided, and are closed</source>
-            <translation>{closed} aristas pasan por zonas que hay que evitar, y se cierran</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/find_route.py" />
             <source>{metres:.1f} m, {seconds:.1f} s, {points} points, found by {engine}; start {off_start:.2f} m and goal {off_goal:.2f} m from the road</source>
             <translation>{metres:.1f} m, {seconds:.1f} s, {points} puntos, encontrada por {engine}; inicio a {off_start:.2f} m y final a {off_goal:.2f} m de la vía</translation>
         </message>
@@ -5979,11 +5989,6 @@
             <location filename="../../plugin/processing/import_cone_layout.py" />
             <source>Column that names the layout of each row</source>
             <translation>Columna que nombra la disposición de cada fila</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/import_cone_layout.py" />
-            <source>Feature {id} of {sourcename} is not one point with a place in the site's CRS: correct it or leave it out.</source>
-            <translation>El objeto {id} de {sourcename} no es un solo punto con lugar en el SRC del recinto: corríjalo u omítalo.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/import_cone_layout.py" />
@@ -6092,11 +6097,6 @@
         </message>
         <message>
             <location filename="../../plugin/processing/job_travel.py" />
-            <source>Areas that no road leads through</source>
-            <translation>Zonas por las que no pasa ninguna vía</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/job_travel.py" />
             <source>Cones, robots and stores at most this far from a road [m]</source>
             <translation>Conos, robots y almacenes como máximo a esta distancia de una vía [m]</translation>
         </message>
@@ -6117,11 +6117,6 @@
         </message>
         <message>
             <location filename="../../plugin/processing/job_travel.py" />
-            <source>SITE_CRS {given} is no CRS that QGIS knows: write a code such as EPSG:32633.</source>
-            <translation>SITE_CRS {given} no es un SRC que QGIS conozca: escriba un código como EPSG:32633.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/job_travel.py" />
             <source>The CRS of the cones is not known: give SITE_CRS, such as EPSG:32633.</source>
             <translation>El SRC de los conos no se conoce: dé SITE_CRS, como EPSG:32633.</translation>
         </message>
@@ -6136,14 +6131,14 @@
             <translation>Anchura de los robots [m]</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/job_travel.py" />
-            <source>{closed} edges lead through keepouts and are not used</source>
-            <translation>{closed} aristas pasan por zonas prohibidas y no se usan</translation>
-        </message>
-        <message>
             <location filename="../../plugin/processing/keepout_areas.py" />
             <source>Areas that must not be driven through</source>
             <translation>Zonas que no se deben atravesar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/keepout_areas.py" />
+            <source>{closed} edges lead through areas to be avoided, and are closed</source>
+            <translation>{closed} aristas pasan por zonas que hay que evitar, y se cierran</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/load_robot_map.py" />
@@ -6884,6 +6879,11 @@
             <location filename="../../plugin/processing/sinks.py" />
             <source>no reason is given</source>
             <translation>no se da ningún motivo</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/site_crs_choice.py" />
+            <source>SITE_CRS {crs} is no CRS that QGIS knows: write a code such as EPSG:32633.</source>
+            <translation>SITE_CRS {crs} no es un SRC que QGIS conozca: escriba un código como EPSG:32633.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/surface_at_point.py" />

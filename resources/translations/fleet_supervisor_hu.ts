@@ -2313,11 +2313,6 @@
         </message>
         <message>
             <location filename="../../plugin/desk/orders.py" />
-            <source>{words}: in force</source>
-            <translation>{words}: érvényben van</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/orders.py" />
             <source>{words}: queued</source>
             <translation>{words}: sorba állítva</translation>
         </message>
@@ -2558,8 +2553,18 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driven_plan.py" />
+            <source>No queue of the plan is paused, or something is still being sent.</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driven_plan.py" />
             <source>No robot is left to take over: connect one, and plan anew.</source>
             <translation>Nem maradt robot, amely átvenné: kapcsoljon be egyet, és tervezzen újra.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driven_plan.py" />
+            <source>Paused: {robots} ({why})</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driven_plan.py" />
@@ -2638,6 +2643,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>Let them go on</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
             <source>New plan, not sent yet: {summary}</source>
             <translation>Új terv, még nincs elküldve: {summary}</translation>
         </message>
@@ -2655,6 +2665,11 @@
             <location filename="../../plugin/desk/plans/driving_bar.py" />
             <source>Plan what is left</source>
             <translation>A maradék tervezése</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>Resume the queues of the plan's robots that somebody paused</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driving_bar.py" />
@@ -4893,6 +4908,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>It is written: {link}</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/as_placed_report.py" />
             <source>Largest deviation [m]</source>
             <translation>Legnagyobb eltérés [m]</translation>
         </message>
@@ -5573,11 +5593,6 @@
         </message>
         <message>
             <location filename="../../plugin/processing/export_plan.py" />
-            <source>SITE_CRS {crs} is no CRS that QGIS knows: write a code such as EPSG:32633.</source>
-            <translation>SITE_CRS {crs} nem a QGIS által ismert vetület: írjon olyan kódot, mint EPSG:32633.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/export_plan.py" />
             <source>The layer {layer} is no vector layer: leave it out.</source>
             <translation>A(z) {layer} réteg nem vektorréteg: hagyja ki.</translation>
         </message>
@@ -5873,11 +5888,6 @@
         </message>
         <message>
             <location filename="../../plugin/processing/find_route.py" />
-            <source>{closed} edges lead through areas to be avoided, and are closed</source>
-            <translation>{closed} él elkerülendő területen vezet át, ezek le vannak zárva</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/find_route.py" />
             <source>{metres:.1f} m, {seconds:.1f} s, {points} points, found by {engine}; start {off_start:.2f} m and goal {off_goal:.2f} m from the road</source>
             <translation>{metres:.1f} m, {seconds:.1f} s, {points} pont, megtalálta: {engine}; a kiindulás {off_start:.2f} m-re, a végpont {off_goal:.2f} m-re van az úttól</translation>
         </message>
@@ -5975,11 +5985,6 @@
             <location filename="../../plugin/processing/import_cone_layout.py" />
             <source>Column that names the layout of each row</source>
             <translation>Az egyes sorok elrendezését megnevező oszlop</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/import_cone_layout.py" />
-            <source>Feature {id} of {sourcename} is not one point with a place in the site's CRS: correct it or leave it out.</source>
-            <translation>A(z) {sourcename} {id}. eleme nem egyetlen pont, amelynek helye van a telephely vetületében: javítsa ki, vagy hagyja ki.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/import_cone_layout.py" />
@@ -6088,11 +6093,6 @@
         </message>
         <message>
             <location filename="../../plugin/processing/job_travel.py" />
-            <source>Areas that no road leads through</source>
-            <translation>Területek, amelyeken nem vezet át út</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/job_travel.py" />
             <source>Cones, robots and stores at most this far from a road [m]</source>
             <translation>Bóják, robotok és raktárak legfeljebb ilyen messze az úttól [m]</translation>
         </message>
@@ -6113,11 +6113,6 @@
         </message>
         <message>
             <location filename="../../plugin/processing/job_travel.py" />
-            <source>SITE_CRS {given} is no CRS that QGIS knows: write a code such as EPSG:32633.</source>
-            <translation>SITE_CRS {given} nem a QGIS által ismert vetület: írjon olyan kódot, mint EPSG:32633.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/job_travel.py" />
             <source>The CRS of the cones is not known: give SITE_CRS, such as EPSG:32633.</source>
             <translation>A bóják vetülete nem ismert: adja meg a SITE_CRS-t, például EPSG:32633.</translation>
         </message>
@@ -6132,14 +6127,14 @@
             <translation>A robotok szélessége [m]</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/job_travel.py" />
-            <source>{closed} edges lead through keepouts and are not used</source>
-            <translation>{closed} él tiltott területen vezet át, ezek nincsenek használva</translation>
-        </message>
-        <message>
             <location filename="../../plugin/processing/keepout_areas.py" />
             <source>Areas that must not be driven through</source>
             <translation>Területek, amelyeken nem szabad áthajtani</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/keepout_areas.py" />
+            <source>{closed} edges lead through areas to be avoided, and are closed</source>
+            <translation>{closed} él elkerülendő területen vezet át, ezek le vannak zárva</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/load_robot_map.py" />
@@ -6880,6 +6875,11 @@
             <location filename="../../plugin/processing/sinks.py" />
             <source>no reason is given</source>
             <translation>nincs megadva ok</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/site_crs_choice.py" />
+            <source>SITE_CRS {crs} is no CRS that QGIS knows: write a code such as EPSG:32633.</source>
+            <translation>SITE_CRS {crs} nem a QGIS által ismert vetület: írjon olyan kódot, mint EPSG:32633.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/surface_at_point.py" />

@@ -106,8 +106,6 @@ def _rows(
     layer: QgsVectorLayer, project: QgsProject, frame: SiteFrame, *, selected: bool
 ) -> Iterator[PointRow]:
     crs = stated_crs(QgsCoordinateReferenceSystem(frame.crs))
-    placing = SitePlacing(crs, frame, project.transformContext()).of_layer(
-        layer.name(), stated_crs(layer.crs())
-    )
+    placing = SitePlacing(crs, frame, project.transformContext()).of_layer(layer.name(), layer.crs())
     features = layer.getSelectedFeatures() if selected else layer.getFeatures()
     return point_rows(layer.name(), features, placing, _NAMES)

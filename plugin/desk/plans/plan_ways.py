@@ -26,12 +26,12 @@ from ....robot_bridge.sites.frame import SiteFrame
 from ....robot_bridge.sites.road_lines import road_lines
 from ...language import tr
 from ...sites.ground_reading import DEFAULT_WIDTH_M, read_areas, read_centrelines
+from ...sites.keepout_edges import edges_through
 from ...sites.obstacle_source import obstacle_sources
 from ...sites.placing import SitePlacing
 from ...sites.roles import KEEPOUT, ROAD_CENTRELINE, LayerExpressions, layers_with_role
 from ...sites.site_crs import stated_crs
 from .clear_paths import ClearTravel
-from .keepout_edges import edges_through
 from .plan_settings import PlanSettings
 
 Floats = npt.NDArray[np.float64]

@@ -142,11 +142,18 @@ def test_what_cannot_be_is_refused_with_what_to_do(place, parameters, reason):
         place(LAYOUT="slalom", **parameters)
 
 
-def test_a_crs_whose_metres_are_none_is_refused(qgis_process, tmp_path):
-    where = ("POINT=0,0", "SITE_CRS=EPSG:3857", f"CONES={tmp_path / 'cones.gpkg'}")
+@pytest.mark.parametrize(
+    ("crs", "reason"),
+    [
+        ("EPSG:3857", "its metres are not metres"),
+        ("EPSG:99999", "SITE_CRS EPSG:99999 is no CRS that QGIS knows"),
+    ],
+)
+def test_a_crs_that_cannot_carry_a_site_is_refused(qgis_process, tmp_path, crs, reason):
+    where = ("POINT=0,0", f"SITE_CRS={crs}", f"CONES={tmp_path / 'cones.gpkg'}")
     done = qgis_process("run", "fleet:conelayout", "--", "LAYOUT=slalom", *where)
     assert done.status != 0
-    assert "EPSG:3857" in done.said and "its metres are not metres" in done.said
+    assert crs in done.said and reason in done.said
     assert "Traceback" not in done.said
 
 

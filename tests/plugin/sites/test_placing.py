@@ -10,7 +10,8 @@ import pytest
 from fleet_supervisor.plugin.sites.errors import LayerCrsError
 from fleet_supervisor.plugin.sites.placing import SitePlacing
 from fleet_supervisor.robot_bridge.sites.frame import SiteFrame
-from qgis.core import QgsCoordinateReferenceSystem, QgsCoordinateTransformContext
+from osgeo import ogr
+from qgis.core import QgsCoordinateReferenceSystem, QgsCoordinateTransformContext, QgsVectorLayer
 
 ORIGIN = (640420.0, 5193480.0)
 ENGINEERING = (
@@ -42,6 +43,19 @@ def test_a_layer_without_a_crs_is_refused_by_name_unless_it_is_said_to_be_local(
     assert row.points.tolist() == [[1, 2], [3, 4]]
 
 
+def test_a_geopackage_that_only_says_that_it_has_no_crs_is_placed_nowhere(qgis_app, tmp_path):
+    """Its layer comes in degrees of an "Undefined geographic SRS"."""
+    file = str(tmp_path / "plan.gpkg")
+    source = ogr.GetDriverByName("GPKG").CreateDataSource(file)
+    source.CreateLayer("roads", None, ogr.wkbLineString)
+    source = None
+    crs = QgsVectorLayer(f"{file}|layername=roads", "roads", "ogr").crs()
+    site = QgsCoordinateReferenceSystem("EPSG:32633")
+    placing = SitePlacing(site, SiteFrame("EPSG:32633", ORIGIN), QgsCoordinateTransformContext())
+    with pytest.raises(LayerCrsError, match="The layer roads has no CRS"):
+        placing.of_layer("roads", crs)
+
+
 @pytest.mark.parametrize(
     ("crs", "why"), [("", "has no CRS"), (ENGINEERING, "is in the CRS yard.*EPSG:32633")]
 )
@@ -54,8 +68,6 @@ def test_where_nobody_is_asked_whether_a_layer_is_local_no_such_choice_is_advise
 
 
 def test_an_engineering_layer_on_another_site_crs_is_refused_by_name(data, read):
-    from qgis.core import QgsVectorLayer
-
     file = data / "upc_campus_nord" / "upc_campus_nord_local.gpkg"
     layer = QgsVectorLayer(f"{file}|layername=buildings", "campus", "ogr")
     with pytest.raises(LayerCrsError, match=r"campus is in the CRS UPC FIB.*no known relation.*EPSG:32633"):

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 from qgis.core import QgsGeometry, QgsPointXY
 
-from ....robot_bridge.roads.network import Network
+from ...robot_bridge.roads.network import Network
 
 Floats = npt.NDArray[np.float64]
 

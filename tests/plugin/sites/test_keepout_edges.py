@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fleet_supervisor.plugin.desk.plans.keepout_edges import edges_through
+from fleet_supervisor.plugin.sites.keepout_edges import edges_through
 from fleet_supervisor.robot_bridge.roads import keepouts
 from fleet_supervisor.robot_bridge.roads.centrelines import centrelines
 from fleet_supervisor.robot_bridge.roads.network import build_network
