@@ -9,6 +9,7 @@ from __future__ import annotations
 import datetime
 import ipaddress
 import os
+import stat
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -219,14 +220,27 @@ def _write_key(file: Path, key: ec.EllipticCurvePrivateKey) -> None:
 
 
 def _write(file: Path, content: bytes, mode: int = 0o644) -> None:
-    """Put ``content`` in the place of ``file`` at once, readable from the first byte on to ``mode`` only."""
+    """Put ``content`` in the place of ``file`` at once, readable from the first byte on to ``mode`` only.
+
+    Then it belongs to whom ``file`` did: root renews what the gateway's account has to read.
+    """
     fresh = file.with_name(f".{file.name}.new")
     fresh.unlink(missing_ok=True)
     with os.fdopen(os.open(fresh, os.O_WRONLY | os.O_CREAT | os.O_EXCL, mode), "wb") as stream:
         stream.write(content)
         stream.flush()
         os.fsync(stream.fileno())
+        if file.exists():
+            _give_as(file, stream.fileno())
     fresh.replace(file)
+
+
+def _give_as(file: Path, fresh: int) -> None:
+    """Give an open file the owner, group and rights of another; raises OSError where that is not allowed."""
+    status, own = file.stat(), os.fstat(fresh)
+    if (status.st_uid, status.st_gid) != (own.st_uid, own.st_gid):
+        os.fchown(fresh, status.st_uid, status.st_gid)
+    os.fchmod(fresh, stat.S_IMODE(status.st_mode))
 
 
 def _read_certificate(file: Path) -> x509.Certificate:

@@ -76,13 +76,16 @@ class Gate:
                 log.warning("%s is open to everybody on this computer: no %s has a token", path, kind.value)
 
     async def watch(self) -> None:
-        """Take over changed accounts, and end what does not hold any more, until cancelled."""
+        """Take over changed accounts, and end what does not hold any more, until cancelled.
+
+        :raises StoreError: when they cannot be read; they stay as they were last read.
+        """
         while True:
             await asyncio.sleep(LOOK_INTERVAL)
             try:
                 await self.look()
             except StoreError as error:
-                log.error("%s; accounts stay as they were last read", error)
+                raise StoreError(f"{error}; accounts stay as they were last read") from error
 
     async def look(self) -> None:
         """Take over changed accounts, and end what does not hold any more; raises StoreError."""

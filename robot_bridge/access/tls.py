@@ -8,6 +8,7 @@ import logging
 import ssl
 import stat
 import sys
+import time
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -20,6 +21,8 @@ CIPHERS = "ECDHE+AESGCM:ECDHE+CHACHA20"
 """TLS 1.2 only with forward secrecy and authenticated encryption; TLS 1.3 has nothing else."""
 WATCH_INTERVAL = 2.0
 WARN_DAYS = 30
+WARN_INTERVAL = 86400.0
+"""seconds between two looks at when the certificate ends: a gateway runs for longer than one holds."""
 
 
 @dataclass(frozen=True)
@@ -47,6 +50,7 @@ class ServerTls:
         self._files = files
         self._seen = _stamps(files)
         self.context = _server_context(files)
+        self._until = valid_until(files.certificate)
         self._warn_of_expiry()
 
     def reload(self) -> bool:
@@ -57,6 +61,7 @@ class ServerTls:
         try:
             _server_context(self._files)
             self.context.load_cert_chain(self._files.certificate, self._files.key)
+            self._until = valid_until(self._files.certificate)
         except (AccessError, OSError) as error:
             log.error("%s; the certificate in use stays", error)
             return False
@@ -65,9 +70,13 @@ class ServerTls:
         return True
 
     async def watch(self) -> None:
-        """Reload whenever the files change, until cancelled."""
+        """Reload whenever the files change, and warn once a day of an end that is near, until cancelled."""
+        warned_at = time.monotonic()
         while True:
             await asyncio.sleep(WATCH_INTERVAL)
+            if time.monotonic() - warned_at >= WARN_INTERVAL:
+                warned_at = time.monotonic()
+                self._warn_of_expiry()
             stamps = _stamps(self._files)
             if stamps != self._seen:
                 # Both files are written one after the other: wait until they stand still.
@@ -77,7 +86,7 @@ class ServerTls:
                     self.reload()
 
     def _warn_of_expiry(self) -> None:
-        left = valid_until(self._files.certificate) - datetime.datetime.now(datetime.timezone.utc)
+        left = self._until - datetime.datetime.now(datetime.timezone.utc)
         if left < datetime.timedelta(days=WARN_DAYS):
             log.warning(
                 "certificate %s %s; 'robot-bridge tls renew' makes a new one",
@@ -120,5 +129,6 @@ def _stamps(files: ServerFiles) -> tuple[object, ...]:
         except OSError:
             stamps.append(None)
         else:
-            stamps.append((status.st_mtime_ns, status.st_ino, status.st_size))
+            # The time of the last change of its owner or rights, too: it may be readable since then.
+            stamps.append((status.st_mtime_ns, status.st_ctime_ns, status.st_ino, status.st_size))
     return tuple(stamps)

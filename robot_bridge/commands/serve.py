@@ -111,8 +111,18 @@ async def _serve(settings: GatewaySettings) -> None:
 
 def _started(address: str) -> None:
     spare_what_lasts()
-    print(f"listening on {address}", flush=True)
+    _say(f"listening on {address}")
     notify("READY=1", f"STATUS=listening on {address}")
+
+
+def _say(line: str) -> None:
+    """Print ``line``. A full disk, or a reader that is gone, is no reason to end a gateway."""
+    try:
+        print(line, flush=True)
+    except OSError as error:
+        log.warning("standard output cannot be written: %s", error.strerror)
+        # What is left of it would be tried again when the process ends, and make that a failure.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _stop(signals: Signals) -> None:

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import asyncio
+import os
 import ssl
 import stat
 import subprocess
 
 import pytest
 
-from robot_bridge.access import certificates
+from robot_bridge.access import certificates, tls
 from robot_bridge.access.errors import AccessError
 from robot_bridge.access.tls import ServerFiles, ServerTls, server_files
 
@@ -128,13 +130,57 @@ def test_an_encrypted_key_is_refused_and_nobody_is_asked_for_a_password(files):
 
 
 def test_a_new_certificate_that_cannot_be_used_changes_nothing(files, caplog):
-    tls = ServerTls(ServerFiles(files.certificate, files.key))
+    server = ServerTls(ServerFiles(files.certificate, files.key))
     good = files.key.read_bytes()
     files.key.write_text("no key")
-    assert not tls.reload()
+    assert not server.reload()
     assert "the certificate in use stays" in caplog.text
     files.key.write_bytes(good)
-    assert tls.reload()
+    assert server.reload()
+
+
+def test_what_is_renewed_belongs_to_whom_it_did(files):
+    owner = (65534, 65534) if os.geteuid() == 0 else (os.geteuid(), os.getegid())
+    os.chown(files.key, *owner)
+    files.key.chmod(0o640)
+    before = files.key.read_bytes()
+    certificates.renew(files.folder)
+    status = files.key.stat()
+    assert files.key.read_bytes() != before
+    assert (status.st_uid, status.st_gid, stat.S_IMODE(status.st_mode)) == (*owner, 0o640)
+
+
+@pytest.fixture
+async def watched(files, monkeypatch):
+    """A gateway's TLS that looks at its files all the time."""
+    monkeypatch.setattr(tls, "WATCH_INTERVAL", 0.01)
+    found = ServerTls(ServerFiles(files.certificate, files.key))
+    watching = asyncio.create_task(found.watch())
+    yield found
+    watching.cancel()
+
+
+async def until(condition):
+    async with asyncio.timeout(30):
+        while not condition():
+            await asyncio.sleep(0.01)
+
+
+async def test_a_key_is_looked_at_again_when_its_rights_have_changed(watched, files, monkeypatch):
+    reloads = []
+    monkeypatch.setattr(watched, "reload", lambda: reloads.append(1))
+    files.key.chmod(0o400)
+    await until(lambda: reloads)
+
+
+async def test_a_gateway_that_runs_for_long_is_warned_before_its_certificate_ends(
+    watched, files, caplog, monkeypatch
+):
+    certificates.renew(files.folder, days=5)
+    await until(lambda: "holds for 4 days more" in caplog.text)
+    caplog.clear()
+    monkeypatch.setattr(tls, "WARN_INTERVAL", 0.0)
+    await until(lambda: "holds for 4 days more" in caplog.text)
 
 
 def test_old_versions_and_weak_ciphers_are_off(files):

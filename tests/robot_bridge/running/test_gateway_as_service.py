@@ -269,6 +269,22 @@ def test_systemd_is_told_when_it_is_ready_and_when_it_ends(site, tmp_path, start
             pass
 
 
+def test_a_log_that_is_full_ends_no_gateway(site, tmp_path, start_program):
+    with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as manager:
+        manager.bind(str(tmp_path / "notify"))
+        manager.settimeout(60)
+        where = ["--site", str(site), "--port", "0", "--database", f"sqlite:///{tmp_path}/fleet.db"]
+        full = ["sh", "-c", 'exec "$@" > /dev/full', "sh", sys.executable, "-m", "robot_bridge", "serve"]
+        env = {"NOTIFY_SOCKET": str(tmp_path / "notify")}
+        gateway = start_program.processes.start("full", [*full, *where], env=env)
+        assert manager.recv(1000).startswith(b"READY=1")
+        gateway.send_signal(signal.SIGTERM)
+        assert gateway.wait(60) == 0
+    said = start_program.processes.log("full").read_text()
+    assert "standard output cannot be written: No space left on device" in said
+    assert "Traceback" not in said and "Exception" not in said
+
+
 # --- how it ends ------------------------------------------------------------------------------------------
 
 

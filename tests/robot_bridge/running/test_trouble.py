@@ -52,6 +52,15 @@ def test_a_task_that_fails_is_logged_counted_and_goes_on_when_it_can(bridge):
     assert len(said) == 1 and "no such table: trajectories" in said[0]
 
 
+def test_accounts_that_cannot_be_read_are_told_of_once(bridge):
+    failures = ("robot_bridge_task_failures_total", "accounts")
+    bridge.sql("alter table tokens rename to away")
+    wait_until(lambda: numbers(bridge).get(failures, 0) >= 3)
+    bridge.sql("alter table away rename to tokens")
+    said = [line for line in bridge.output().splitlines() if "accounts stay as they were last read" in line]
+    assert len(said) == 1 and "no such table: tokens" in said[0]
+
+
 @pytest.mark.parametrize("kind", ["postgresql", "mariadb"])
 def test_a_gateway_that_another_replaced_ends_with_a_clear_word(kind, request, start_bridge, sample_site):
     server, url = request.getfixturevalue(f"{kind}_server"), request.getfixturevalue(f"{kind}_url")
