@@ -1,0 +1,68 @@
+"""What is about to be sent is on the map: small drafts and large, refused ones in red."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+from fleet_supervisor.plugin.desk.colours import CONE as CONE_COLOUR
+from fleet_supervisor.plugin.desk.colours import REFUSED
+from fleet_supervisor.plugin.desk.drafts import CONE, ROUTE, TARGETS, Draft, Findings
+from fleet_supervisor.plugin.desk.live.scene import Placer
+from fleet_supervisor.robot_bridge.messages import RobotState
+
+from tests.plugin.desk.live.on_canvas import (
+    expected,
+    placement_of,
+    scene_of,
+    show,
+    spots,
+)
+
+
+def test_a_draft_is_painted_and_a_refused_one_is_red(canvas, site):
+    from fleet_supervisor.plugin.desk.colours import REFUSED
+
+    draft = Draft("r1", CONE, ((40.0, 70.0),), Findings(refused=("outside",)))
+    show(canvas, site, scene_of((60, 50, 0.0, RobotState.FRESH), draft=draft))
+    assert len(spots(canvas, REFUSED)) > 30
+
+
+def test_a_draft_of_many_targets_is_painted_where_they_are_and_a_refused_one_is_red(canvas, site):
+    places = tuple((10.0 + 10 * (k % 10), 10.0 + 10 * (k // 10)) for k in range(80))
+    draft = Draft("r1", TARGETS, places, is_checked=True)
+    show(canvas, site, scene_of(draft=draft))
+    cones = spots(canvas, CONE_COLOUR)
+    for x, y in places:
+        away = cones - expected(canvas, site, x, y) - (0.0, -5.0)
+        assert np.hypot(*away.T).min() < 4.0
+    assert len(spots(canvas, REFUSED)) == 0
+    wrong = dataclasses.replace(draft, findings=Findings(overridable=("in the way",)))
+    show(canvas, site, scene_of(draft=wrong))
+    assert len(spots(canvas, REFUSED)) > 200
+
+
+def test_a_draft_of_many_points_is_drawn_once_and_anew_when_the_map_or_the_draft_has_changed(
+    canvas, site, monkeypatch
+):
+    from fleet_supervisor.plugin.desk.live import draft_painting
+
+    drawn, draw = [], draft_painting._drawn
+    monkeypatch.setattr(draft_painting, "_drawn", lambda *given: drawn.append(1) or draw(*given))
+    places = tuple((10.0 + k, 50.0) for k in range(80))
+    draft = Draft("r1", ROUTE, places, legs=(1,) * 80, is_checked=True)
+    overlay = show(canvas, site, scene_of(draft=draft))
+    placer = Placer()
+    for now in (101.0, 102.0, 103.0):
+        overlay.show_scene(placer.placed(scene_of(draft=draft, now=now), placement_of(canvas, site)))
+        canvas.grab()
+    before = len(drawn)
+    placement = placement_of(canvas, site)
+    for now in (104.0, 105.0, 106.0):
+        overlay.show_scene(placer.placed(scene_of(draft=draft, now=now), placement))
+        canvas.grab()
+    assert len(drawn) == before + 1
+    moved = dataclasses.replace(draft, points=(*places[:-1], (90.0, 60.0)))
+    overlay.show_scene(placer.placed(scene_of(draft=moved, now=107.0), placement))
+    canvas.grab()
+    assert len(drawn) == before + 2

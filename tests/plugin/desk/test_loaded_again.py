@@ -1,0 +1,65 @@
+"""The plugin loaded again and again: nothing of it is in QGIS twice, and nothing is left."""
+
+from __future__ import annotations
+
+import gc
+import threading
+
+from fleet_supervisor.plugin.supervisor import FleetSupervisor
+from qgis.core import (
+    QgsApplication,
+    QgsExpression,
+    QgsProject,
+)
+from qgis.gui import QgsGui
+from qgis.PyQt.QtCore import QCoreApplication, QEvent, QThread
+from qgis.PyQt.QtWidgets import (
+    QApplication,
+    QLineEdit,
+)
+
+
+def registered(iface):
+    """What of the plugin QGIS knows, by kind."""
+    QApplication.processEvents()
+    gc.collect()
+    manager = QgsGui.shortcutsManager()
+    return {
+        "locator filters": len(iface.locator.filters()),
+        "options pages": len(iface.options_pages),
+        "drop handlers": len(iface.drop_handlers),
+        "help entries": len(iface.plugin_help.actions()),
+        "menu entries": len(iface.plugins.actions()),
+        "shortcuts": len(manager.listActions()),
+        "expression functions": len(QgsExpression.Functions()),
+        "providers": len(QgsApplication.processingRegistry().providers()),
+        "layers": len(QgsProject.instance().mapLayers()),
+        "groups": len(QgsProject.instance().layerTreeRoot().children()),
+        "canvas items": len(iface.canvas.scene().items()),
+        "message bar": len(iface.texts()),
+        "threads": threading.active_count(),
+        "Qt threads": len([one for one in gc.get_objects() if isinstance(one, QThread) and one.isRunning()]),
+    }
+
+
+def test_loaded_ten_times_nothing_is_doubled_and_nothing_left(iface, gateway, make_robot, wait):
+    gateway.show(make_robot("r1"))
+    # As QGIS does when it starts, with the actions of plugins that are there by then.
+    manager = QgsGui.shortcutsManager()
+    manager.registerAllChildren(iface)
+    before, loaded = registered(iface), None
+    for _ in range(10):
+        plugin = FleetSupervisor(iface)
+        plugin.initGui()
+        plugin.window.dock.findChild(QLineEdit, "fleet_url").setText(gateway.url)
+        plugin.window.actions.connect.trigger()
+        wait(lambda plugin=plugin: plugin.window.view.layer.layer is not None)
+        manager.registerAllChildren(iface)
+        now = registered(iface)
+        loaded = loaded or now
+        assert now == loaded
+        plugin.unload()
+        QCoreApplication.sendPostedEvents(None, QEvent.Type.DeferredDelete)
+        assert registered(iface) == before
+    for kind in ("locator filters", "options pages", "drop handlers", "help entries", "shortcuts"):
+        assert loaded[kind] > before[kind]

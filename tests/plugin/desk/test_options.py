@@ -1,0 +1,108 @@
+"""The plugin's page in QGIS's options: what is set there is kept, and works at once."""
+
+from __future__ import annotations
+
+import pytest
+from fleet_supervisor.plugin.help.help_window import HelpWindow
+from fleet_supervisor.plugin.help.topics import OPTIONS
+from fleet_supervisor.plugin.settings.preferences import Preferences, read_preferences, write_preferences
+from fleet_supervisor.plugin.supervisor import FleetSupervisor
+from qgis.core import (
+    QgsSettings,
+)
+from qgis.PyQt.QtCore import Qt
+from qgis.PyQt.QtTest import QTest
+from qgis.PyQt.QtWidgets import (
+    QApplication,
+    QDoubleSpinBox,
+    QLineEdit,
+    QPushButton,
+    QTabWidget,
+)
+
+
+@pytest.fixture
+def page(plugin, iface):
+    (factory,) = iface.options_pages
+    page = factory.createWidget(iface)
+    page.show()
+    yield page
+    page.close()
+    page.deleteLater()
+
+
+def test_what_is_set_is_kept_and_works_at_once(page, plugin):
+    page.findChild(QTabWidget, "fleet_options_tabs").setCurrentIndex(1)
+    for name, value in (("robot_size", 2.0), ("positions_rate", 4), ("layer_seconds", 3)):
+        page.findChild(QDoubleSpinBox, f"fleet_{name}").setValue(value)
+    page.findChild(QDoubleSpinBox, "fleet_low_battery").setValue(35)
+    assert read_preferences() == Preferences()
+    page.apply()
+    assert read_preferences() == Preferences(4.0, 3.0, 2.0, "")
+    window = plugin.window
+    assert window.desk.connection.rate == 4.0
+    assert window.view.layer_every == 60
+    assert window.view.overlay._painter.robots.magnification == 2.0
+    assert QgsSettings().value("fleet_supervisor/alarms/low_battery", type=float) == pytest.approx(0.35)
+
+
+def test_what_was_set_counts_after_a_restart(iface):
+    write_preferences(Preferences(robot_size=1.5))
+    plugin = FleetSupervisor(iface)
+    plugin.initGui()
+    try:
+        assert plugin.window.view.overlay._painter.robots.magnification == 1.5
+    finally:
+        plugin.unload()
+
+
+def test_positions_are_asked_for_at_the_rate_that_was_set(iface, gateway, wait):
+    write_preferences(Preferences(positions_rate=4.0))
+    plugin = FleetSupervisor(iface)
+    plugin.initGui()
+    try:
+        plugin.window.dock.findChild(QLineEdit, "fleet_url").setText(gateway.url)
+        plugin.window.actions.connect.trigger()
+        wait(lambda: gateway.asked("subscribe"))
+        assert [params["rate"] for params in gateway.asked("subscribe")] == [4.0]
+    finally:
+        plugin.unload()
+
+
+@pytest.mark.parametrize("value", ["many", "-1", "1e9", "nan"])
+def test_settings_that_are_none_count_as_never_set(qgis_app, value):
+    QgsSettings().setValue("fleet_supervisor/preferences/robot_size", value)
+    assert read_preferences().robot_size == 1.0
+    QgsSettings().remove("fleet_supervisor")
+
+
+def test_larger_robots_are_painted_larger(at_desk, iface, wait, gateway, make_robot):
+    at_desk.desk.select("r1")
+
+    def blue():
+        # Anew: one that was silent for a while is of another colour.
+        gateway.show(make_robot("r2", 80, 60))
+        revision = at_desk.desk.picture.revision
+        wait(lambda: at_desk.desk.picture.revision > revision)
+        at_desk.view.show_now()
+        QApplication.processEvents()
+        image = iface.canvas.grab().toImage()
+        at = iface.pixel(80, 60)
+        return sum(
+            image.pixelColor(at.x() + dx, at.y() + dy).blue() > 150
+            and image.pixelColor(at.x() + dx, at.y() + dy).red() < 60
+            for dx in range(-40, 40)
+            for dy in range(-40, 40)
+        )
+
+    as_it_comes = blue()
+    at_desk.view.overlay.magnify(2.0)
+    assert as_it_comes > 0
+    assert blue() > 2.5 * as_it_comes
+
+
+def test_the_options_have_a_help_button(page):
+    QTest.mouseClick(page.findChild(QPushButton, "fleet_options_help"), Qt.MouseButton.LeftButton)
+    window = page.window().findChild(HelpWindow)
+    assert window.topic == OPTIONS
+    window.close()

@@ -1,0 +1,38 @@
+"""The way from the site frame to the map and back, in any CRS."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+from fleet_supervisor.plugin.desk.placement import Placement
+from fleet_supervisor.plugin.errors import PlacementError
+from qgis.core import QgsCoordinateReferenceSystem, QgsPointXY, QgsProject
+
+
+def test_a_site_crs_that_qgis_does_not_know_is_named(site):
+    with pytest.raises(PlacementError, match="EPSG:999999"):
+        Placement(
+            dataclasses.replace(site, crs="EPSG:999999"),
+            QgsCoordinateReferenceSystem("EPSG:4326"),
+            QgsProject.instance().transformContext(),
+        )
+
+
+def test_a_position_beyond_the_map_projection_is_an_error_in_words(site):
+    placement = Placement(
+        site, QgsCoordinateReferenceSystem("EPSG:3857"), QgsProject.instance().transformContext()
+    )
+    with pytest.raises(PlacementError, match="Choose the site's CRS"):
+        placement.to_map(np.array([(1e12, 1e12)]))
+
+
+def test_points_come_back_from_every_crs(site):
+    site = dataclasses.replace(site, rotation=-0.9)
+    for crs in ("EPSG:32633", "EPSG:3857", "EPSG:4326", "EPSG:23700"):
+        placement = Placement(
+            site, QgsCoordinateReferenceSystem(crs), QgsProject.instance().transformContext()
+        )
+        ((x, y),) = placement.to_map(np.array([(12.5, 80.25)]))
+        assert placement.to_site(QgsPointXY(x, y)) == pytest.approx((12.5, 80.25), abs=0.002)
