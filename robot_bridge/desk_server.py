@@ -62,7 +62,7 @@ class DeskSession:
 
     async def run(self) -> None:
         """Serve the connection to its end."""
-        self._fleet.listen(self)
+        self._fleet.listeners.add(self)
         self._start("news", self._push_news())
         try:
             async for frame in self._connection:
@@ -70,7 +70,7 @@ class DeskSession:
         except ConnectionClosed:
             pass
         finally:
-            self._fleet.unlisten(self)
+            self._fleet.listeners.discard(self)
             for task in self._tasks.values():
                 task.cancel()
             await self._lanes.finish()

@@ -22,7 +22,7 @@ CLOSED_WITHIN = 0.8
 async def say_farewell(server: Server, fleet: Fleet) -> None:
     """Take no more connections, tell operators ``stopping``, and close every connection with code 1012."""
     server.close(close_connections=False)
-    fleet.announce("stopping", "", to_json(Stopping(REASON)))
+    fleet.listeners.announce("stopping", "", to_json(Stopping(REASON)))
     await asyncio.sleep(FIRST_WORDS)
     connections: Iterable[ServerConnection] = list(server.connections)
     closing = [asyncio.create_task(_close(connection)) for connection in connections]

@@ -11,7 +11,7 @@ import logging
 import time
 from collections import Counter
 from collections.abc import Callable, Coroutine, Iterable
-from typing import Any, Protocol
+from typing import Any
 
 from . import exchange
 from .answering import Answering
@@ -22,6 +22,7 @@ from .emergency.stops import HELD_BACK, EmergencyStops
 from .exchange import Outcome
 from .ground_track import GroundTracks
 from .handshake import Holds, refusal
+from .listeners import Listeners
 from .messages import (
     Answer,
     Command,
@@ -67,13 +68,6 @@ from .trajectories.saving import Saving
 log = logging.getLogger(__name__)
 
 
-class Listener(Protocol):
-    """An operator's session, told what happens."""
-
-    def notify(self, method: str, key: str, params: dict[str, Any]) -> None:
-        """Take note of news; of those with the same method and key only the last counts. Must not block."""
-
-
 class Fleet:
     """The robots of one site and their commands, on one database."""
 
@@ -90,6 +84,9 @@ class Fleet:
         """the sites that supervisors may choose among, where there is a choice."""
         self._database = database
         self._clock = clock
+        self.listeners = Listeners()
+        """the operators' sessions, told what happens."""
+        announce = self.listeners.announce
         self.robots = Robots(site.report.stale_after, site.report.lost_after)
         self.snapshots = Snapshots(self.robots, clock)
         self._book = CommandBook(
@@ -106,8 +103,8 @@ class Fleet:
         self.ways = Ways(self.robots, self._book)
         self.roads = planner if isinstance(planner, RoadPlanner) else None
         self.orders = Orders(site, self.robots, self._book, database)
-        self.emergency = EmergencyStops(self._book, database, clock, self.robots.names, self.announce, stops)
-        self._queue_book = QueueBook(database, self.robots, self.announce)
+        self.emergency = EmergencyStops(self._book, database, clock, self.robots.names, announce, stops)
+        self._queue_book = QueueBook(database, self.robots, announce)
         about_queues = (site, self.robots, self._book, self._queue_book, database, clock)
         self.queues = QueueOrders(*about_queues)
         self.driving = QueueDriving(*about_queues)
@@ -119,7 +116,7 @@ class Fleet:
             self._book,
             lambda: self.site.settings.routes.no_way == "stop",
         )
-        self.closures = ClosureBook(database, clock, self.roads, self._detours, self.announce)
+        self.closures = ClosureBook(database, clock, self.roads, self._detours, announce)
         self._waiting = WaitingRobots(database, self._book, self._detours)
         self.traffic = TrafficControl(
             clock,
@@ -129,7 +126,7 @@ class Fleet:
             self._detours,
             self._waiting,
             lambda: self.site.settings.routes,
-            self.announce,
+            announce,
         )
         self.recorder = Recorder(lambda: self.site.settings.trajectories)
         self._saving = Saving(database, self.robots, self.recorder, clock)
@@ -143,7 +140,6 @@ class Fleet:
         self._database_id = ""
         self._outboxes: dict[str, asyncio.Event] = {}
         self._greeting: dict[str, asyncio.Lock] = {}
-        self._listeners: set[Listener] = set()
 
     @property
     def database(self) -> Database:
@@ -295,24 +291,6 @@ class Fleet:
         """Return the newest commands first, of one robot or of all."""
         return await self._database.run(commands.newest, robot, limit)
 
-    def announce(self, method: str, key: str, params: dict[str, Any]) -> None:
-        """Tell every operator's session what happened."""
-        for listener in self._listeners:
-            listener.notify(method, key, params)
-
-    def listen(self, listener: Listener) -> None:
-        """Tell ``listener`` from now on what happens: every step of every command."""
-        self._listeners.add(listener)
-
-    def unlisten(self, listener: Listener) -> None:
-        """Tell ``listener`` nothing more."""
-        self._listeners.discard(listener)
-
-    @property
-    def listeners(self) -> int:
-        """Return how many operators' sessions are told what happens."""
-        return len(self._listeners)
-
     def open_commands(self) -> Counter[CommandState]:
         """Return how many commands with a step to come are in each state."""
         return self._book.count()
@@ -324,7 +302,7 @@ class Fleet:
         self._book.tolerance = report.reached_tolerance
         await self.observations.restore()
         await self.closures.site_changed()
-        self.announce("site", report.id, to_json(report))
+        self.listeners.announce("site", report.id, to_json(report))
 
     # --- time -----------------------------------------------------------------------------------------
 
@@ -332,7 +310,7 @@ class Fleet:
         """Open roads that were closed until now; see to robots on closed ones, and in each other's way."""
         await self.closures.expire()
         await self.closures.catch_up()
-        await self.traffic.watch(listened_to=bool(self._listeners))
+        await self.traffic.watch(listened_to=bool(self.listeners))
 
     def age(self) -> None:
         """Bring the liveness of every robot up to now."""
@@ -432,10 +410,10 @@ class Fleet:
         self.emergency.take(command)
         self.driving.take(command)
         self._waiting.take(command)
-        self.announce("command", command.command, to_json(command))
+        self.listeners.announce("command", command.command, to_json(command))
 
     def _observation_changed(self, observation: ObservationReport) -> None:
-        self.announce("observation", str(observation.observation), to_json(observation))
+        self.listeners.announce("observation", str(observation.observation), to_json(observation))
 
     def _outbox_changed(self, robot: str) -> None:
         self.outbox_event(robot).set()

@@ -94,7 +94,7 @@ class StatusPages:
         yield Reading(
             "robot_bridge_open_commands", "Commands with a step to come.", ("state",), self._commands
         )
-        yield _single("desk_sessions", "Operators that are connected.", lambda: fleet.listeners)
+        yield _single("desk_sessions", "Operators that are connected.", lambda: len(fleet.listeners))
         yield _single("emergency_stop", "1 while one is in force.", lambda: fleet.emergency.in_force)
         yield _single("database_up", "1 while the database answers.", lambda: self._database_up)
         yield _single("database_queue", "Work that waits for the database.", lambda: fleet.database.waiting)

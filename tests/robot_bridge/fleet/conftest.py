@@ -47,7 +47,7 @@ class Yard:
         self.database = Database(self.url)
         await self.database.open()
         self.fleet = Fleet(self.site, self.database, clock=lambda: self.now)
-        self.fleet.listen(self)
+        self.fleet.listeners.add(self)
         await self.fleet.start()
         self.link = SqlLink(self.fleet, self.database)
 
@@ -157,7 +157,7 @@ class RoadYard(Yard):
         await self.database.open()
         planner = RoadPlanner(lambda: self.site.site)
         self.fleet = Fleet(self.site, self.database, clock=lambda: self.now, planner=planner)
-        self.fleet.listen(self)
+        self.fleet.listeners.add(self)
         await self.fleet.start()
         self.link = SqlLink(self.fleet, self.database)
 

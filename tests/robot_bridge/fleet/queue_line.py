@@ -26,7 +26,7 @@ class Line:
     def __init__(self, yard):
         self.yard = yard
         self.pushed = []
-        yard.fleet.listen(self)
+        yard.fleet.listeners.add(self)
 
     def notify(self, method, key, params):
         if method == "queue":

@@ -36,7 +36,7 @@ async def test_a_target_is_queued_delivered_acknowledged_and_reached(ready):
 async def test_a_command_is_stored_with_its_message_before_it_is_told(ready):
     seen = []
     ready.notify = lambda *news: seen.append(ready.sql("select state from commands"))
-    ready.fleet.listen(ready)
+    ready.fleet.listeners.add(ready)
     await ready.send("a")
     assert seen == [[("queued",)]]
     assert ready.waiting() == ["SetPosEnd"]

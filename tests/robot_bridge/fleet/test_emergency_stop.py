@@ -241,7 +241,7 @@ async def test_every_operator_is_told_of_each_change(two, control):
             if method == "emergency":
                 told.append((params["in_force"], params["stored"], params["acknowledged"]))
 
-    two.fleet.listen(Listener())
+    two.fleet.listeners.add(Listener())
     await control.stop()
     await two.take("r1")
     await control.clear()

@@ -169,7 +169,7 @@ async def test_an_accepted_object_is_on_the_map_before_and_after_a_restart(ready
 
 async def test_each_new_and_each_reviewed_one_is_announced_once(ready):
     heard = []
-    ready.fleet.listen(Listening(heard))
+    ready.fleet.listeners.add(Listening(heard))
     for _ in range(2):
         await tell(ready, CONE, 1)
     for _ in range(2):
