@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
-from qgis.PyQt.QtCore import QPointF
+from qgis.PyQt.QtCore import QPointF, QRectF, QSizeF
 from qgis.PyQt.QtGui import QPainter, QPixmap
 
 from ..picture import STATES
@@ -99,9 +99,11 @@ class BorderHints:
     def paint(self, painter: QPainter, placed: PlacedScene, screen: Screen) -> None:
         """Paint each arrow in its robots' colour, with their name or number."""
         if self._chosen != placed.scene.chosen:
-            names = placed.scene.robots.names
+            names, ranks = placed.scene.robots.names, _ranks(placed)
             self._arrows = self._coloured(placed, screen) if self.hints else []
-            self._texts = [_beside(self._labels, hint, names, screen) for hint in self.hints]
+            pressing = sorted(self.hints, key=lambda hint: -ranks[hint.rows].max())
+            texts = [_beside(self._labels, hint, names, screen) for hint in pressing]
+            self._texts = _apart(texts, screen.ratio)
             self._chosen = placed.scene.chosen
         for arrow, at, cells in self._arrows:
             arrow.paint(painter, at, cells)
@@ -133,6 +135,26 @@ class BorderHints:
             atlas = arrow_atlas(ratio, STATES[state], to_chosen)
             self._atlases[state, to_chosen] = Sprites(atlas, cell(ratio, ARROW_SIZE), ratio)
         return self._atlases[state, to_chosen]
+
+
+def _ranks(placed: PlacedScene) -> npt.NDArray[np.int64]:
+    """Return how much each robot is to be noticed: a selected one most, then one to worry about."""
+    ranks = _URGENT[placed.scene.robots.state]
+    rows = placed.scene.rows
+    ranks[[rows[name] for name in placed.scene.chosen if name in rows]] = len(STATES)
+    return ranks
+
+
+def _apart(texts: list[tuple[QPointF, QPixmap]], ratio: float) -> list[tuple[QPointF, QPixmap]]:
+    """Leave out what would lie over a text before it; its arrow stays, and says by a click who it is."""
+    shown: list[tuple[QPointF, QPixmap]] = []
+    taken: list[QRectF] = []
+    for place, picture in texts:
+        area = QRectF(place, QSizeF(picture.size()) / ratio)
+        if not any(area.intersects(other) for other in taken):
+            shown.append((place, picture))
+            taken.append(area)
+    return shown
 
 
 def _beside(labels: Labels, hint: Hint, names: list[str], screen: Screen) -> tuple[QPointF, QPixmap]:
