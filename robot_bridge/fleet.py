@@ -320,6 +320,7 @@ class Fleet:
         """Store where robots are and have been since the last call, and let old commands expire."""
         await self._saving.save()
         await self.emergency.store()
+        await self.observations.catch_up()
         await self._book.save_progress()
         await self._book.expire(self.site.settings.commands.expire_after_s)
 

@@ -60,10 +60,19 @@ class ObservationBook:
         self._clock = clock
         self._changed = changed
         self._lock = asyncio.Lock()
+        self._undrawn = False
+        """whether something may have been accepted, or rejected, that the maps do not show yet."""
 
     async def restore(self) -> None:
         """Draw on the maps what operators accepted before."""
         self._site.show(await self._database.run(observations.on_map))
+        self._undrawn = False
+
+    async def catch_up(self) -> None:
+        """Draw what could not be drawn when it was reviewed; raises StoreError."""
+        if self._undrawn:
+            async with self._lock:
+                await self.restore()
 
     async def add(self, robot: Robot, link: str, told: Observed, id: int | None) -> ObservationReport:
         """Store what a robot told by its message ``id``; what it told before is there already.
@@ -111,10 +120,12 @@ class ObservationBook:
                 return report
             _check_review(report, review)
             values = {name: getattr(review, name) for name in ("semantics", "height", "radius", "reason")}
+            is_drawn = report.op == SetObject.__name__
+            self._undrawn |= is_drawn
             reviewed = await self._database.run(
                 observations.review, report.observation, state, operator, self._clock(), values
             )
-            if ACCEPTED in (report.state, reviewed.state) and report.op == SetObject.__name__:
+            if is_drawn and ACCEPTED in (report.state, reviewed.state):
                 await self.restore()
         self._changed(reviewed)
         return reviewed

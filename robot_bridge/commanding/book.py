@@ -222,8 +222,16 @@ class CommandBook:
         if late:
             await to_its_end(self._expire([c.report.command for c in late]))
 
+    async def look_up(self) -> None:
+        """Find out what became of a transaction that may have been done or not; raises StoreError."""
+        if self._doubtful:
+            async with self._holding(()):
+                # Whoever holds robots looks it up.
+                return
+
     async def save_progress(self) -> None:
         """Store how far robots have come along their paths, and acknowledgements that came too late."""
+        await self.look_up()
         for robot, sa_id in list(self._late):
             await self.acknowledged(robot, OpAck(id=sa_id))
         driven = self._open.progress(DRIVEN_STEP)

@@ -57,6 +57,10 @@ class QueueBook:
         """Return the names of the robots that have a queue."""
         return sorted(name for name in self._queues if name in self._robots)
 
+    def is_doubtful(self, robot: str) -> bool:
+        """Tell whether a robot's queue may be stored otherwise than it is known here."""
+        return robot in self._doubtful
+
     def doubt(self, robot: str) -> None:
         """Read a robot's queue from the database before it is used again: it may have been paused there."""
         self._doubtful.add(robot)

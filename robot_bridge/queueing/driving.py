@@ -113,6 +113,8 @@ class QueueDriving:
         """Look at every queue that has something to do; tell of robots that are lost, or back."""
         for robot in self._book.names():
             queue = self._book.get(robot)
+            if self._book.is_doubtful(robot):
+                self.look(robot)
             if not queue.tasks:
                 self._told.pop(robot, None)
                 continue

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import logging
 import time
 from collections import deque
-from collections.abc import Callable, Iterable
+from collections.abc import AsyncIterator, Callable, Collection, Sequence
 from typing import Any
 
 import numpy as np
 
-from ..errors import RefusedError
+from ..errors import RefusedError, UncertainError
 from ..messages import (
     CloseRoad,
     ClosureReport,
@@ -63,6 +64,8 @@ class ClosureBook:
         self._edges: dict[str, int] = {}
         self._considered: deque[tuple[SetPath, ClosedRoads, str | None]] = deque(maxlen=MOST_CONSIDERED)
         self._lock = asyncio.Lock()
+        self._doubtful = False
+        """whether a closure may be stored, or ended, without being known here."""
 
     async def restore(self) -> None:
         """Close what an earlier gateway left closed."""
@@ -91,7 +94,7 @@ class ClosureBook:
         :raises RefusedError: when no road is there; StoreError when it cannot be stored, and is not closed.
         """
         roads = self._need_roads()
-        async with self._lock:
+        async with self._looked_up():
             known = await self._database.run(closures.find, request.closure)
             if known is not None:
                 return RoadClosed(self._reported(known))
@@ -106,14 +109,9 @@ class ClosureBook:
                 request.reason,
                 None if request.seconds is None else now + request.seconds,
             )
-            await self._database.run(closures.add, row)
-            self._rows[row.id] = row
-            await self._enforce()
-            self._announce()
-            log.warning("%s closed a road%s", operator, f" ({row.reason})" if row.reason else "")
-        robots = await self._detours.around(row.id, row.reason, operator)
-        self._announce_replanned(robots)
-        return RoadClosed(self._reported(row), robots)
+            await self._run(closures.add, row)
+            await self._put([row])
+        return RoadClosed(self._reported(row), await self._lead_round(row))
 
     async def catch_up(self) -> None:
         """Lead those robots round that could not be led when their road was closed, as Detours tells."""
@@ -121,16 +119,14 @@ class ClosureBook:
         if not placed:
             return
         for row in list(self._rows.values()):
-            self._announce_replanned(
-                await self._detours.around(row.id, row.reason, row.closed_by, only=placed)
-            )
+            await self._lead_round(row, only=placed)
 
     async def open(self, request: OpenRoad, operator: str) -> ClosureReport:
         """Open a road; the same again changes nothing.
 
         :raises RefusedError: when it was never closed; StoreError when it cannot be stored, and stays closed.
         """
-        async with self._lock:
+        async with self._looked_up():
             known = await self._database.run(closures.find, request.closure)
             if known is None:
                 raise RefusedError(f"no road was closed as {request.closure!r}; see get_closures")
@@ -141,7 +137,7 @@ class ClosureBook:
     async def expire(self) -> None:
         """Open the roads that were closed until now."""
         now = self._clock()
-        async with self._lock:
+        async with self._looked_up():
             for row in [row for row in self._rows.values() if row.until is not None and row.until <= now]:
                 await self._open(row, GATEWAY)
 
@@ -174,9 +170,44 @@ class ClosureBook:
                 return found
         return _on_the_way(closed, path)
 
+    @contextlib.asynccontextmanager
+    async def _looked_up(self) -> AsyncIterator[None]:
+        """Hold the lock, with the closures as they are stored; raises StoreError."""
+        async with self._lock:
+            if self._doubtful:
+                stored = {row.id: row for row in await self._database.run(closures.in_force)}
+                new = [row for id, row in stored.items() if id not in self._rows]
+                self._rows = {id: row for id, row in self._rows.items() if id in stored}
+                self._doubtful = False
+                await self._put(new)
+                for row in new:
+                    await self._lead_round(row)
+            yield
+
+    async def _put(self, rows: Sequence[ClosureRow]) -> None:
+        """Keep roads closed whose closures are stored, and tell of all that are."""
+        self._rows.update({row.id: row for row in rows})
+        await self._enforce()
+        self._announce()
+        for row in rows:
+            log.warning("%s closed a road%s", row.closed_by, f" ({row.reason})" if row.reason else "")
+
+    async def _lead_round(self, row: ClosureRow, only: Collection[str] | None = None) -> list[ReplannedRobot]:
+        robots = await self._detours.around(row.id, row.reason, row.closed_by, only)
+        for robot in robots:
+            self._announce_news("replanned", robot.robot, to_json(robot))
+        return robots
+
+    async def _run(self, work: Callable[..., None], *arguments: Any) -> None:
+        try:
+            await self._database.run(work, *arguments)
+        except UncertainError:
+            self._doubtful = True
+            raise
+
     async def _open(self, row: ClosureRow, by: str) -> ClosureReport:
         at = self._clock()
-        await self._database.run(closures.end, row.id, at, by)
+        await self._run(closures.end, row.id, at, by)
         self._rows.pop(row.id, None)
         await self._enforce()
         self._announce()
@@ -206,10 +237,6 @@ class ClosureBook:
             opened_at=row.opened_at,
             opened_by=row.opened_by,
         )
-
-    def _announce_replanned(self, robots: Iterable[ReplannedRobot]) -> None:
-        for robot in robots:
-            self._announce_news("replanned", robot.robot, to_json(robot))
 
     def _announce(self) -> None:
         self._announce_news("closures", "closures", to_json(self.report()))

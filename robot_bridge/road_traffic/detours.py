@@ -15,7 +15,7 @@ from ..command_life.open_command import NOTHING, Order
 from ..commanding.book import CommandBook
 from ..commanding.orders import Orders
 from ..commanding.writing import Also, AlsoOf
-from ..errors import BridgeError, RefusedError
+from ..errors import BridgeError, RefusedError, StoreError
 from ..messages import (
     AbortTask,
     CommandReport,
@@ -166,6 +166,12 @@ class Detours:
             command = await self.send(way, path, operator, because[:500])
             text = f"{way.robot} was sent another way: {because}"
             return ReplannedRobot(way.robot, "another way", text, command)
+        except StoreError as error:
+            self._later.add(way.robot)
+            text = (
+                f"{way.robot} is sent another way when that can be stored: {because}; {error}. Look after it."
+            )
+            return ReplannedRobot(way.robot, "later", text)
         except (BridgeError, MessageError) as error:
             log.error("robot %s, whose road was closed: %s", way.robot, error)
             text = f"{way.robot} was NOT sent another way: {because}; {error}. Look after it."

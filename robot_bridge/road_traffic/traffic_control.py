@@ -78,6 +78,7 @@ class TrafficControl:
     async def watch(self, *, listened_to: bool) -> None:
         """Send on who has waited long enough; tell operators, if they are ``listened_to``, of conflicts."""
         async with self._lock:
+            await self._waiting.catch_up()
             if self._waiting:
                 await self._waiting.see_to(self._look())
         if not listened_to or time.monotonic() < self._next:

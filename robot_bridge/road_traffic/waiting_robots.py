@@ -11,8 +11,8 @@ from sqlalchemy import Connection
 
 from ..command_life.open_command import NOTHING
 from ..commanding.book import CommandBook
-from ..commanding.writing import Also
-from ..errors import BridgeError, RefusedError
+from ..commanding.writing import Also, AlsoOf
+from ..errors import BridgeError, RefusedError, UncertainError
 from ..messages import CommandReport, CommandState, HoldReport, SetPath, to_json
 from ..planning import Point
 from ..store import closures as stored
@@ -38,6 +38,8 @@ class WaitingRobots:
         self._book = book
         self._detours = detours
         self._rows: dict[str, HoldRow] = {}
+        self._doubtful = False
+        """whether a robot may be stored as one that waits without being known here."""
         book.waits = self.waits
         detours.queues.waits_for = self.waits_for
 
@@ -56,6 +58,13 @@ class WaitingRobots:
         """Take up the robots that wait since an earlier gateway."""
         self._rows = {row.robot: row for row in await self._database.run(stored.held)}
 
+    async def catch_up(self) -> None:
+        """Take up robots that were stored as waiting without that being known; raises StoreError."""
+        if self._doubtful:
+            await self._book.look_up()
+            await self.restore()
+            self._doubtful = False
+
     async def send(
         self, way: Way, first: list[Point], rest: list[Point], other: str, until: float, operator: str
     ) -> str:
@@ -73,13 +82,19 @@ class WaitingRobots:
         def also(command: str) -> Also:
             return partial(_hold, row._replace(command=command))
 
-        if task is None:
-            reason = f"waits for {other}"
-            command = await self._detours.send(way, SetPath(first), operator, reason, also)
-        else:
-            command = await queues.stop_over(way.robot, first, rest, other, operator, also)
+        try:
+            command = await self._send(way, first, row, rest, also)
+        except UncertainError:
+            self._doubtful = True
+            raise
         self._rows[way.robot] = row._replace(command=command)
         return command
+
+    async def _send(self, way: Way, first: list[Point], row: HoldRow, rest: list[Point], also: AlsoOf) -> str:
+        if row.task is None:
+            reason = f"waits for {row.other}"
+            return await self._detours.send(way, SetPath(first), row.by, reason, also)
+        return await self._detours.queues.stop_over(way.robot, first, rest, row.other, row.by, also)
 
     def waits(self, robot: str) -> bool:
         """Tell whether a robot waits."""

@@ -6,6 +6,7 @@ all that it would have done in that second.
 
 from __future__ import annotations
 
+import contextlib
 import itertools
 import math
 from dataclasses import replace
@@ -17,7 +18,7 @@ from mortal_database import Killed, MortalDatabase
 
 from robot_bridge.command_life.states import is_open, may_become
 from robot_bridge.emergency.journal import StopJournal
-from robot_bridge.errors import RefusedError
+from robot_bridge.errors import OutdatedError, RefusedError, StoreError
 from robot_bridge.fleet import Fleet
 from robot_bridge.links.sql import SqlLink
 from robot_bridge.messages import CommandState, GetQueue, QueueTask, ResumeQueue, Send, SetQueue
@@ -34,6 +35,11 @@ SAVE_EVERY = 3
 """turns: what is stored of a robot is metres behind it, as it is in earnest."""
 LONGEST = 400
 """turns after which a play that does not come to its end has failed."""
+
+
+async def _tried(work):
+    with contextlib.suppress(StoreError):
+        await work
 
 
 class Play:
@@ -75,7 +81,7 @@ class Play:
                 await self.fleet.start()
                 self._link = SqlLink(self.fleet, self.database)
                 return
-            except Killed:
+            except (Killed, StoreError):
                 await self.database.close()
 
     async def _revive(self):
@@ -125,13 +131,14 @@ class Play:
             await self._revive()
 
     async def _work(self):
+        """Do what a gateway does in a second; what fails is done again in the next one."""
         for robot in list(self.robots.values()):
             await robot.exchange()
-        await self._link.poll()
+        await _tried(self._link.poll())
         self.fleet.age()
         if self.turns % SAVE_EVERY == 0:
-            await self.fleet.save()
-        await self.fleet.watch_roads()
+            await _tried(self.fleet.save())
+        await _tried(self.fleet.watch_roads())
         self.fleet.driving.look_at_all()
         for _ in range(3):
             await self.fleet.driving.advance()
@@ -164,6 +171,12 @@ class Play:
             except Killed:
                 await self._revive()
                 await self._look()
+            except StoreError:
+                await self.turn()
+            except OutdatedError:
+                # What failed was done; the operator is told so, and looks again.
+                if self.death.fails is None:
+                    raise
 
     async def ask_once(self, request):
         """As :meth:`ask`, for what may be done already, or come too late, after the gateway has died."""

@@ -5,10 +5,12 @@ Each keeps a record of what it really did, which no database can be wrong about.
 
 from __future__ import annotations
 
+import contextlib
 import json
 import math
 from dataclasses import dataclass, field
 
+from robot_bridge.errors import StoreError
 from robot_bridge.messages import OpAck, Ready, SendPos, SetObject, Stopped, to_json
 from robot_bridge.wire import parse_params
 
@@ -178,7 +180,11 @@ class WebSocketRobot(Robot):
             self.play.fleet.emergency.answered(self.name, call_id, refused=False)
 
     async def exchange(self):
-        """Say and hear what there is to say and to hear."""
+        """Say and hear what there is to say and to hear; what fails is said again in the next second."""
+        with contextlib.suppress(StoreError):
+            await self._exchange()
+
+    async def _exchange(self):
         fleet = self.play.fleet
         if self.play.now < self.away_until:
             self._connected = False
@@ -192,15 +198,24 @@ class WebSocketRobot(Robot):
         if not self.says_late:
             await self._say_where_it_is()
         for row in await fleet.outbox(self.name, self._last[False], self._last[True]):
-            self.hear(row.id, row.op, parse_params(row.op, row.params) or {})
-            self._last[row.urgent] = row.id
-            await fleet.delivered([row.id])
-            await fleet.receive(self.name, self.link, OpAck(id=row.id), None)
+            await self._take(row)
         if self.says_late:
             await self._say_where_it_is()
         if self.task is None and not self._told_stopped:
             await fleet.receive(self.name, self.link, Stopped(), self._next_call())
             self._told_stopped = True
+
+    async def _take(self, row):
+        fleet = self.play.fleet
+        self.hear(row.id, row.op, parse_params(row.op, row.params) or {})
+        self._last[row.urgent] = row.id
+        with contextlib.suppress(StoreError):
+            await fleet.delivered([row.id])
+        try:
+            await fleet.receive(self.name, self.link, OpAck(id=row.id), None)
+        except StoreError:
+            # The gateway asks it again.
+            self._last = {False: 0, True: 0}
 
     async def _say_where_it_is(self):
         if (rest := self.play.fleet.take_pose(self.name, self.link, self.position())) is not None:

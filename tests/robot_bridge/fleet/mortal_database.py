@@ -1,9 +1,13 @@
-"""A database whose gateway dies at one of its transactions, as by SIGKILL: before the commit, or after it."""
+"""A database whose gateway dies at one of its transactions, as by SIGKILL: before the commit, or after it.
+
+Or the transaction fails, and the gateway lives on: the database's server is away for a moment.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from robot_bridge.errors import StoreError, UncertainError
 from robot_bridge.store.address import shown
 from robot_bridge.store.database import Database
 from robot_bridge.store.engines.dialect import PATIENCE_S
@@ -11,6 +15,10 @@ from robot_bridge.store.worker import Worker
 
 _ENGINES: dict = {}
 """One for each address: to compile statements anew takes SQLAlchemy longer than the database to do them."""
+
+
+FAILURES = [(False, StoreError), (False, UncertainError), (True, UncertainError)]
+"""Whether the transaction that fails is done, and what its error says about that."""
 
 
 class Killed(BaseException):
@@ -21,12 +29,14 @@ class Killed(BaseException):
 class Death:
     """When the gateway dies: at the transaction number ``at`` (from 1), its commit ``done`` or not.
 
-    Over several gateways the transactions are counted on; it comes once. With ``at`` 0 it never comes.
-    ``writing`` are those that changed something, as far as that can be told; to die of others is nothing new.
+    With ``fails`` it does not die of it: the transaction raises such an error. Over several gateways the
+    transactions are counted on; it comes once. With ``at`` 0 it never comes. ``writing`` are those that
+    changed something, as far as that can be told; to die of others is nothing new.
     """
 
     at: int = 0
     done: bool = False
+    fails: type[StoreError] | None = None
     count: int = 0
     writing: set[int] = field(default_factory=set)
 
@@ -96,10 +106,10 @@ class MortalDatabase(Database):
             return result
 
         if dies:
-            self.dead = True
+            self.dead = self.death.fails is None
             if self.death.done:
                 await transaction(noted, *arguments)
-            raise Killed
+            raise Killed if self.death.fails is None else self.death.fails("the server is away")
         return await transaction(noted, *arguments)
 
     def _check(self):

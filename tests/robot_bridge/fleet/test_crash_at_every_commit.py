@@ -3,7 +3,8 @@
 Each scenario is played once for every transaction that it takes: there the gateway dies, before its commit or
 after it, another one starts on the same database, and the robots, which have lived on, come back to it.
 With EVERY_CRASH=1 in the environment each of them is played before and after, with all that robots may do
-meanwhile: six times as many plays.
+meanwhile: six times as many plays. And so it is played with each transaction that fails, of which the gateway
+does not die.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from pathlib import Path
 import pytest
 from crash_play import DRIVE_ON, START_ANEW, STAY_AWAY, Play
 from crash_scenarios import SCENARIOS
-from mortal_database import Death
+from mortal_database import FAILURES, Death
 
 WAYS_TO_DIE = [(done, how) for how in (DRIVE_ON, START_ANEW, STAY_AWAY) for done in (False, True)]
 """Whether the commit was done, and what robots do meanwhile."""
@@ -46,38 +47,57 @@ def crash(own_site, quick_folder):
             await SCENARIOS[scenario](play)
         except AssertionError as error:
             when = f"{'after' if death.done else 'before'} commit {death.at}, robots {how}"
-            raise AssertionError(f"the gateway died {when}: {error}") from error
+            what = "the gateway died" if death.fails is None else f"{death.fails.__name__} came"
+            raise AssertionError(f"{what} {when}: {error}") from error
         finally:
             await play.end()
 
     return crash
 
 
-def ways_to_die(number):
-    """Return how the gateway is to die: in one way, each in its turn as ``number`` rises, or in all."""
-    return WAYS_TO_DIE if os.environ.get("EVERY_CRASH") else [WAYS_TO_DIE[number % len(WAYS_TO_DIE)]]
+def some_of(ways, number):
+    """Return one of ``ways``, each in its turn as ``number`` rises, or all."""
+    return ways if os.environ.get("EVERY_CRASH") else [ways[number % len(ways)]]
 
 
-@pytest.mark.parametrize("scenario", SCENARIOS)
-async def test_everything_comes_to_its_end_wherever_the_gateway_dies(
-    scenario, crash, sqlite_url, quick_folder
-):
+@pytest.fixture
+def play(crash, sqlite_url, quick_folder):
+    """Play a scenario on a new SQLite database: ``await play(scenario, death, how)``."""
     file = quick_folder / "play.db"
 
-    async def play(death, how):
+    async def play(scenario, death, how):
         for old in quick_folder.glob("play.db*"):
             old.unlink()
         shutil.copy(sqlite_url.removeprefix("sqlite:///"), file)
         await crash(scenario, f"sqlite:///{file}", death, how)
 
+    return play
+
+
+async def writing(play, scenario):
+    """Return the numbers of the transactions that a scenario takes when nothing happens."""
     undisturbed = Death()
-    await play(undisturbed, DRIVE_ON)
+    await play(scenario, undisturbed, DRIVE_ON)
     assert len(undisturbed.writing) > 10
-    for number, at in enumerate(sorted(undisturbed.writing)):
-        for done, how in ways_to_die(number):
+    return sorted(undisturbed.writing)
+
+
+@pytest.mark.parametrize("scenario", SCENARIOS)
+async def test_everything_comes_to_its_end_wherever_the_gateway_dies(scenario, play):
+    for number, at in enumerate(await writing(play, scenario)):
+        for done, how in some_of(WAYS_TO_DIE, number):
             death = Death(at, done)
-            await play(death, how)
+            await play(scenario, death, how)
             assert death.has_come
+
+
+@pytest.mark.parametrize("scenario", SCENARIOS)
+async def test_and_so_it_does_whichever_transaction_fails(scenario, play):
+    for number, at in enumerate(await writing(play, scenario)):
+        for done, error in some_of(FAILURES, number):
+            failure = Death(at, done, error)
+            await play(scenario, failure, DRIVE_ON)
+            assert failure.has_come
 
 
 @pytest.fixture(params=["postgresql", "mariadb"])

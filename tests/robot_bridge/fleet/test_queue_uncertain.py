@@ -35,6 +35,30 @@ async def test_after_a_commit_of_which_nobody_knows_the_queue_is_what_the_databa
 
 
 @pytest.mark.parametrize("done", [True, False], ids=["done", "not done"])
+async def test_a_queue_of_which_nobody_knows_whether_it_was_resumed_goes_on_if_it_was(
+    line, done, monkeypatch
+):
+    await line.set(task("a"))
+    await line.queues.pause(PauseQueue("r1"), "Ada")
+    await line.reach(*PLACES["a"])
+    await line.set(task("b"))
+    run = line.yard.database.run
+
+    async def lost(*work):
+        monkeypatch.setattr(line.yard.database, "run", run)
+        if done:
+            await run(*work)
+        raise UncertainError("the connection was lost during the commit")
+
+    monkeypatch.setattr(line.yard.database, "run", lost)
+    with pytest.raises(UncertainError):
+        await line.resume()
+    await line.go()
+    assert (await line.seen()).state.value == ("running" if done else "paused")
+    assert await line.sent() == ([PLACES["a"], PLACES["b"]] if done else [PLACES["a"]])
+
+
+@pytest.mark.parametrize("done", [True, False], ids=["done", "not done"])
 async def test_a_task_of_which_nobody_knows_whether_it_was_sent_is_sent_once(line, done, monkeypatch):
     run = line.yard.database.run
 

@@ -1,0 +1,136 @@
+"""A commit of which nobody knows whether it was done: the gateway finds out by itself, and goes by that."""
+
+from __future__ import annotations
+
+import pytest
+from road_places import SOUTH
+
+from robot_bridge.commanding.writing import write_acknowledged, write_drafts
+from robot_bridge.errors import StoreError, UncertainError
+from robot_bridge.messages import (
+    GetObservations,
+    OpenRoad,
+    ResolveConflict,
+    ReviewObservation,
+    SetObject,
+)
+from robot_bridge.robotmap.binary import decode
+from robot_bridge.store import closures, observations
+
+LANE = [(20.0, 40.0), (50.0, 40.0)]
+DONE = pytest.mark.parametrize("done", [True, False], ids=["done", "not done"])
+
+
+@pytest.fixture
+def lose(monkeypatch):
+    """Let the next transaction of ``work`` raise ``error``: ``lose(yard, work, done)``."""
+
+    def lose(yard, work, done, error=UncertainError):
+        run = yard.database.run
+
+        async def lost(asked, *arguments):
+            if asked is not work:
+                return await run(asked, *arguments)
+            monkeypatch.setattr(yard.database, "run", run)
+            if done:
+                await run(asked, *arguments)
+            raise error("the connection was lost during the commit")
+
+        monkeypatch.setattr(yard.database, "run", lost)
+
+    return lose
+
+
+@DONE
+async def test_an_acknowledgement_is_looked_up_and_its_robot_is_seen_to_arrive(roads, lose, done):
+    await roads.ready()
+    await roads.take()
+    await roads.at(*LANE[0])
+    await roads.send("a", "SetPath", points=LANE)
+    (row,) = await roads.deliver()
+    lose(roads, write_acknowledged, done)
+    with pytest.raises(UncertainError):
+        await roads.ack(row.id)
+    await roads.fleet.save()
+    if not done:
+        await roads.take()
+    for x in (30.0, 40.0, 50.0):
+        await roads.at(x, 40.0, v=float(x < 50))
+    assert (await roads.states())["a"] == "reached"
+
+
+@DONE
+async def test_a_road_is_closed_here_too_if_its_closure_is_stored(roads, lose, done):
+    await roads.drive("a", [(10.0, 8.0), (126.0, 8.0)])
+    lose(roads, closures.add, done)
+    with pytest.raises(UncertainError):
+        await roads.close_road(*SOUTH)
+    assert roads.fleet.closures.report().closures == []
+    await roads.fleet.watch_roads()
+    closed = [(one.closure, one.edges) for one in roads.fleet.closures.report().closures]
+    assert closed == ([("closure-1", 1)] if done else [])
+    # The robot is led round, as when the road is closed at once.
+    assert [one for one, _ in (await roads.states()).items()] != (["a"] if done else [])
+    assert (await roads.states())["a"] == ("superseded" if done else "acknowledged")
+
+
+async def test_an_operator_who_asks_for_it_again_is_told_what_holds(roads, lose):
+    await roads.drive("a", [(10.0, 8.0), (126.0, 8.0)])
+    lose(roads, closures.add, True)
+    with pytest.raises(UncertainError):
+        await roads.close_road(*SOUTH)
+    assert (await roads.close_road(*SOUTH)).closure.edges == 1
+    assert (await roads.states())["a"] == "superseded"
+
+
+@DONE
+async def test_a_road_is_open_here_too_if_that_is_stored(roads, lose, done):
+    await roads.close_road(*SOUTH)
+    lose(roads, closures.end, done)
+    with pytest.raises(UncertainError):
+        await roads.fleet.closures.open(OpenRoad("closure-1"), "Bob")
+    await roads.fleet.watch_roads()
+    assert len(roads.fleet.closures.report().closures) == (not done)
+    assert (await roads.open_road()).opened_by == "Bob"
+    await roads.send("a", "SetPath", robot=await plugged(roads), points=[(50.0, 8.0), (70.0, 8.0)])
+
+
+async def plugged(roads):
+    await roads.ready()
+    return "r1"
+
+
+async def test_a_robot_that_could_not_be_led_round_is_when_the_database_is_back(roads, lose):
+    await roads.drive("a", [(10.0, 8.0), (126.0, 8.0)])
+    lose(roads, write_drafts, False, StoreError)
+    (led,) = (await roads.close_road(*SOUTH)).robots
+    assert led.became == "later"
+    assert "Look after it" in led.text
+    await roads.fleet.watch_roads()
+    assert (await roads.states())["a"] == "superseded"
+
+
+@DONE
+async def test_a_robot_waits_if_that_is_stored(roads, lose, done):
+    await roads.drive("one", [(16.0, 8.0), (44.0, 22.0), (90.0, 22.0)])
+    await roads.drive("two", [(13.0, 22.0), (60.0, 22.0), (60.0, 40.0)], robot="r2")
+    lose(roads, write_drafts, done)
+    with pytest.raises(UncertainError):
+        await roads.fleet.traffic.resolve(ResolveConflict("r1", "r2", "waiting"), "Ada")
+    await roads.fleet.watch_roads()
+    waiting = (await roads.fleet.traffic.conflicts()).waiting
+    assert [one.robot for one in waiting] == (["r1"] if done else [])
+
+
+@pytest.mark.parametrize("error", [UncertainError, StoreError])
+async def test_what_was_accepted_is_on_the_map_whatever_failed(roads, lose, error):
+    await roads.ready()
+    await roads.fleet.receive("r1", "sql", SetObject(100.0, 80.0, "cone-7"), 7)
+    (seen,) = await roads.fleet.observations.newest(GetObservations())
+    # The review is stored; an UncertainError comes of its commit, a StoreError of drawing it.
+    lose(roads, observations.review if error is UncertainError else observations.on_map, True, error)
+    with pytest.raises(error):
+        await roads.fleet.observations.review(ReviewObservation(seen.observation, True), "Ada")
+    await roads.fleet.save()
+    drawn = {one.ext["id"] for one in decode(roads.site.whole_map()).obstacles if "id" in one.ext}
+    assert drawn == {"cone-7"}
