@@ -65,7 +65,7 @@ class DatabaseServer(abc.ABC):
         self.stop()
         shutil.rmtree(self.folder, ignore_errors=True)
         self._remover.kill()
-        self._remover.wait()
+        self._remover.communicate()
 
     def require_programs(self) -> None:
         """Raise StageError when a program that this server needs is not on this machine."""

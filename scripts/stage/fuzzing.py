@@ -13,6 +13,8 @@ from hypothesis import strategies as st
 
 from robot_bridge.messages import DESK_REQUESTS, REQUESTS
 
+from .patience import BUSY
+
 LEAKS = ("Traceback", 'File "', "site-packages", ".py")
 
 numbers = st.integers() | st.floats(allow_nan=False) | st.sampled_from([10**30, -1, 2**63, 1e308])
@@ -145,7 +147,7 @@ class Conversation:
         right = {"jsonrpc": "2.0", "id": mine, "method": self._method, "params": self._params}
         self._connection.send(json.dumps(right))
         mine_too = (None, _id_of(frame), mine)
-        until = time.monotonic() + 10
+        until = time.monotonic() + BUSY * 10
         while True:
             text = self._connection.recv(max(0.01, until - time.monotonic()))
             check_text(text)

@@ -12,9 +12,9 @@ import pytest
 from bridge_wires import Desk
 
 NUMBERS = itertools.count(1)
-SLOW = 40
-POINTS = [[x / 10, 20.0 + y / 10] for x in range(100) for y in range(50)]
-"""5 000 places to look up: tens of milliseconds."""
+SLOW = 60
+POINTS = [[x, y] for x in range(100) for y in range(80)]
+"""8 000 places to look up: some ten milliseconds."""
 
 
 def new(what):
@@ -30,7 +30,8 @@ class Hasty(Desk):
         self.ask("subscribe", {"rate": 20})
 
     def say(self, id, method, **params):
-        self.connection.send(json.dumps({"jsonrpc": "2.0", "id": id, "method": method, "params": params}))
+        frame = {"jsonrpc": "2.0", "id": id, "method": method, "params": params}
+        self.connection.send(json.dumps(frame, separators=(",", ":")))
 
     def order(self, *ids, seconds=30.0):
         """Wait for the answers of ``ids``; return these in the order in which they came."""
@@ -95,16 +96,23 @@ def robot(bridge, desk):
     ],
 )
 def test_whatever_stops_robots_is_begun_before_the_slow_questions_that_came_first(desk, robot, method, names):
+    told = {"robot": robot.name, "op": "Abort", "params": {}}
+    params = {name: told[name] for name in names}
+    # In turn it would always be the last; a busy disk may take longer for one order than all questions take.
+    assert any(_overtakes(desk, robot, method, params) for _ in range(3))
+
+
+def _overtakes(desk, robot, method, params):
+    """Ask slow questions and then this; tell whether it was answered before the last of them."""
+    desk.answers.clear()
     for id in range(SLOW):
         desk.say(1000 + id, "get_surface", points=POINTS)
-    told = {"robot": robot.name, "op": "Abort", "params": {}}
-    desk.say(1, method, command=new("stop"), **{name: told[name] for name in names})
-    robot.wait_for("Abort")
+    desk.say(1, method, command=new("stop"), **params)
+    robot.say(robot.wait_for("Abort")["id"])
     order = desk.order(1, *range(1000, 1000 + SLOW))
-    # In turn it would be the last; how many are answered meanwhile is for the machine to say.
-    assert order[-1] != 1
     assert [id for id in order if id != 1] == list(range(1000, 1000 + SLOW))
     assert "error" not in desk.answers[1000 + SLOW - 1]
+    return order[-1] != 1
 
 
 def test_a_stop_is_first_when_an_order_before_it_waits_for_the_database(bridge, desk, robot):
