@@ -15,6 +15,8 @@ STATE_COLOURS = {
 }
 """Each state has a shape of its own as well (see :mod:`.glyphs`)."""
 
+STALE_LETTERS = QColor("#A15C00")
+
 COMMAND_COLOURS = {
     CommandState.REACHED: QColor("#00795C"),
     CommandState.ABORTED: QColor("#C62828"),
@@ -47,5 +49,8 @@ def is_dark() -> bool:
 
 
 def for_letters(colour: QColor) -> QColor:
-    """Return a colour as letters of a list take it: paler on a dark background."""
-    return colour.lighter(175) if is_dark() else colour
+    """Return a colour as letters of a list take it: paler on a dark background, darker on a light one."""
+    if is_dark():
+        return colour.lighter(175)
+    # As a spot on the map amber is seen well; its letters on white are not.
+    return QColor(STALE_LETTERS) if colour == STATE_COLOURS[RobotState.STALE] else colour
