@@ -56,16 +56,17 @@ class RobotsPainter:
     def __init__(self) -> None:
         self._drawings: dict[tuple[float, int], Sprites] = {}
         self._marks: dict[float, Sprites] = {}
-        self._ratio = 0.0
+        self._made_for = 0.0, 0.0
+        """The pixel ratio and the magnification that the drawings are for: of others none is kept."""
         self.magnification = 1.0
         """How many times as large as they come robots are drawn."""
 
     def marks(self, ratio: float, size: float = 1.0) -> Sprites:
         """Return the marks of :func:`~.desk.live.atlases.mark_atlas`."""
-        if ratio != self._ratio:
+        if self._made_for != (ratio, self.magnification):
             self._drawings.clear()
             self._marks.clear()
-            self._ratio = ratio
+            self._made_for = ratio, self.magnification
         if size not in self._marks:
             self._marks[size] = Sprites(mark_atlas(ratio, size), cell(ratio, MARK_SIZE * size), ratio)
         return self._marks[size]
@@ -114,11 +115,12 @@ class RobotsPainter:
 
     def _sprites(self, size: float, state: int) -> Sprites:
         """Return the drawings of robots in a state, made when the first such robot is seen."""
-        drawn = size * self.magnification
-        if (drawn, state) not in self._drawings:
-            atlas = robot_atlas(self._ratio, drawn, STATES[state])
-            self._drawings[drawn, state] = Sprites(atlas, cell(self._ratio, drawn), self._ratio)
-        return self._drawings[drawn, state]
+        if (size, state) not in self._drawings:
+            ratio, magnification = self._made_for
+            drawn = size * magnification
+            atlas = robot_atlas(ratio, drawn, STATES[state])
+            self._drawings[size, state] = Sprites(atlas, cell(ratio, drawn), ratio)
+        return self._drawings[size, state]
 
 
 def _worth(state: int, size: float) -> float:

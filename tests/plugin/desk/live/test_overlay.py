@@ -8,7 +8,7 @@ from fleet_supervisor.plugin.desk.colours import STATE_COLOURS, TRAIL
 from fleet_supervisor.plugin.desk.live.scene import Placer
 from fleet_supervisor.plugin.desk.live.trails import Trails
 from fleet_supervisor.robot_bridge.messages import RobotState
-from qgis.core import QgsCoordinateReferenceSystem, QgsPointXY, QgsProject, QgsRectangle
+from qgis.core import QgsPointXY
 from qgis.PyQt.QtGui import QColor
 from qgis.PyQt.QtWidgets import QApplication
 
@@ -70,46 +70,3 @@ def test_the_robot_under_the_mouse_is_found(canvas, site):
     assert overlay.robot_at(*expected(canvas, site, 70, 50)) == "r2"
     x, y = expected(canvas, site, 70, 50)
     assert overlay.robot_at(x, y + 30) is None
-
-
-def test_an_hour_of_updates_takes_no_more_memory(canvas, site):
-    from pathlib import Path
-
-    from fleet_supervisor.plugin.desk.desk import Desk
-    from fleet_supervisor.plugin.desk.live.live_view import LiveView
-    from fleet_supervisor.plugin.wire.position_rows import sightings
-
-    now = [1000.0]
-    canvas.setDestinationCrs(QgsCoordinateReferenceSystem("EPSG:32633"))
-    canvas.setExtent(QgsRectangle(*site.origin, site.origin[0] + 120, site.origin[1] + 100))
-    desk = Desk(canvas, QgsProject.instance(), clock=lambda: now[0])
-    view = LiveView(desk)
-    desk._take_site(site, is_greeting=True)
-    used = []
-    for step in range(1200):
-        now[0] += 3.0
-        told = [
-            {
-                "robot": f"r{k}",
-                "state": "fresh",
-                "age": 0.1 if k % 9 else 3.0 * step,
-                "link": "sql",
-                "x": (k * 7 + step) % 120,
-                "y": k % 100,
-                "theta": step / 9,
-                "v": 1.0,
-                "accuracy": 0.5 + k % 5,
-            }
-            for k in range(100)
-        ]
-        desk.picture.merge(sightings(told, now[0]))
-        view.show_now()
-        canvas.viewport().repaint()
-        view.layer.begin(100)
-        view.layer.go_on(desk.picture, now[0])
-        if step % 100 == 99:
-            QApplication.processEvents()
-            used.append(int(Path("/proc/self/statm").read_text().split()[1]) * 4096 / 1e6)
-    view.remove()
-    desk.shut_down()
-    assert used[-1] - used[3] < 6.0
