@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from html import escape
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +21,8 @@ from qgis.core import (
     QgsProcessingParameterNumber,
     QgsProcessingParameterString,
 )
+from qgis.gui import QgsMessageBar
+from qgis.utils import iface
 
 from ..language import tr, tr_page
 from .errors import ParameterError, shown_by_processing
@@ -125,6 +128,7 @@ class AsPlacedReport(FleetAlgorithm):
             pages = write_pdf(report, file, context.transformContext(), feedback)
             if pages is None:
                 return {}
+        self._written = file
         feedback.pushInfo(
             tr(
                 "{within} of {count} cones are within {tolerance:g} m; the worst is {most:.3f} m off.",
@@ -136,6 +140,12 @@ class AsPlacedReport(FleetAlgorithm):
         )
         numbers = (*vars(figures).values(), pages, int(odd > 0))
         return {OUTPUT: str(file), **dict(zip(NUMBERS, numbers, strict=True))}
+
+    def postProcessAlgorithm(self, context: QgsProcessingContext, feedback: QgsProcessingFeedback):
+        # Of what runs in the window's thread QGIS's dialog shows neither the log nor the result.
+        if iface is not None and getattr(self, "_written", None):
+            announce(iface.messageBar(), self._written)
+        return super().postProcessAlgorithm(context, feedback)
 
     def _crs(self, parameters: Parameters, context: QgsProcessingContext, source: QgsProcessingFeatureSource):
         crs = self.parameterAsCrs(parameters, CRS, context)
@@ -149,3 +159,9 @@ class AsPlacedReport(FleetAlgorithm):
                 )
             )
         return crs
+
+
+def announce(bar: QgsMessageBar, file: Path) -> None:
+    """Say in the window's message bar where the report is; a click opens it."""
+    link = f'<a href="{file.as_uri()}">{escape(str(file))}</a>'
+    bar.pushSuccess(tr("As-placed report"), tr("It is written: {link}", link=link))

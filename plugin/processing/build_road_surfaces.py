@@ -84,7 +84,7 @@ class BuildRoadSurfaces(FleetAlgorithm):
         self.addParameter(
             QgsProcessingParameterString(
                 PRECEDENCE,
-                tr("Classes that keep their ground where several are, the first before the second"),
+                tr("Classes that keep their ground, the first before the second"),
                 ", ".join(USUAL_ORDER),
                 optional=True,
             )

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
 from qgis.core import (
@@ -20,6 +19,7 @@ from qgis.core import (
     QgsWkbTypes,
 )
 
+from ...robot_bridge.compass import heading_of
 from ...robot_bridge.layouts.checks import Finding
 from ...robot_bridge.layouts.cone import Cone
 from ..language import tr
@@ -109,16 +109,11 @@ class ConeSetup:
         return {**made, CONE_COUNT: len(cones), FINDING_COUNT: len(findings)}
 
 
-def theta_of(heading: float) -> float:
-    """Return radians counter-clockwise from x of ``heading``, degrees clockwise from north."""
-    return math.radians(90.0 - heading)
-
-
 def _point(what: Cone | Finding) -> QgsGeometry:
     return QgsGeometry.fromPointXY(QgsPointXY(what.x, what.y))
 
 
 def cone_values(cone: Cone, layout: str) -> list:
     """Return the values of the fields ``CONE_FIELDS``."""
-    heading = round((90.0 - math.degrees(cone.theta)) % 360.0, 6) % 360.0
+    heading = round(heading_of(cone.theta), 6) % 360.0
     return [cone.id, cone.order, heading, cone.colour, cone.role, layout]

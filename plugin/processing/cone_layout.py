@@ -23,6 +23,7 @@ from qgis.core import (
     QgsProcessingParameterString,
 )
 
+from ...robot_bridge.compass import theta_of
 from ...robot_bridge.layouts.catalogue import LAYOUTS
 from ...robot_bridge.layouts.cone import Cone
 from ...robot_bridge.layouts.placing import along, placed
@@ -30,7 +31,7 @@ from ..language import tr, tr_page
 from ..layout_words import TITLES, dimension_in_words, standard_in_words
 from ..sites.parts import parts_of
 from .cone_ground import ground_parameters
-from .cone_layer import STYLES, ConeSetup, add_layers, site_crs_parameter, theta_of
+from .cone_layer import STYLES, ConeSetup, add_layers, site_crs_parameter
 from .errors import ParameterError, shown_by_processing
 from .fleet_algorithm import FleetAlgorithm, Parameters
 

@@ -11,18 +11,28 @@ from qgis.core import (
     QgsProcessingAlgorithm,
     QgsProcessingContext,
     QgsProcessingFeedback,
+    QgsProcessingParameterDefinition,
     QgsProcessingUtils,
     QgsVectorLayer,
 )
 from qgis.PyQt.QtGui import QIcon
 
 from ..language import tr
+from .label_room import fit_label
 from .value_spelling import spelling_problem
 
 RESOURCES = Path(__file__).parents[2] / "resources"
 
 Parameters = Mapping[str, Any]
 """What an algorithm is given: by the names of its parameters what the user chose."""
+
+
+_AS_SHOWN = {
+    "<b>": "<strong>",
+    "</b>": "</strong>",
+    "<pre>": '<p style="white-space: pre-wrap; font-family: monospace">',
+    "</pre>": "</p>",
+}
 
 
 class FleetAlgorithm(QgsProcessingAlgorithm):
@@ -58,14 +68,21 @@ class FleetAlgorithm(QgsProcessingAlgorithm):
         return self.SUMMARY
 
     def shortHelpString(self):
-        # QGIS shows <b> in a dark grey, which its dark themes swallow.
-        return self.HELP.replace("<b>", "<strong>").replace("</b>", "</strong>")
+        text = self.HELP
+        # QGIS shows <b> in a dark grey, which its dark themes swallow; <pre> it does not break into lines.
+        for written, shown in _AS_SHOWN.items():
+            text = text.replace(written, shown)
+        return text
 
     def icon(self):
         return QIcon(self.svgIconPath())
 
     def svgIconPath(self):
         return str(RESOURCES / "icons" / self.ICON)
+
+    def addParameter(self, parameter: QgsProcessingParameterDefinition, createOutput: bool = True):
+        fit_label(parameter)
+        return super().addParameter(parameter, createOutput)
 
     def createInstance(self):
         return type(self)()

@@ -19,11 +19,11 @@ from qgis.core import (
 )
 
 from ...robot_bridge.assignment.job import COLLECT, FINISHES, PLACE, TO_STORE, Job, Robot, Store, Target
+from ...robot_bridge.compass import theta_of
 from ...robot_bridge.sites.frame import SiteFrame
 from ..language import tr
 from ..sites.placing import SitePlacing
 from ..sites.point_rows import PointRow, point_rows
-from .cone_layer import theta_of
 from .errors import ParameterError
 from .fleet_algorithm import Parameters
 

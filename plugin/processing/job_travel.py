@@ -33,7 +33,7 @@ _REAL = QgsProcessingParameterNumber.Type.Double
 _DRIVING = Driving()
 _LENGTHS = {
     "LEAST_WIDTH": (tr("Roads at least this wide [m]"), 0.0, 0.0),
-    "DISTANCE": (tr("Cones, robots and stores at most this far from a road [m]"), REACH, 0.0),
+    "DISTANCE": (tr("Farthest place from a road [m]"), REACH, 0.0),
     "SPACING": (tr("Points of the paths at most this far apart [m]"), _DRIVING.spacing, 0.01),
     "TURNING_RADIUS": (tr("Turning radius of the robots [m]"), _DRIVING.turning_radius, 0.0),
     "ROBOT_WIDTH": (tr("Width of the robots [m]"), _DRIVING.robot_width, 0.0),

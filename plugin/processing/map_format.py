@@ -65,7 +65,7 @@ def format_parameters() -> list[QgsProcessingParameterDefinition]:
         )
     )
     strict = QgsProcessingParameterBoolean(
-        STRICT, tr("Only what the paper's Fig. 2 has: no leading lines, no extras"), defaultValue=False
+        STRICT, tr("Bare map: no leading lines, no extras"), defaultValue=False
     )
     return [how, strict]
 

@@ -23,14 +23,14 @@ DISSOLVE, CHAIN, TOLERANCE, SHORTEST = "DISSOLVE", "CHAIN", "TOLERANCE", "SHORTE
 
 _HEIGHTS = {
     PLANE_LOW: (
-        tr("Robot's plane: from this height above the ground [m]"),
+        tr("Robot's plane from [m above the ground]"),
         tr(
             "What is not higher than this is left out: the robot drives over it. Stairs and ramps stay. "
             "Give the lower and the upper height together, or neither."
         ),
     ),
     PLANE_HIGH: (
-        tr("Robot's plane: up to this height above the ground [m]"),
+        tr("Robot's plane up to [m above the ground]"),
         tr(
             "What begins at this height or above it is left out: the robot drives under it. Where things "
             "begin is said by the layers or by the parameter BASE_EXPRESSION."
@@ -39,10 +39,10 @@ _HEIGHTS = {
 }
 _FLAGS = {
     DISSOLVE: (
-        tr("Leave out walls between buildings that touch and lines inside or along buildings"),
+        tr("Leave out walls that no robot outside can meet"),
         tr(
-            "No robot outside can meet them. What stays keeps its height and its source. Needs the Python "
-            "package shapely 2."
+            "Those between buildings that touch, and lines inside or along buildings. What stays keeps its "
+            "height and its source. Needs the Python package shapely 2."
         ),
     ),
     CHAIN: (

@@ -147,7 +147,7 @@ def _frame_parameters() -> list[QgsProcessingParameterDefinition]:
             optional=True,
         ),
         QgsProcessingParameterBoolean(
-            LOCAL, tr("Layers without a CRS are already in the site frame's metres"), defaultValue=False
+            LOCAL, tr("Layers without a CRS are in metres of the site"), defaultValue=False
         ),
     ]
 

@@ -60,7 +60,7 @@ class SitePlacing:
     def _why_unplaced(self, name: str, crs: QgsCoordinateReferenceSystem) -> str:
         if self.local is None:
             return _why_not_related(name, crs, self.crs)
-        tick = tr("tick 'Layers without a CRS are already in the site frame's metres' (LOCAL=true)")
+        tick = tr("tick 'Layers without a CRS are in metres of the site' (LOCAL=true)")
         if not crs.isValid():
             return tr(
                 "The layer {name} has no CRS, so its place on the site is not known: set the layer's "

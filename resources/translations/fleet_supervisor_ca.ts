@@ -2386,7 +2386,7 @@
         <message>
             <location filename="../../plugin/desk/plans/as_placed_page.py" />
             <source>Figures, histogram, map and table of these cones as a PDF</source>
-            <translation type="unfinished" />
+            <translation>Xifres, histograma, mapa i taula d'aquests cons en un PDF</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/as_placed_page.py" />
@@ -2416,7 +2416,7 @@
         <message>
             <location filename="../../plugin/desk/plans/as_placed_page.py" />
             <source>Report…</source>
-            <translation type="unfinished" />
+            <translation>Informe…</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/as_placed_page.py" />
@@ -2451,7 +2451,7 @@
         <message>
             <location filename="../../plugin/desk/plans/as_placed_pdf.py" />
             <source>The report is made by QGIS's Processing: switch that on in Plugins &gt; Manage and Install Plugins.</source>
-            <translation type="unfinished" />
+            <translation>L'informe el fa Processament de QGIS: activeu-lo a Connectors &gt; Gestiona i instal·la els connectors.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/closed_ways.py" />
@@ -4913,7 +4913,7 @@
         <message>
             <location filename="../../plugin/processing/as_placed_report.py" />
             <source>It is written: {link}</source>
-            <translation type="unfinished" />
+            <translation>S'ha escrit: {link}</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/as_placed_report.py" />
@@ -5127,8 +5127,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/build_road_surfaces.py" />
-            <source>Classes that keep their ground where several are, the first before the second</source>
-            <translation>Classes que conserven el terreny on n'hi ha diverses, la primera abans que la segona</translation>
+            <source>Classes that keep their ground, the first before the second</source>
+            <translation>Classes que conserven el seu sòl, la primera abans que la segona</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/build_road_surfaces.py" />
@@ -5863,7 +5863,7 @@
         <message>
             <location filename="../../plugin/processing/find_route.py" />
             <source>Start and goal at most this far from a road [m]</source>
-            <translation>Inici i final com a màxim a aquesta distància d'una via [m]</translation>
+            <translation>Distància màxima d'inici i final a una via [m]</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/find_route.py" />
@@ -5988,7 +5988,7 @@
         <message>
             <location filename="../../plugin/processing/import_cone_layout.py" />
             <source>Column that names the layout of each row</source>
-            <translation>Columna que anomena la disposició de cada fila</translation>
+            <translation>Columna de la disposició</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/import_cone_layout.py" />
@@ -6097,8 +6097,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/job_travel.py" />
-            <source>Cones, robots and stores at most this far from a road [m]</source>
-            <translation>Cons, robots i magatzems com a màxim a aquesta distància d'una via [m]</translation>
+            <source>Farthest place from a road [m]</source>
+            <translation>Distància màxima a una via [m]</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/job_travel.py" />
@@ -6257,13 +6257,13 @@
         </message>
         <message>
             <location filename="../../plugin/processing/map_format.py" />
-            <source>Format (compact: binary in columns, about a third of binary)</source>
-            <translation>Format (compact: binari en columnes, un terç del binari)</translation>
+            <source>Bare map: no leading lines, no extras</source>
+            <translation>Mapa nu: sense línies inicials ni extres</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/map_format.py" />
-            <source>Only what the paper's Fig. 2 has: no leading lines, no extras</source>
-            <translation>Només el que té la fig. 2 de l'article: sense línies inicials ni extres</translation>
+            <source>Format (compact: binary in columns, about a third of binary)</source>
+            <translation>Format (compact: binari en columnes, un terç del binari)</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/map_format.py" />
@@ -6318,22 +6318,17 @@
         <message>
             <location filename="../../plugin/processing/map_shaping.py" />
             <source>Heights are rounded up to a multiple of this [m]</source>
-            <translation>Les alçades s'arrodoneixen cap amunt a un múltiple de [m]</translation>
+            <translation>Alçades arrodonides a un múltiple de [m]</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/map_shaping.py" />
             <source>Join lines that meet end to end into one obstacle</source>
-            <translation>Uneix línies que es troben pels extrems en un sol obstacle</translation>
+            <translation>Uneix en un obstacle les línies que es troben</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/map_shaping.py" />
-            <source>Leave out walls between buildings that touch and lines inside or along buildings</source>
-            <translation>Omet parets entre edificis que es toquen i línies dins o al llarg d'edificis</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/map_shaping.py" />
-            <source>No robot outside can meet them. What stays keeps its height and its source. Needs the Python package shapely 2.</source>
-            <translation>Cap robot de fora se'ls pot trobar. El que es queda conserva l'alçada i la font. Necessita el paquet de Python shapely 2.</translation>
+            <source>Leave out walls that no robot outside can meet</source>
+            <translation>Omet els murs que cap robot pot trobar des de fora</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/map_shaping.py" />
@@ -6347,18 +6342,23 @@
         </message>
         <message>
             <location filename="../../plugin/processing/map_shaping.py" />
-            <source>Robot's plane: from this height above the ground [m]</source>
-            <translation>Pla del robot: des d'aquesta alçada sobre el terra [m]</translation>
+            <source>Robot's plane from [m above the ground]</source>
+            <translation>Pla del robot des de [m sobre el sòl]</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/map_shaping.py" />
-            <source>Robot's plane: up to this height above the ground [m]</source>
-            <translation>Pla del robot: fins a aquesta alçada sobre el terra [m]</translation>
+            <source>Robot's plane up to [m above the ground]</source>
+            <translation>Pla del robot fins a [m sobre el sòl]</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/map_shaping.py" />
             <source>Shortest segment: corners nearer than this to the one before are left out [m]</source>
             <translation>Segment més curt: s'ometen les cantonades més properes a l'anterior [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_shaping.py" />
+            <source>Those between buildings that touch, and lines inside or along buildings. What stays keeps its height and its source. Needs the Python package shapely 2.</source>
+            <translation>Els d'entre edificis que es toquen i les línies dins o al llarg d'edificis. El que queda conserva l'alçada i l'origen. Necessita el paquet de Python shapely 2.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/map_shaping.py" />
@@ -6407,8 +6407,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/map_window.py" />
-            <source>Layers without a CRS are already in the site frame's metres</source>
-            <translation>Les capes sense SRC ja són en metres del marc del recinte</translation>
+            <source>Layers without a CRS are in metres of the site</source>
+            <translation>Les capes sense SRC són en metres del recinte</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/map_window.py" />
@@ -6708,7 +6708,7 @@
         <message>
             <location filename="../../plugin/processing/report_layout.py" />
             <source>E and N in metres of {crs}; {mark} beyond the tolerance of {tolerance:g} cm</source>
-            <translation type="unfinished" />
+            <translation>E i N en metres de {crs}; {mark} fora de la tolerància de {tolerance:g} cm</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/report_layout.py" />
@@ -6723,7 +6723,7 @@
         <message>
             <location filename="../../plugin/processing/report_layout.py" />
             <source>Robots: {names}</source>
-            <translation type="unfinished" />
+            <translation>Robots: {names}</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/report_layout.py" />
@@ -6743,7 +6743,7 @@
         <message>
             <location filename="../../plugin/processing/report_layout.py" />
             <source>{time} UTC</source>
-            <translation type="unfinished" />
+            <translation>{time} UTC</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/report_layout.py" />
@@ -6753,7 +6753,7 @@
         <message>
             <location filename="../../plugin/processing/report_layout.py" />
             <source>× planned   ● placed (red: beyond the tolerance)   orange: deviation</source>
-            <translation type="unfinished" />
+            <translation>× planificat   ● col·locat (vermell: fora de la tolerància)   taronja: desviació</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/report_layout.py" />
@@ -6803,7 +6803,7 @@
         <message>
             <location filename="../../plugin/processing/road_source.py" />
             <source>Ends this near to a road were meant to meet it [m]</source>
-            <translation>Els extrems així de prop d'una via s'hi havien de trobar [m]</translation>
+            <translation>Extrems així de prop d'una via hi toquen [m]</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/road_source.py" />
@@ -7713,8 +7713,8 @@
         </message>
         <message>
             <location filename="../../plugin/sites/placing.py" />
-            <source>tick 'Layers without a CRS are already in the site frame's metres' (LOCAL=true)</source>
-            <translation>marqueu «Les capes sense SRC ja són en metres del marc del recinte» (LOCAL=true)</translation>
+            <source>tick 'Layers without a CRS are in metres of the site' (LOCAL=true)</source>
+            <translation>marqueu «Les capes sense SRC són en metres del recinte» (LOCAL=true)</translation>
         </message>
         <message>
             <location filename="../../plugin/sites/point_rows.py" />

@@ -2386,7 +2386,7 @@
         <message>
             <location filename="../../plugin/desk/plans/as_placed_page.py" />
             <source>Figures, histogram, map and table of these cones as a PDF</source>
-            <translation type="unfinished" />
+            <translation>Cifras, histograma, mapa y tabla de estos conos en un PDF</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/as_placed_page.py" />
@@ -2416,7 +2416,7 @@
         <message>
             <location filename="../../plugin/desk/plans/as_placed_page.py" />
             <source>Report…</source>
-            <translation type="unfinished" />
+            <translation>Informe…</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/as_placed_page.py" />
@@ -2451,7 +2451,7 @@
         <message>
             <location filename="../../plugin/desk/plans/as_placed_pdf.py" />
             <source>The report is made by QGIS's Processing: switch that on in Plugins &gt; Manage and Install Plugins.</source>
-            <translation type="unfinished" />
+            <translation>El informe lo hace Procesos de QGIS: actívelo en Complementos &gt; Administrar e instalar complementos.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/closed_ways.py" />
@@ -4913,7 +4913,7 @@
         <message>
             <location filename="../../plugin/processing/as_placed_report.py" />
             <source>It is written: {link}</source>
-            <translation type="unfinished" />
+            <translation>Se ha escrito: {link}</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/as_placed_report.py" />
@@ -5127,8 +5127,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/build_road_surfaces.py" />
-            <source>Classes that keep their ground where several are, the first before the second</source>
-            <translation>Clases que conservan el terreno donde hay varias, la primera antes que la segunda</translation>
+            <source>Classes that keep their ground, the first before the second</source>
+            <translation>Clases que conservan su suelo, la primera antes que la segunda</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/build_road_surfaces.py" />
@@ -5523,7 +5523,7 @@
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
             <source>Robots drive over what is lower than [m]</source>
-            <translation>Los robots pasan por encima de lo que es más bajo que [m]</translation>
+            <translation>Los robots pasan sobre lo más bajo que [m]</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
@@ -5673,7 +5673,7 @@
         <message>
             <location filename="../../plugin/processing/export_robot_map.py" />
             <source>Where each feature begins above the ground [m] (default: on it)</source>
-            <translation>Dónde empieza cada objeto sobre el suelo [m] (por defecto: en él)</translation>
+            <translation>Inicio de cada objeto sobre el suelo [m] (por defecto: sobre él)</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/export_robot_map.py" />
@@ -5863,7 +5863,7 @@
         <message>
             <location filename="../../plugin/processing/find_route.py" />
             <source>Start and goal at most this far from a road [m]</source>
-            <translation>Inicio y final como máximo a esta distancia de una vía [m]</translation>
+            <translation>Distancia máxima de inicio y final a una vía [m]</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/find_route.py" />
@@ -5988,7 +5988,7 @@
         <message>
             <location filename="../../plugin/processing/import_cone_layout.py" />
             <source>Column that names the layout of each row</source>
-            <translation>Columna que nombra la disposición de cada fila</translation>
+            <translation>Columna de la disposición</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/import_cone_layout.py" />
@@ -6097,8 +6097,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/job_travel.py" />
-            <source>Cones, robots and stores at most this far from a road [m]</source>
-            <translation>Conos, robots y almacenes como máximo a esta distancia de una vía [m]</translation>
+            <source>Farthest place from a road [m]</source>
+            <translation>Distancia máxima a una vía [m]</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/job_travel.py" />
@@ -6257,13 +6257,13 @@
         </message>
         <message>
             <location filename="../../plugin/processing/map_format.py" />
-            <source>Format (compact: binary in columns, about a third of binary)</source>
-            <translation>Formato (compact: binario en columnas, un tercio del binario)</translation>
+            <source>Bare map: no leading lines, no extras</source>
+            <translation>Mapa escueto: sin líneas iniciales ni extras</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/map_format.py" />
-            <source>Only what the paper's Fig. 2 has: no leading lines, no extras</source>
-            <translation>Solo lo que tiene la fig. 2 del artículo: sin líneas iniciales ni extras</translation>
+            <source>Format (compact: binary in columns, about a third of binary)</source>
+            <translation>Formato (compact: binario en columnas, un tercio del binario)</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/map_format.py" />
@@ -6318,22 +6318,17 @@
         <message>
             <location filename="../../plugin/processing/map_shaping.py" />
             <source>Heights are rounded up to a multiple of this [m]</source>
-            <translation>Las alturas se redondean hacia arriba a un múltiplo de [m]</translation>
+            <translation>Alturas redondeadas a un múltiplo de [m]</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/map_shaping.py" />
             <source>Join lines that meet end to end into one obstacle</source>
-            <translation>Unir líneas que se encuentran por los extremos en un solo obstáculo</translation>
+            <translation>Unir en un obstáculo las líneas que se tocan</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/map_shaping.py" />
-            <source>Leave out walls between buildings that touch and lines inside or along buildings</source>
-            <translation>Omitir muros entre edificios que se tocan y líneas dentro o a lo largo de edificios</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/map_shaping.py" />
-            <source>No robot outside can meet them. What stays keeps its height and its source. Needs the Python package shapely 2.</source>
-            <translation>Ningún robot de fuera puede encontrarlos. Lo que queda conserva su altura y su fuente. Necesita el paquete de Python shapely 2.</translation>
+            <source>Leave out walls that no robot outside can meet</source>
+            <translation>Omitir los muros que ningún robot encuentra fuera</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/map_shaping.py" />
@@ -6347,18 +6342,23 @@
         </message>
         <message>
             <location filename="../../plugin/processing/map_shaping.py" />
-            <source>Robot's plane: from this height above the ground [m]</source>
-            <translation>Plano del robot: desde esta altura sobre el suelo [m]</translation>
+            <source>Robot's plane from [m above the ground]</source>
+            <translation>Plano del robot desde [m sobre el suelo]</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/map_shaping.py" />
-            <source>Robot's plane: up to this height above the ground [m]</source>
-            <translation>Plano del robot: hasta esta altura sobre el suelo [m]</translation>
+            <source>Robot's plane up to [m above the ground]</source>
+            <translation>Plano del robot hasta [m sobre el suelo]</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/map_shaping.py" />
             <source>Shortest segment: corners nearer than this to the one before are left out [m]</source>
             <translation>Segmento más corto: se omiten las esquinas más cercanas a la anterior [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_shaping.py" />
+            <source>Those between buildings that touch, and lines inside or along buildings. What stays keeps its height and its source. Needs the Python package shapely 2.</source>
+            <translation>Los de entre edificios que se tocan y las líneas dentro o a lo largo de edificios. Lo que queda conserva su altura y su origen. Necesita el paquete de Python shapely 2.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/map_shaping.py" />
@@ -6407,8 +6407,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/map_window.py" />
-            <source>Layers without a CRS are already in the site frame's metres</source>
-            <translation>Las capas sin SRC ya están en metros del marco del recinto</translation>
+            <source>Layers without a CRS are in metres of the site</source>
+            <translation>Las capas sin SRC están en metros del recinto</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/map_window.py" />
@@ -6708,7 +6708,7 @@
         <message>
             <location filename="../../plugin/processing/report_layout.py" />
             <source>E and N in metres of {crs}; {mark} beyond the tolerance of {tolerance:g} cm</source>
-            <translation type="unfinished" />
+            <translation>E y N en metros de {crs}; {mark} fuera de la tolerancia de {tolerance:g} cm</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/report_layout.py" />
@@ -6723,7 +6723,7 @@
         <message>
             <location filename="../../plugin/processing/report_layout.py" />
             <source>Robots: {names}</source>
-            <translation type="unfinished" />
+            <translation>Robots: {names}</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/report_layout.py" />
@@ -6743,7 +6743,7 @@
         <message>
             <location filename="../../plugin/processing/report_layout.py" />
             <source>{time} UTC</source>
-            <translation type="unfinished" />
+            <translation>{time} UTC</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/report_layout.py" />
@@ -6753,7 +6753,7 @@
         <message>
             <location filename="../../plugin/processing/report_layout.py" />
             <source>× planned   ● placed (red: beyond the tolerance)   orange: deviation</source>
-            <translation type="unfinished" />
+            <translation>× planificado   ● colocado (rojo: fuera de la tolerancia)   naranja: desviación</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/report_layout.py" />
@@ -6803,7 +6803,7 @@
         <message>
             <location filename="../../plugin/processing/road_source.py" />
             <source>Ends this near to a road were meant to meet it [m]</source>
-            <translation>Los extremos así de cerca de una vía debían encontrarse con ella [m]</translation>
+            <translation>Extremos así de cerca de una vía la tocan [m]</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/road_source.py" />
@@ -7713,8 +7713,8 @@
         </message>
         <message>
             <location filename="../../plugin/sites/placing.py" />
-            <source>tick 'Layers without a CRS are already in the site frame's metres' (LOCAL=true)</source>
-            <translation>marque «Las capas sin SRC ya están en metros del marco del recinto» (LOCAL=true)</translation>
+            <source>tick 'Layers without a CRS are in metres of the site' (LOCAL=true)</source>
+            <translation>marque «Las capas sin SRC están en metros del recinto» (LOCAL=true)</translation>
         </message>
         <message>
             <location filename="../../plugin/sites/point_rows.py" />

@@ -2384,7 +2384,7 @@
         <message>
             <location filename="../../plugin/desk/plans/as_placed_page.py" />
             <source>Figures, histogram, map and table of these cones as a PDF</source>
-            <translation type="unfinished" />
+            <translation>Ezeknek a bójáknak a számai, hisztogramja, térképe és táblázata PDF-ben</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/as_placed_page.py" />
@@ -2414,7 +2414,7 @@
         <message>
             <location filename="../../plugin/desk/plans/as_placed_page.py" />
             <source>Report…</source>
-            <translation type="unfinished" />
+            <translation>Jelentés…</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/as_placed_page.py" />
@@ -2449,7 +2449,7 @@
         <message>
             <location filename="../../plugin/desk/plans/as_placed_pdf.py" />
             <source>The report is made by QGIS's Processing: switch that on in Plugins &gt; Manage and Install Plugins.</source>
-            <translation type="unfinished" />
+            <translation>A jelentést a QGIS Feldolgozás modulja készíti: kapcsolja be a Modulok &gt; Modulok kezelése és telepítése ablakban.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/closed_ways.py" />
@@ -4909,7 +4909,7 @@
         <message>
             <location filename="../../plugin/processing/as_placed_report.py" />
             <source>It is written: {link}</source>
-            <translation type="unfinished" />
+            <translation>Elkészült: {link}</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/as_placed_report.py" />
@@ -5123,8 +5123,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/build_road_surfaces.py" />
-            <source>Classes that keep their ground where several are, the first before the second</source>
-            <translation>Osztályok, amelyek átfedésnél megtartják helyüket, az első a második előtt</translation>
+            <source>Classes that keep their ground, the first before the second</source>
+            <translation>A területüket megtartó osztályok, az első a második előtt</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/build_road_surfaces.py" />
@@ -5859,7 +5859,7 @@
         <message>
             <location filename="../../plugin/processing/find_route.py" />
             <source>Start and goal at most this far from a road [m]</source>
-            <translation>A kiindulás és a végpont legfeljebb ilyen messze az úttól [m]</translation>
+            <translation>A két végpont legnagyobb távolsága az úttól [m]</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/find_route.py" />
@@ -5984,7 +5984,7 @@
         <message>
             <location filename="../../plugin/processing/import_cone_layout.py" />
             <source>Column that names the layout of each row</source>
-            <translation>Az egyes sorok elrendezését megnevező oszlop</translation>
+            <translation>A sorok elrendezésének oszlopa</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/import_cone_layout.py" />
@@ -6064,7 +6064,7 @@
         <message>
             <location filename="../../plugin/processing/job_source.py" />
             <source>Seconds to place or collect a cone (default of field service_s)</source>
-            <translation>Egy bója kihelyezésének vagy begyűjtésének másodpercei (alapértelmezése a service_s mezőnek)</translation>
+            <translation>Bója kihelyezése vagy begyűjtése [s] (a service_s mező alapértéke)</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/job_source.py" />
@@ -6093,8 +6093,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/job_travel.py" />
-            <source>Cones, robots and stores at most this far from a road [m]</source>
-            <translation>Bóják, robotok és raktárak legfeljebb ilyen messze az úttól [m]</translation>
+            <source>Farthest place from a road [m]</source>
+            <translation>Legnagyobb távolság úttól [m]</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/job_travel.py" />
@@ -6253,13 +6253,13 @@
         </message>
         <message>
             <location filename="../../plugin/processing/map_format.py" />
-            <source>Format (compact: binary in columns, about a third of binary)</source>
-            <translation>Formátum (compact: bináris oszlopokban, a bináris mintegy harmada)</translation>
+            <source>Bare map: no leading lines, no extras</source>
+            <translation>Puszta térkép: bevezető sorok és kiegészítések nélkül</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/map_format.py" />
-            <source>Only what the paper's Fig. 2 has: no leading lines, no extras</source>
-            <translation>Csak ami a cikk 2. ábráján van: bevezető sorok és kiegészítések nélkül</translation>
+            <source>Format (compact: binary in columns, about a third of binary)</source>
+            <translation>Formátum (compact: bináris oszlopokban, a bináris mintegy harmada)</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/map_format.py" />
@@ -6319,17 +6319,12 @@
         <message>
             <location filename="../../plugin/processing/map_shaping.py" />
             <source>Join lines that meet end to end into one obstacle</source>
-            <translation>Végpontjaikon találkozó vonalak egyesítése egy akadállyá</translation>
+            <translation>Összeérő vonalak egy akadállyá egyesítése</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/map_shaping.py" />
-            <source>Leave out walls between buildings that touch and lines inside or along buildings</source>
-            <translation>Érintkező épületek közti falak, valamint épületekben vagy mentén lévő vonalak kihagyása</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/map_shaping.py" />
-            <source>No robot outside can meet them. What stays keeps its height and its source. Needs the Python package shapely 2.</source>
-            <translation>Kint lévő robot nem találkozhat velük. Ami marad, megtartja magasságát és forrását. A shapely 2 Python-csomag kell hozzá.</translation>
+            <source>Leave out walls that no robot outside can meet</source>
+            <translation>Kívülről el nem érhető falak kihagyása</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/map_shaping.py" />
@@ -6343,18 +6338,23 @@
         </message>
         <message>
             <location filename="../../plugin/processing/map_shaping.py" />
-            <source>Robot's plane: from this height above the ground [m]</source>
-            <translation>A robot síkja: ettől a talaj feletti magasságtól [m]</translation>
+            <source>Robot's plane from [m above the ground]</source>
+            <translation>A robot síkja ettől [m a talaj felett]</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/map_shaping.py" />
-            <source>Robot's plane: up to this height above the ground [m]</source>
-            <translation>A robot síkja: eddig a talaj feletti magasságig [m]</translation>
+            <source>Robot's plane up to [m above the ground]</source>
+            <translation>A robot síkja eddig [m a talaj felett]</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/map_shaping.py" />
             <source>Shortest segment: corners nearer than this to the one before are left out [m]</source>
             <translation>Legrövidebb szakasz: az előzőhöz ennél közelebbi sarkok kimaradnak [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_shaping.py" />
+            <source>Those between buildings that touch, and lines inside or along buildings. What stays keeps its height and its source. Needs the Python package shapely 2.</source>
+            <translation>Az érintkező épületek közöttieket, valamint az épületekben vagy mentén futó vonalakat. Ami marad, megtartja magasságát és forrását. A shapely 2 Python-csomag kell hozzá.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/map_shaping.py" />
@@ -6403,8 +6403,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/map_window.py" />
-            <source>Layers without a CRS are already in the site frame's metres</source>
-            <translation>A vetület nélküli rétegek már a telephelyi keret métereiben vannak</translation>
+            <source>Layers without a CRS are in metres of the site</source>
+            <translation>A vetület nélküli rétegek telephelyi méterben vannak</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/map_window.py" />
@@ -6424,7 +6424,7 @@
         <message>
             <location filename="../../plugin/processing/map_window.py" />
             <source>Rotation of the site frame, counter-clockwise from the CRS's x axis [degrees]</source>
-            <translation>A telephelyi keret elforgatása a vetület x tengelyétől, az óramutató járásával ellentétesen [fok]</translation>
+            <translation>A telephelyi keret elforgatása, a vetület x tengelyétől pozitív irányban [fok]</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/map_window.py" />
@@ -6704,7 +6704,7 @@
         <message>
             <location filename="../../plugin/processing/report_layout.py" />
             <source>E and N in metres of {crs}; {mark} beyond the tolerance of {tolerance:g} cm</source>
-            <translation type="unfinished" />
+            <translation>K és É méterben, {crs}; {mark} a {tolerance:g} cm-es tűrésen túl</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/report_layout.py" />
@@ -6719,7 +6719,7 @@
         <message>
             <location filename="../../plugin/processing/report_layout.py" />
             <source>Robots: {names}</source>
-            <translation type="unfinished" />
+            <translation>Robotok: {names}</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/report_layout.py" />
@@ -6739,7 +6739,7 @@
         <message>
             <location filename="../../plugin/processing/report_layout.py" />
             <source>{time} UTC</source>
-            <translation type="unfinished" />
+            <translation>{time} UTC</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/report_layout.py" />
@@ -6749,7 +6749,7 @@
         <message>
             <location filename="../../plugin/processing/report_layout.py" />
             <source>× planned   ● placed (red: beyond the tolerance)   orange: deviation</source>
-            <translation type="unfinished" />
+            <translation>× tervezett   ● kihelyezett (piros: a tűrésen túl)   narancs: eltérés</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/report_layout.py" />
@@ -6799,7 +6799,7 @@
         <message>
             <location filename="../../plugin/processing/road_source.py" />
             <source>Ends this near to a road were meant to meet it [m]</source>
-            <translation>Az úthoz ennyire közeli végpontoknak csatlakozniuk kellett volna [m]</translation>
+            <translation>Ilyen közeli végek az úthoz tartoznak [m]</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/road_source.py" />
@@ -7707,8 +7707,8 @@
         </message>
         <message>
             <location filename="../../plugin/sites/placing.py" />
-            <source>tick 'Layers without a CRS are already in the site frame's metres' (LOCAL=true)</source>
-            <translation>kapcsolja be: „A vetület nélküli rétegek már a telephelyi keret métereiben vannak” (LOCAL=true)</translation>
+            <source>tick 'Layers without a CRS are in metres of the site' (LOCAL=true)</source>
+            <translation>jelölje be: „A vetület nélküli rétegek telephelyi méterben vannak” (LOCAL=true)</translation>
         </message>
         <message>
             <location filename="../../plugin/sites/point_rows.py" />
