@@ -16,6 +16,12 @@ MOST = 600
 MARGIN = 4
 CASING = 1.6
 """Pixels of light around the letters."""
+_AT = QPointF(MARGIN, MARGIN)
+_AROUND = [
+    _AT + QPointF(CASING * math.cos(turn), CASING * math.sin(turn))
+    for turn in (k * math.pi / 4 for k in range(8))
+]
+"""Where the letters stand in their picture, and where the light around them."""
 HEIGHT = 18
 """Logical pixels that a text needs from the one below it."""
 
@@ -72,13 +78,12 @@ def _drawn(text: str, ratio: float) -> QPixmap:
     painter = QPainter(pixmap)
     painter.setFont(font)
     painter.setPen(PAPER)
-    at = QPointF(MARGIN, MARGIN)
     written = QStaticText(text)
     written.setTextFormat(Qt.TextFormat.PlainText)
     # To stroke the letters' outlines would take six times as long as to write them eight times.
-    for turn in (k * math.pi / 4 for k in range(8)):
-        painter.drawStaticText(at + QPointF(CASING * math.cos(turn), CASING * math.sin(turn)), written)
+    for beside in _AROUND:
+        painter.drawStaticText(beside, written)
     painter.setPen(INK)
-    painter.drawStaticText(at, written)
+    painter.drawStaticText(_AT, written)
     painter.end()
     return pixmap

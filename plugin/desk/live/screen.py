@@ -74,12 +74,13 @@ def screen_of(canvas: QgsMapCanvas, item: QgsMapCanvasItem, ratio: float) -> Scr
     centre = canvas.center()
     at = item.toCanvasCoordinates(centre)
     axes = canvas.getCoordinateTransform().transform()
+    seen = canvas.viewport().size()
     return Screen(
         (centre.x(), centre.y()),
         (at.x(), at.y()),
         (axes.m11(), axes.m12()),
         (axes.m21(), axes.m22()),
-        canvas.viewport().width(),
-        canvas.viewport().height(),
+        seen.width(),
+        seen.height(),
         ratio,
     )
