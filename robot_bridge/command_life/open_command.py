@@ -85,6 +85,13 @@ class OpenCommand:
         return self.report.state in (CommandState.QUEUED, CommandState.DELIVERED)
 
     @property
+    def acknowledged_at(self) -> float:
+        """When the robot took it on last; when it was issued, where it has not."""
+        steps = self.report.steps
+        taken = [step.at for step in steps if step.state is CommandState.ACKNOWLEDGED]
+        return taken[-1] if taken else steps[0].at
+
+    @property
     def driven(self) -> float | None:
         """Metres of its path that the robot has driven, None for what is no path."""
         return self.arrival.driven if isinstance(self.arrival, PathArrival) else None

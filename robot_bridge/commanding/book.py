@@ -345,7 +345,7 @@ class CommandBook:
                 stood = (pose.x, pose.y, pose.theta)
                 await self._save([command.step(CommandState.REACHED, now, GATEWAY, reason, off, stood)])
             elif abort is not None:
-                await self._save(ended_by(abort, [command], now, ABORTED))
+                await self._save(ended_by(abort, [command], abort.acknowledged_at, ABORTED))
 
     async def _deliver_again(self, robot: str, reason: str, expire_after: float) -> None:
         async with self._holding([robot]):

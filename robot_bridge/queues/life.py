@@ -50,7 +50,8 @@ def sent(queue: Queue, at: float) -> Queue:
 def settled(queue: Queue, report: CommandReport, legs: int, *, skips: bool) -> Settled:
     """Return what comes of the end of the current task's command, one of ``legs``.
 
-    With ``skips`` a task that a robot refuses or gives up is passed over, else the queue pauses.
+    With ``skips`` a task that a robot refuses or gives up is passed over, else the queue pauses. It goes on
+    where somebody has resumed it since the command ended.
     """
     head, step = queue.tasks[0], report.steps[-1]
     if report.state is CommandState.REACHED:
@@ -62,7 +63,9 @@ def settled(queue: Queue, report: CommandReport, legs: int, *, skips: bool) -> S
         reason = step.reason or "the robot gave no reason"
         return failed(queue, f"robot {queue.robot} refused it or gave it up: {reason}", step.at, skips=skips)
     why = f"its command is {report.state.value}{f': {step.reason}' if step.reason else ''}"
-    return Settled(queue.with_head(given_back(head, why)).paused(f"task {head.id}: {why}", step.by, step.at))
+    given = queue.with_head(given_back(head, why))
+    resumed_since = queue.at is not None and queue.at > step.at
+    return Settled(given if resumed_since else given.paused(f"task {head.id}: {why}", step.by, step.at))
 
 
 def done_after_all(queue: Queue, legs: int) -> Queue | None:

@@ -107,3 +107,31 @@ async def test_a_robot_that_is_heard_all_along_has_aborted_when_it_says_so(line)
     await line.yard.at(*CONE)
     await line.go()
     assert await line.states() == {"a": "waiting"}
+
+
+async def test_a_queue_that_was_resumed_after_the_robot_took_the_abort_on_goes_on(line):
+    await begin(line)
+    await abort(line)
+    await come_back(line)
+    taken_on = line.yard.now
+    line.yard.now += 5
+    await line.go()
+    await line.resume()
+    await line.yard.at(40.0, 40.0)
+    await line.go()
+    assert await line.states() == {"a": "current"}
+    first = next(c for c in await line.yard._stored() if c.op == "SetPosEnd")
+    assert (first.state.value, first.steps[-1].at) == ("aborted", taken_on)
+    assert (await line.sent()).count(CONE) == 2
+
+
+async def test_one_that_was_resumed_before_that_pauses_again(line):
+    await begin(line)
+    await abort(line)
+    await line.go()
+    await line.resume()
+    await come_back(line)
+    await line.yard.at(40.0, 40.0)
+    await line.go()
+    assert await line.states() == {"a": "waiting"}
+    assert (await line.seen()).state.value == "paused"
