@@ -41,7 +41,7 @@ def read_site(folder: Path | str) -> Site:
     folder = Path(folder)
     if not folder.is_dir():
         raise SiteError(
-            f"{folder} is no folder: a published site is a folder with {SETTINGS_FILE} and {GEOPACKAGE_FILE}."
+            f"{folder} is no folder: a published site is a folder with {SETTINGS_FILE} and {GEOPACKAGE_FILE}"
         )
     settings = read_settings(folder / SETTINGS_FILE)
     file = folder / GEOPACKAGE_FILE

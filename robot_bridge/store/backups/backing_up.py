@@ -51,6 +51,7 @@ def back_up(url: URL, file: Path, *, replace: bool = False) -> int:
 
     The gateway may run. Raises BridgeError and StoreError.
     """
+    _refuse_itself(url, file)
     if file.exists() and not replace:
         raise BridgeError(f"{file} is there already; choose another name, or give --replace")
     revision = run_once(url, _revision, shown(url))
@@ -71,6 +72,7 @@ def back_up(url: URL, file: Path, *, replace: bool = False) -> int:
 
 def revision_in(url: URL, file: Path) -> str:
     """Return which tables a backup for the database at ``url`` holds; raises BridgeError and StoreError."""
+    _refuse_itself(url, file)
     _check_kind(url, file)
     revision = KINDS[url.get_backend_name()](url).check(file)
     if revision > revisions.NEEDED:
@@ -151,6 +153,13 @@ def _renew(connection: Connection) -> None:
     connection.execute(delete(rr))
     connection.execute(delete(bridge).where(bridge.c.name == "id"))
     facts.database_id(connection)
+
+
+def _refuse_itself(url: URL, file: Path) -> None:
+    """Raise BridgeError for the database's own file: a copy in its place would take it from a gateway."""
+    database = Path(url.database or "") if url.get_backend_name() == "sqlite" else None
+    if database is not None and database.is_file() and file.exists() and file.samefile(database):
+        raise BridgeError(f"{file} is the database itself; name another file for the backup")
 
 
 def _check_kind(url: URL, file: Path) -> None:

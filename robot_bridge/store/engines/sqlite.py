@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import sqlite3
 import time
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import sqlalchemy
 from sqlalchemy import URL, Connection, Engine, Transaction, event
@@ -14,6 +15,7 @@ from sqlalchemy.pool import NullPool
 from .dialect import PATIENCE_S, Dialect, Mode
 
 LOCK_PAUSE_S = 0.0005
+_GONE = "was taken away or replaced while it was in use: put it back, or end whatever uses it"
 
 
 class SQLite(Dialect):
@@ -47,6 +49,9 @@ class SQLite(Dialect):
         return int(driver.execute("PRAGMA data_version").fetchone()[0])
 
     def _begin(self, connection: Connection) -> None:
+        opened: _Opened | None = connection.info.get("opened")
+        if opened is not None and not opened.is_there():
+            raise OperationalError("BEGIN", None, sqlite3.OperationalError(f"{opened.path} {_GONE}"))
         mode = connection.info.get("mode", Mode.WRITE)
         if mode is Mode.READ:
             # Readers hold up nobody, and nobody holds them up.
@@ -78,7 +83,34 @@ class SQLite(Dialect):
             driver.execute(f"PRAGMA busy_timeout = {round(self._timeout * 1000)}")
 
 
-def _prepare(connection: Any, _record: Any) -> None:
+class _Opened(NamedTuple):
+    """The file that a connection has open, as it was found at its path."""
+
+    path: Path
+    device: int
+    inode: int
+
+    @classmethod
+    def by(cls, connection: sqlite3.Connection) -> _Opened | None:
+        """Return the file of a connection, None for a database in memory."""
+        rows = connection.execute("PRAGMA database_list").fetchall()
+        file = next((file for _number, name, file in rows if name == "main"), "")
+        if not file:
+            return None
+        path = Path(file)
+        status = path.stat()
+        return cls(path, status.st_dev, status.st_ino)
+
+    def is_there(self) -> bool:
+        """Tell whether it is still at its path: what is written into a file that was taken away is lost."""
+        try:
+            status = self.path.stat()
+        except OSError:
+            return False
+        return (status.st_dev, status.st_ino) == (self.device, self.inode)
+
+
+def _prepare(connection: Any, record: Any) -> None:
     # The driver would begin transactions late, when a reader can no longer become a writer.
     connection.isolation_level = None
     # Anyone may write anything into RR: text that is no UTF-8 is to be refused row by row, not by the driver.
@@ -86,6 +118,7 @@ def _prepare(connection: Any, _record: Any) -> None:
     cursor = connection.cursor()
     cursor.execute("PRAGMA journal_mode = WAL")
     cursor.close()
+    record.info["opened"] = _Opened.by(connection)
 
 
 def _decode_leniently(text: bytes) -> str:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import asyncio
+import shutil
 import sqlite3
 import time
 from functools import partial
+from pathlib import Path
 
 import pytest
 from sqlalchemy import insert, select, text
@@ -47,6 +49,24 @@ async def test_a_file_that_cannot_be_used_is_named(tmp_path, how):
     database = Database(url)
     with pytest.raises(StoreError, match=r"database sqlite:///.*fleet\.db.*; check that it exists"):
         await database.open()
+    await database.close()
+
+
+@pytest.mark.parametrize("kind", ["sqlite"], indirect=True)
+@pytest.mark.parametrize("replaced", [False, True])
+async def test_a_file_that_was_taken_away_is_not_written_until_it_is_back(url, tmp_path, replaced):
+    database = Database(url)
+    file, aside = Path(database.url.database), tmp_path / "aside.db"
+    await database.run(add, "a")
+    file.rename(aside)
+    if replaced:
+        shutil.copy(aside, file)
+    for ask in (database.run(add, "lost"), database.jot(add, "lost"), database.read(names)):
+        with pytest.raises(StoreError, match=r"fleet-\d+\.db was taken away or replaced while it was in use"):
+            await ask
+    aside.rename(file)
+    await database.run(add, "b")
+    assert await database.read(names) == ["a", "b"]
     await database.close()
 
 

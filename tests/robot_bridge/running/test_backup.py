@@ -6,6 +6,7 @@ import os
 import secrets
 import sqlite3
 import stat
+from pathlib import Path
 
 import pytest
 from sqlalchemy import insert, select
@@ -276,6 +277,17 @@ def test_a_backup_is_for_its_owners_eyes_and_replaces_nothing(address, tmp_path)
     assert back_up(address, file, replace=True) > 0
     with pytest.raises(BridgeError, match="cannot be written"):
         back_up(address, tmp_path / "none" / "backup")
+
+
+@pytest.mark.parametrize("kind", ["sqlite"])
+def test_a_database_is_no_backup_of_itself(address):
+    file = Path(address.database)
+    before = file.stat().st_ino
+    with pytest.raises(BridgeError, match="is the database itself"):
+        back_up(address, file, replace=True)
+    with pytest.raises(BridgeError, match="is the database itself"):
+        put_back(address, file, replace=True)
+    assert file.stat().st_ino == before
 
 
 def test_a_program_that_is_missing_is_named_and_no_password(address, tmp_path, kind, monkeypatch):
