@@ -59,7 +59,7 @@ def measure(_data: Path) -> Part:
     with tempfile.TemporaryDirectory() as folder, Processes(Path(folder) / "logs") as processes:
         gateway = _Gateway(processes, Path(folder))
         before = gateway.memory()
-        tallies = {name: _tally(CASES[name], *attack) for name, attack in gateway.attacks().items()}
+        tallies = {name: _tally(CASES[name], *attack) for name, *attack in gateway.attacks()}
         alive = gateway.process.poll() is None
         grown = gateway.memory() - before if alive else 0
         tracebacks = processes.log("gateway").read_text(encoding="utf-8", errors="replace").count("Traceback")
@@ -111,16 +111,17 @@ class _Gateway:
         command = [sys.executable, "-m", "robot_bridge", *words, "--database", f"sqlite:///{self._file}"]
         return subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()
 
-    def attacks(self) -> dict[str, tuple[Any, Callable[[Any], None]]]:
-        """Return for each way in what to send, and how."""
+    def attacks(self) -> Iterator[tuple[str, Any, Callable[[Any], None]]]:
+        """Yield for each way in its name, what to send, and how.
+
+        A connection is made when its turn comes: one that nobody reads for minutes is cut, and rightly so.
+        """
         robots = [self._robot(number, token) for number, token in enumerate(self._robots, 1)]
+        yield "robot", robot_frames, lambda frame: [robot.say(frame) for robot in robots]
         desks = [self._desk(number) for number in (1, 2)]
-        return {
-            "robot": (robot_frames, lambda frame: [robot.say(frame) for robot in robots]),
-            "desk": (desk_frames, lambda frame: [desk.say(frame) for desk in desks]),
-            "handshake": (handshakes, self._knock),
-            "sql": (rr_rows, self._write),
-        }
+        yield "desk", desk_frames, lambda frame: [desk.say(frame) for desk in desks]
+        yield "handshake", handshakes, self._knock
+        yield "sql", rr_rows, self._write
 
     def _robot(self, number: int, token: str) -> Conversation:
         wire = self._connect("/robot", token)
