@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 
 import numpy as np
@@ -12,6 +11,7 @@ from qgis.PyQt.QtCore import QPoint, Qt, pyqtSignal
 from qgis.PyQt.QtGui import QColor, QKeyEvent, QWheelEvent
 from qgis.PyQt.QtWidgets import QApplication
 
+from ...robot_bridge.compass import theta_of
 from ...robot_bridge.layouts.cone import Cone
 from ...robot_bridge.layouts.layout import Layout
 from ...robot_bridge.layouts.placing import placed
@@ -132,7 +132,7 @@ class LayoutTool(QgsMapTool):
         place = self._cursor or self.canvas().center()
         ((x, y),) = transformed(np.array([[place.x(), place.y()]]), back)
         cones = self.layout.cones(self._store.prefix(self.layout.NAME))
-        return placed(cones, float(x), float(y), math.radians(90.0 - self.heading)), forward
+        return placed(cones, float(x), float(y), theta_of(self.heading)), forward
 
     def _turn(self, degrees: float) -> None:
         self.turn_to(self.heading + degrees)

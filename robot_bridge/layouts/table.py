@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from ..compass import theta_of
 from .cone import ORANGE, Cone
 from .errors import TableError
 
@@ -107,13 +108,13 @@ def _cone(row: _Row, place: int, name: str) -> Cone:
         raise TableError(
             f"Row {row.number}, column {columns.order}: {order:g} is no whole number; correct it."
         )
-    degrees = row.number_in(columns.heading) if columns.heading else 0.0
+    heading = row.number_in(columns.heading) if columns.heading else 0.0
     return Cone(
         id=row.text_in(columns.id, f"{name}-{place}"),
         order=int(order),
         x=row.number_in(columns.x),
         y=row.number_in(columns.y),
-        theta=math.remainder(math.radians(90.0 - degrees), 2 * math.pi),
+        theta=math.remainder(theta_of(heading), math.tau),
         colour=row.text_in(columns.colour, ORANGE),
         role=row.text_in(columns.role, ""),
     )

@@ -40,11 +40,11 @@ class SiteFrame:
         points[:, 1] += self.origin[1]
         return points
 
-    def heading_to_site(self, theta: float) -> float:
+    def theta_to_site(self, theta: float) -> float:
         """Return an angle counter-clockwise from the CRS's x axis, in radians, as a site theta in (-π, π]."""
         return math.remainder(theta - self.rotation, math.tau)
 
-    def heading_to_crs(self, theta: float) -> float:
+    def theta_to_crs(self, theta: float) -> float:
         """Return a site theta, in radians, as an angle from the CRS's x axis in (-π, π]."""
         return math.remainder(theta + self.rotation, math.tau)
 

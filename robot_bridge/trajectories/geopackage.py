@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from ..compass import headings_of
 from ..errors import BridgeError
 from ..sites.frame import SiteFrame
 from ..sites.projections import projections
@@ -129,7 +130,7 @@ def _columns(places: Sequence[Place], frame: SiteFrame) -> dict[str, Any]:
         ],
         dtype=np.float64,
     ).reshape(-1, 6)
-    heading = np.mod(90.0 - np.degrees(numbers[:, 2] + frame.rotation), 360.0)
+    heading = headings_of(numbers[:, 2] + frame.rotation)
     return {
         "robot": _texts(place.robot for place in places),
         "time": _times(place.received_at for place in places),

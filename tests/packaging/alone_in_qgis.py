@@ -21,7 +21,7 @@ FOREIGN = {
     "websockets",
     "zstandard",
 }
-BRIDGE = ("robotmap", "messages", "liveness", "roads", "layouts", "assignment", "sites")
+BRIDGE = ("robotmap", "messages", "liveness", "compass", "roads", "layouts", "assignment", "sites")
 
 
 class NothingForeign:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from html import escape
 
 from qgis.PyQt.QtCore import QPoint, Qt
 from qgis.PyQt.QtGui import QFont
 from qgis.PyQt.QtWidgets import QLabel, QToolTip, QWidget
 
+from ....robot_bridge.compass import heading_of
 from ....robot_bridge.messages import CommandReport
 from ....robot_bridge.sites.frame import SiteFrame
 from ...language import tr
@@ -73,8 +73,8 @@ def card(view: RobotView, task: CommandReport | None, remaining: float | None, f
     if report.accuracy is not None:
         rows.append((tr("accuracy"), tr("± {accuracy:.2f} m", accuracy=report.accuracy)))
     if report.theta is not None:
-        compass = (90.0 - math.degrees(frame.heading_to_crs(report.theta))) % 360.0
-        rows.append((tr("heading"), f"{compass:.0f}°"))
+        heading = heading_of(frame.theta_to_crs(report.theta))
+        rows.append((tr("heading"), f"{heading:.0f}°"))
     if report.v is not None:
         rows.append((tr("speed"), tr("{v:.2f} m/s", v=report.v)))
     if report.battery is not None:

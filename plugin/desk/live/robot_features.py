@@ -19,6 +19,7 @@ from qgis.core import (
     QgsVectorLayerSimpleLabeling,
 )
 
+from ....robot_bridge.compass import headings_of
 from ....robot_bridge.sites.frame import SiteFrame
 from ...language import tr
 from ..colours import STATE_COLOURS
@@ -102,12 +103,12 @@ def _labels() -> QgsPalLayerSettings:
 def features_of(picture: RobotPicture, now: float, rows: slice, frame: SiteFrame) -> list[RobotFeature]:
     """Return what the layer has to say at ``now`` of the robots in ``rows`` of ``picture``."""
     robots = picture.arrays(now, rows)
-    turn = frame.heading_to_crs(0.0)
+    turn = frame.theta_to_crs(0.0)
     columns = (
         robots.names,
         [STATES[state].value for state in robots.state.tolist()],
         _or_none(robots.theta),
-        _or_none(np.round((90.0 - np.degrees(robots.theta + turn)) % 360.0, 2)),
+        _or_none(np.round(headings_of(robots.theta + turn), 2)),
         _or_none(robots.v),
         _or_none(picture.column("battery")[rows]),
         [text or None for text in picture.texts("status", rows)],

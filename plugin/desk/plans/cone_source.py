@@ -13,10 +13,10 @@ from qgis.core import (
 )
 
 from ....robot_bridge.assignment.job import PLACE, Store, Target
+from ....robot_bridge.compass import theta_of
 from ....robot_bridge.sites.frame import SiteFrame
 from ...errors import FleetError
 from ...language import tr
-from ...processing.cone_layer import theta_of
 from ...sites.placing import SitePlacing
 from ...sites.point_rows import PointRow, point_rows
 from ...sites.site_crs import stated_crs
@@ -70,7 +70,7 @@ def read_cones(
         raise ConeLayerError(tr("No layer of cones is chosen. Choose one, or place a cone layout first."))
     targets, facts = [], {}
     for row in _rows(layer, project, frame, selected=settings.selected_only):
-        theta = frame.heading_to_site(theta_of(row.number("heading", 90.0)))
+        theta = frame.theta_to_site(theta_of(row.number("heading", 90.0)))
         stage, demand = row.whole("stage", 0), row.whole("demand", 1)
         service_s = row.number("service_s", settings.service_s)
         targets.append(Target(row.name, row.x, row.y, theta, stage, PLACE, demand, service_s))

@@ -39,8 +39,8 @@ def test_the_x_axis_is_turned_counter_clockwise_by_the_rotation():
 
 def test_headings_turn_with_the_frame_and_stay_within_one_turn():
     frame = SiteFrame("EPSG:32633", (0.0, 0.0), math.radians(30))
-    assert math.isclose(frame.heading_to_crs(math.radians(170)), math.radians(-160))
-    assert math.isclose(frame.heading_to_site(math.radians(-160)), math.radians(170))
+    assert math.isclose(frame.theta_to_crs(math.radians(170)), math.radians(-160))
+    assert math.isclose(frame.theta_to_site(math.radians(-160)), math.radians(170))
 
 
 @pytest.mark.parametrize("crs", ["EPSG:32633", "EPSG:25831", "EPSG:3035", "EPSG:23700"])
