@@ -96,7 +96,8 @@ class RobotTable(QTableView):
         header.setMinimumSectionSize(24)
         hidden = QgsSettings().value(HIDDEN_KEY)
         for number, column in enumerate(COLUMNS):
-            extra = 28 if number == 0 else 9
+            # Qt leaves three pixels free at either side of a text; beside a name there is an icon.
+            extra = 28 if number == 0 else 7
             widest = max(map(metrics.horizontalAdvance, (column.head, column.widest)))
             self.setColumnWidth(number, max(widest + extra, TASK_WIDTH if number == TASK else 0))
             by_choice = column.first if hidden is None else column.title not in str(hidden).split(",")
