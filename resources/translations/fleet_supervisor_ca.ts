@@ -2556,7 +2556,7 @@
         <message>
             <location filename="../../plugin/desk/plans/driven_plan.py" />
             <source>No queue of the plan is paused, or something is still being sent.</source>
-            <translation type="unfinished" />
+            <translation>Cap cua del pla no està en pausa, o encara s'està enviant alguna cosa.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driven_plan.py" />
@@ -2566,7 +2566,7 @@
         <message>
             <location filename="../../plugin/desk/plans/driven_plan.py" />
             <source>Paused: {robots} ({why})</source>
-            <translation type="unfinished" />
+            <translation>En pausa: {robots} ({why})</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driven_plan.py" />
@@ -2646,7 +2646,7 @@
         <message>
             <location filename="../../plugin/desk/plans/driving_bar.py" />
             <source>Let them go on</source>
-            <translation type="unfinished" />
+            <translation>Que continuïn</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driving_bar.py" />
@@ -2671,7 +2671,7 @@
         <message>
             <location filename="../../plugin/desk/plans/driving_bar.py" />
             <source>Resume the queues of the plan's robots that somebody paused</source>
-            <translation type="unfinished" />
+            <translation>Reprèn les cues dels robots del pla que algú ha posat en pausa</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driving_bar.py" />
@@ -3811,7 +3811,7 @@
         <message>
             <location filename="../../plugin/desk/robots/robot_panel.py" />
             <source>Search</source>
-            <translation type="unfinished" />
+            <translation>Cerca</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/robots/robot_panel.py" />
@@ -5617,6 +5617,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/export_robot_map.py" />
+            <source>Foot of each feature above ground [m] (default: on it)</source>
+            <translation>On comença cada entitat sobre el terra [m] (per defecte: a terra)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map.py" />
             <source>Height of each feature [m] (default: its field height)</source>
             <translation>Alçada de cada entitat [m] (per defecte: el seu camp height)</translation>
         </message>
@@ -5669,11 +5674,6 @@
             <location filename="../../plugin/processing/export_robot_map.py" />
             <source>There is no obstacle in the window: check its place and the site CRS.</source>
             <translation>No hi ha cap obstacle a la finestra: comproveu el lloc i el SRC del recinte.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/export_robot_map.py" />
-            <source>Where each feature begins above the ground [m] (default: on it)</source>
-            <translation>On comença cada entitat sobre el terra [m] (per defecte: a terra)</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/export_robot_map.py" />

@@ -2556,7 +2556,7 @@
         <message>
             <location filename="../../plugin/desk/plans/driven_plan.py" />
             <source>No queue of the plan is paused, or something is still being sent.</source>
-            <translation type="unfinished" />
+            <translation>Ninguna cola del plan está en pausa, o aún se está enviando algo.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driven_plan.py" />
@@ -2566,7 +2566,7 @@
         <message>
             <location filename="../../plugin/desk/plans/driven_plan.py" />
             <source>Paused: {robots} ({why})</source>
-            <translation type="unfinished" />
+            <translation>En pausa: {robots} ({why})</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driven_plan.py" />
@@ -2646,7 +2646,7 @@
         <message>
             <location filename="../../plugin/desk/plans/driving_bar.py" />
             <source>Let them go on</source>
-            <translation type="unfinished" />
+            <translation>Que continúen</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driving_bar.py" />
@@ -2671,7 +2671,7 @@
         <message>
             <location filename="../../plugin/desk/plans/driving_bar.py" />
             <source>Resume the queues of the plan's robots that somebody paused</source>
-            <translation type="unfinished" />
+            <translation>Reanuda las colas de los robots del plan que alguien puso en pausa</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driving_bar.py" />
@@ -3811,7 +3811,7 @@
         <message>
             <location filename="../../plugin/desk/robots/robot_panel.py" />
             <source>Search</source>
-            <translation type="unfinished" />
+            <translation>Buscar</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/robots/robot_panel.py" />
@@ -5617,6 +5617,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/export_robot_map.py" />
+            <source>Foot of each feature above ground [m] (default: on it)</source>
+            <translation>Inicio de cada objeto sobre el suelo [m] (por defecto: sobre él)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map.py" />
             <source>Height of each feature [m] (default: its field height)</source>
             <translation>Altura de cada objeto [m] (por defecto: su campo height)</translation>
         </message>
@@ -5669,11 +5674,6 @@
             <location filename="../../plugin/processing/export_robot_map.py" />
             <source>There is no obstacle in the window: check its place and the site CRS.</source>
             <translation>No hay ningún obstáculo en la ventana: compruebe su lugar y el SRC del recinto.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/export_robot_map.py" />
-            <source>Where each feature begins above the ground [m] (default: on it)</source>
-            <translation>Inicio de cada objeto sobre el suelo [m] (por defecto: sobre él)</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/export_robot_map.py" />

@@ -2554,7 +2554,7 @@
         <message>
             <location filename="../../plugin/desk/plans/driven_plan.py" />
             <source>No queue of the plan is paused, or something is still being sent.</source>
-            <translation type="unfinished" />
+            <translation>A terv egyik várólistája sem szünetel, vagy még küldés folyik.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driven_plan.py" />
@@ -2564,7 +2564,7 @@
         <message>
             <location filename="../../plugin/desk/plans/driven_plan.py" />
             <source>Paused: {robots} ({why})</source>
-            <translation type="unfinished" />
+            <translation>Szünetel: {robots} ({why})</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driven_plan.py" />
@@ -2644,7 +2644,7 @@
         <message>
             <location filename="../../plugin/desk/plans/driving_bar.py" />
             <source>Let them go on</source>
-            <translation type="unfinished" />
+            <translation>Folytassák</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driving_bar.py" />
@@ -2669,7 +2669,7 @@
         <message>
             <location filename="../../plugin/desk/plans/driving_bar.py" />
             <source>Resume the queues of the plan's robots that somebody paused</source>
-            <translation type="unfinished" />
+            <translation>A terv robotjainak szüneteltetett várólistáit folytatja</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driving_bar.py" />
@@ -3808,7 +3808,7 @@
         <message>
             <location filename="../../plugin/desk/robots/robot_panel.py" />
             <source>Search</source>
-            <translation type="unfinished" />
+            <translation>Keresés</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/robots/robot_panel.py" />
@@ -5613,6 +5613,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/export_robot_map.py" />
+            <source>Foot of each feature above ground [m] (default: on it)</source>
+            <translation>Hol kezdődik az egyes elem a talaj felett [m] (alapértelmezés: a talajon)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map.py" />
             <source>Height of each feature [m] (default: its field height)</source>
             <translation>Az egyes elemek magassága [m] (alapértelmezés: a height mező)</translation>
         </message>
@@ -5665,11 +5670,6 @@
             <location filename="../../plugin/processing/export_robot_map.py" />
             <source>There is no obstacle in the window: check its place and the site CRS.</source>
             <translation>Nincs akadály az ablakban: ellenőrizze a helyét és a telephely vetületét.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/export_robot_map.py" />
-            <source>Where each feature begins above the ground [m] (default: on it)</source>
-            <translation>Hol kezdődik az egyes elem a talaj felett [m] (alapértelmezés: a talajon)</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/export_robot_map.py" />
