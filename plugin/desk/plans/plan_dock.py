@@ -144,6 +144,8 @@ class PlanDock(ActionDock):
     def _shown(self, is_visible: bool) -> None:
         if is_visible:
             self._show_robots()
+            # Cones that were placed while it was closed.
+            self._placements_changed()
 
     def _show_robots(self) -> None:
         self.robots.show_robots(self._desk, self.drafts.settings)

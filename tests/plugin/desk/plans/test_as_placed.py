@@ -109,6 +109,17 @@ def test_the_report_takes_the_layer_of_placed_cones_as_it_is(page, processing, d
     assert (first["placed_at"], second["cone"]) == ("2023-11-14T22:13:20Z", "by hand")
 
 
+def test_cones_placed_while_the_panel_was_closed_are_shown_when_it_opens(panel, gateway, wait):
+    panel.tabs.setCurrentWidget(panel.placed)
+    panel.placed.which.setCurrentIndex(panel.placed.which.findText("everything"))
+    panel.close()
+    gateway.tell("placement", to_json(placed(1)))
+    wait(lambda: len(panel._desk.placements) == 1, 10, "the placed cone")
+    assert panel.placed.table.rowCount() == 0
+    panel.show()
+    assert panel.placed.table.rowCount() == 1
+
+
 def test_there_is_no_report_of_no_cone(panel, dialogs):
     panel.tabs.setCurrentWidget(panel.placed)
     assert panel.placed.report.isVisible() and not panel.placed.report.isEnabled()
