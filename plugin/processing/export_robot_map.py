@@ -129,7 +129,7 @@ class ExportRobotMap(FleetAlgorithm):
 def value_parameters() -> list[QgsProcessingParameterDefinition]:
     """Return the parameters that say what a feature is."""
     base = QgsProcessingParameterExpression(
-        BASE_EXPRESSION, tr("Where each feature begins above the ground [m] (default: on it)"), optional=True
+        BASE_EXPRESSION, tr("Foot of each feature above ground [m] (default: on it)"), optional=True
     )
     base.setHelp(
         tr(

@@ -6593,7 +6593,7 @@
         <message>
             <location filename="../../plugin/processing/publish_site.py" />
             <source>A robot is stale without a message for [s]</source>
-            <translation>Un robot és desactualitzat sense missatge durant [s]</translation>
+            <translation>Desactualitzat sense missatge durant [s]</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/publish_site.py" />

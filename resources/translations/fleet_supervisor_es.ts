@@ -6593,7 +6593,7 @@
         <message>
             <location filename="../../plugin/processing/publish_site.py" />
             <source>A robot is stale without a message for [s]</source>
-            <translation>Un robot está desactualizado sin mensaje durante [s]</translation>
+            <translation>Desactualizado sin mensaje durante [s]</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/publish_site.py" />
