@@ -22,13 +22,18 @@ from qgis.PyQt.QtNetwork import QLocalServer, QLocalSocket
 from qgis.PyQt.QtWidgets import (
     QAbstractButton,
     QAbstractItemView,
+    QAbstractSpinBox,
     QApplication,
+    QComboBox,
     QDockWidget,
+    QLabel,
+    QLineEdit,
     QMenu,
     QMenuBar,
     QProgressBar,
     QTabBar,
     QTabWidget,
+    QToolButton,
     QWidget,
 )
 from qgis.utils import iface, plugins
@@ -55,15 +60,20 @@ class Reporter(QObject):
             "window": _window,
             "widget": _widget,
             "entry": _entry,
+            "button": _button,
+            "field": _field,
             "tab": _tab,
+            "panel_tab": _panel_tab,
             "row": _row,
             "panel": _panel,
             "place": _place,
             "desk": _desk,
             "layers": _layers,
+            "counts": _counts,
             "map": _map,
             "labels": _labels,
             "time": _time,
+            "messages": _messages,
             "drag": _drag,
             "out_of_sight": what_is_out_of_sight,
             "complaints": lambda: self._complaints,
@@ -109,8 +119,9 @@ def _over() -> QWidget | None:
 
 
 def _widget(name: str) -> dict[str, Any]:
-    """A widget by its object name: where it can be clicked, and what it shows."""
-    found = [widget for widget in QApplication.allWidgets() if widget.objectName() == name]
+    """A widget by its object name, or its C++ class: where it can be clicked, and what it shows."""
+    widgets = QApplication.allWidgets()
+    found = [one for one in widgets if name in (one.objectName(), one.metaObject().className())]
     if not found:
         return {"there": False, "visible": False}
     over = QApplication.activeModalWidget()
@@ -133,9 +144,37 @@ def _widget(name: str) -> dict[str, Any]:
     }
 
 
+def _button(text: str) -> list[int] | None:
+    """Where the button is that reads ``text``, in the window over the main one or else in that."""
+    window = _over() or iface.mainWindow()
+    for button in window.findChildren(QAbstractButton):
+        if button.text().replace("&", "") == text and button.isVisible() and button.isEnabled():
+            return _on_screen(button, button.rect())
+    return None
+
+
+def _field(label: str, of: str) -> dict[str, Any] | None:
+    """The field of a dialog beneath the label that begins so, or the button beside it (``of`` "button").
+
+    None while it is not to be seen. QGIS gives none of the fields of an algorithm a name.
+    """
+    kinds = (QToolButton,) if of == "button" else (QLineEdit, QAbstractSpinBox, QComboBox)
+    for words in (_over() or iface.mainWindow()).findChildren(QLabel):
+        if not words.text().startswith(label) or not words.isVisible():
+            continue
+        rows = words.parentWidget().layout()
+        beneath = rows.itemAt(rows.indexOf(words) + 1).widget()
+        parts = [part for part in [beneath, *beneath.findChildren(QWidget)] if isinstance(part, kinds)]
+        if parts and not parts[-1 if of == "button" else 0].visibleRegion().isEmpty():
+            part = parts[-1 if of == "button" else 0]
+            return {"rect": _on_screen(part, part.visibleRegion().boundingRect()), "text": _text(part)}
+    return None
+
+
 def _entry(text: str) -> list[int] | None:
     """Where an entry of the menu bar, or of a menu that is open, is; None while it is not to be seen."""
-    bars = [bar for bar in iface.mainWindow().findChildren(QMenuBar) if bar.isVisible()]
+    window = _over() or iface.mainWindow()
+    bars = [bar for bar in window.findChildren(QMenuBar) if bar.isVisible()]
     menus = [menu for menu in QApplication.topLevelWidgets() if isinstance(menu, QMenu) and menu.isVisible()]
     for menu in [*menus, *bars]:
         for action in menu.actions():
@@ -150,6 +189,12 @@ def _tab(name: str, text: str) -> list[int] | None:
     return _tab_of(tabs, text)
 
 
+def _panel_tab(text: str) -> list[int] | None:
+    """Where the tab of a panel is that lies over others, in the window over the main one or else in that."""
+    bars = [bar for bar in (_over() or iface.mainWindow()).findChildren(QTabBar) if bar.isVisible()]
+    return next(filter(None, (_tab_of(bar, text) for bar in bars)), None)
+
+
 def _tab_of(tabs: QTabBar, text: str) -> list[int] | None:
     for number in range(tabs.count()):
         if tabs.tabText(number).replace("&", "").startswith(text):
@@ -157,8 +202,8 @@ def _tab_of(tabs: QTabBar, text: str) -> list[int] | None:
     return None
 
 
-def _row(name: str, path: list[str]) -> list[int] | None:
-    """Where a row of a table, tree or list is, by what the first column reads from the root on.
+def _row(name: str, path: list[str], column: int = 0) -> list[int] | None:
+    """Where a cell of a table, tree or list is, by what the first column reads from the root on.
 
     ``name`` is the view's object name, or that of what holds it: QGIS names not all of its views.
     """
@@ -173,7 +218,8 @@ def _row(name: str, path: list[str]) -> list[int] | None:
         if found is None:
             return None
         index = found
-    seen = view.visualRect(index) & view.viewport().rect()
+    cell = index.sibling(index.row(), column)
+    seen = view.visualRect(cell) & view.viewport().rect()
     return _on_screen(view.viewport(), seen) if not seen.isEmpty() else None
 
 
@@ -224,6 +270,11 @@ def _labels() -> list[str]:
     return [label.labelText for label in results.allLabels()] if results is not None else []
 
 
+def _messages() -> list[str]:
+    """What stands in the window's message bar, as it is written there."""
+    return [item.text() for item in iface.messageBar().items()]
+
+
 def _drag() -> bool:
     """Whether something is dragged, over something that takes it: the mouse's picture says so."""
     cursor = QApplication.overrideCursor()
@@ -240,8 +291,17 @@ def _time() -> dict[str, Any]:
 
 def _layers() -> dict[str, int]:
     """The vector layers of the project by name, with how many of their features are selected."""
+    return {layer.name(): layer.selectedFeatureCount() for layer in _vector_layers()}
+
+
+def _counts() -> dict[str, int]:
+    """The vector layers of the project by name, with how many features they have."""
+    return {layer.name(): layer.featureCount() for layer in _vector_layers()}
+
+
+def _vector_layers() -> list[QgsVectorLayer]:
     layers = QgsProject.instance().mapLayers().values()
-    return {one.name(): one.selectedFeatureCount() for one in layers if isinstance(one, QgsVectorLayer)}
+    return [layer for layer in layers if isinstance(layer, QgsVectorLayer)]
 
 
 def _desk() -> dict[str, Any]:

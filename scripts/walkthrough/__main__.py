@@ -1,9 +1,9 @@
 """Work QGIS Desktop under Xvfb by mouse and keyboard, as an operator does.
 
-PYTHONPATH=scripts python -m walkthrough [operator|qgis] [--pictures docs/images]
+PYTHONPATH=scripts python -m walkthrough [operator|qgis|processing] [--pictures docs/images]
 
 The walk *operator* takes the tour and leads a fleet; *qgis* uses what the plugin adds to QGIS itself, in its
-dark theme. Without a name both are taken.
+dark theme; *processing* runs algorithms, styles the robots, and prints. Without a name all are taken.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ def run(walk: Walk, pictures: Path) -> None:
         operator = OperatorAtScreen(screen, window, read_site(SITE).frame)
         operator.take_the_screen()
         film = Film(screen, operator, pictures, walk.name)
-        scene = Scene(operator, film, Gateway(address, token), home)
+        scene = Scene(operator, film, Gateway(address, token), home, database)
         try:
             for act in walk.acts:
                 act(scene)
@@ -104,7 +104,7 @@ def main() -> int:
     )
     arguments = parser.parse_args()
     if unknown := set(arguments.walks) - set(names):
-        parser.error(f"there is no walk {', '.join(sorted(unknown))}; there are {' and '.join(names)}")
+        parser.error(f"there is no walk {', '.join(sorted(unknown))}; there are {', '.join(names)}")
     leave_on_signals()
     try:
         for walk in WALKS:

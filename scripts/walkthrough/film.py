@@ -6,9 +6,13 @@ import time
 from pathlib import Path
 
 from stage.errors import StageError
+from stage.picture import reduce_colours
 
 from .operator_at_screen import OperatorAtScreen
 from .screen import Screen, keep
+
+PAGE_DPI = "75"
+"""A page of A4 is then 620 × 877 pixels."""
 
 
 class Film:
@@ -41,6 +45,20 @@ class Film:
             self._operator.wait_for_map()
             seen = self._screen.look()
         keep(seen, path)
+        self.happened(f"{text}: {path.name}")
+
+    def keep_page(self, name: str, file: Path, text: str) -> None:
+        """Keep the first page of a PDF as a picture, and say what it shows."""
+        from osgeo import gdal
+
+        gdal.UseExceptions()
+        # GDAL 3.6 takes the resolution from nowhere else than its settings.
+        gdal.SetConfigOption("GDAL_PDF_DPI", PAGE_DPI)
+        path = self._next(name)
+        bands = ["-b", "1", "-b", "2", "-b", "3"]
+        gdal.Translate(str(path), f"PDF:1:{file}", options=["-of", "PNG", *bands])
+        Path(f"{path}.aux.xml").unlink(missing_ok=True)
+        reduce_colours(path)
         self.happened(f"{text}: {path.name}")
 
     def _next(self, name: str) -> Path:

@@ -12,7 +12,7 @@ from stage.errors import StageError
 
 from robot_bridge.sites.frame import SiteFrame
 
-from .screen import Pixel, Screen
+from .screen import WHEEL_DOWN, Pixel, Screen
 from .window import Window
 
 POLL_S = 0.05
@@ -21,6 +21,10 @@ PATIENCE_S = 60.0
 
 EDGE = 4
 """Pixels by which the edge of a panel may be missed."""
+HEAD_TICK = (28, 10)
+"""Where the tick of a group is that can be folded, from its corner; pixels."""
+ROW = 12
+"""Pixels of the height of a row that have to be seen to click it."""
 
 Place = tuple[float, float]
 """Metres in the site frame."""
@@ -78,6 +82,10 @@ class OperatorAtScreen:
             lambda: re.search(pattern, self.text(name)),
         )
 
+    def wait_for_widget(self, name: str) -> None:
+        """Look until a widget is to be seen."""
+        self.wait(f"{name} being there", lambda: self.widget(name)["visible"])
+
     def wait_for_map(self) -> None:
         """Look until the map has been drawn."""
         self.wait("drawing the map", self.is_map_drawn)
@@ -99,6 +107,10 @@ class OperatorAtScreen:
         """Return the project's vector layers, with how many of their features are selected."""
         return dict(self._window.ask("layers"))
 
+    def counts(self) -> dict[str, int]:
+        """Return how many features each of the project's vector layers has."""
+        return dict(self._window.ask("counts"))
+
     def labels(self) -> list[str]:
         """Return the labels that are drawn on the map."""
         return list(self._window.ask("labels"))
@@ -111,6 +123,10 @@ class OperatorAtScreen:
         """Return what of the plugin cannot be read or reached."""
         return list(self._window.ask("out_of_sight"))
 
+    def messages(self) -> list[str]:
+        """Return what stands in QGIS's message bar, as it is written there."""
+        return list(self._window.ask("messages"))
+
     def complaints(self) -> list[str]:
         """Return the exceptions that QGIS logged."""
         return list(self._window.ask("complaints"))
@@ -121,18 +137,66 @@ class OperatorAtScreen:
         """Click a widget, by its object name, as soon as it can be used."""
         self._screen.click(_middle(self._still(name)))
 
+    def tick_head(self, name: str) -> None:
+        """Tick a group of fields in its head."""
+        x, y, _, _ = self._still(name)
+        self._screen.click((x + HEAD_TICK[0], y + HEAD_TICK[1]))
+        self.wait(f"{name} being ticked", lambda: self.widget(name)["checked"])
+
+    def scroll_to(self, name: str, panel: str) -> None:
+        """Turn the wheel over the edge of ``panel`` until a widget in it can be seen."""
+
+        def seen() -> bool:
+            found = self.widget(name)
+            if found["visible"] and found["on_top"] and found["rect"][3] > ROW:
+                return True
+            x, y, _, height = self.widget(panel)["rect"]
+            self._screen.turn_wheel((x + EDGE, y + height - ROW), WHEEL_DOWN)
+            return False
+
+        self.wait(f"{name} being scrolled to", seen)
+
+    def drag_in(self, name: str, start: tuple[float, float], end: tuple[float, float]) -> None:
+        """Drag in a widget from one place to another, both in parts of its width and height."""
+        x, y, width, height = self._still(name)
+        (left, top), (right, bottom) = start, end
+        begin = round(x + left * width), round(y + top * height)
+        self._screen.drag(begin, (round(x + right * width), round(y + bottom * height)))
+
     def click_along(self, name: str, share: float, *, edge: int) -> None:
         """Click the line in a widget, which begins and ends ``edge`` pixels inside, at ``share`` of it."""
         x, y, width, height = self._still(name)
         self._screen.click((round(x + edge + share * (width - 2 * edge)), y + height // 2))
 
+    def click_button(self, text: str) -> None:
+        """Click a button by what it reads, as those that have no name."""
+        self._click_seen(f"the button {text!r}", lambda: self._window.ask("button", text=text))
+
+    def click_beside(self, label: str) -> None:
+        """Click the button beside a field without a name, by the label above it."""
+        self._screen.click(_middle(self._field(label, "button")))
+
     def click_tab(self, name: str, text: str) -> None:
         """Click a tab by what it begins with."""
         self._click_seen(f"the tab {text!r}", lambda: self._window.ask("tab", name=name, text=text))
 
+    def click_panel_tab(self, text: str) -> None:
+        """Click the tab of a panel that lies over others."""
+        self._click_seen(f"the panel's tab {text!r}", lambda: self._window.ask("panel_tab", text=text))
+
     def click_row(self, name: str, *path: str) -> None:
         """Click a row of a table or tree by what its first column reads, from the root on."""
         self._screen.click(_middle(self._row(name, *path)))
+
+    def click_cell(self, name: str, row: str, column: int) -> None:
+        """Click a cell of a table, by what the first column reads."""
+        self._screen.click(_middle(self._row(name, row, column=column)))
+
+    def double_click_row(self, name: str, *path: str) -> None:
+        """Click a row of a table or tree twice."""
+        at = _middle(self._row(name, *path))
+        self._screen.click(at)
+        self._screen.click(at)
 
     def drag_row_to_map(self, name: str, *path: str) -> None:
         """Drag a row of a tree onto the map, and let go over its middle."""
@@ -156,10 +220,10 @@ class OperatorAtScreen:
             self._screen.move((x, at[1]))
         return bool(self._window.ask("drag"))
 
-    def _row(self, name: str, *path: str) -> list[int]:
+    def _row(self, name: str, *path: str, column: int = 0) -> list[int]:
         return self._at_rest(
             f"the row {' > '.join(path)} of {name} being there",
-            lambda: self._window.ask("row", name=name, path=path),
+            lambda: self._window.ask("row", name=name, path=path, column=column),
         )
 
     def choose_from_menu(self, *entries: str) -> None:
@@ -224,6 +288,33 @@ class OperatorAtScreen:
         self._screen.type(text)
         self.wait(f"{name} reading {text!r}", lambda: self.text(name) == text)
 
+    def fill_in(self, label: str, text: str) -> None:
+        """Type ``text`` into a field without a name, by the label above it."""
+        self._screen.click(_middle(self._field(label, "field")))
+        self._screen.press("Ctrl+A")
+        self._screen.type(text)
+        self._wait_for_field(label, text)
+
+    def choose_in(self, label: str, text: str) -> None:
+        """Choose an entry of a list without a name, by the label above it, by its first letters."""
+        self._screen.click(_middle(self._field(label, "field")))
+        self._screen.type(text)
+        self._screen.press("Enter")
+        self._wait_for_field(label, text)
+
+    def _wait_for_field(self, label: str, text: str) -> None:
+        def reads() -> bool:
+            field = self._window.ask("field", label=label, of="field")
+            return field is not None and field["text"].startswith(text)
+
+        self.wait(f"{label!r} reading {text!r}", reads)
+
+    def _field(self, label: str, of: str) -> list[int]:
+        return self._at_rest(
+            f"the {of} of {label!r} being there",
+            lambda: (self._window.ask("field", label=label, of=of) or {}).get("rect"),
+        )
+
     # --- what a window manager does ---
 
     def take_the_screen(self) -> None:
@@ -238,10 +329,19 @@ class OperatorAtScreen:
 
     def wait_for_dialog(self, name: str) -> None:
         """Look until a dialog, or a part of one, is there: the dialog is framed and has the keyboard."""
-        self.wait(f"the dialog {name}", lambda: self.widget(name)["visible"])
-        dialog = self.wait("the dialog being over the window", lambda: self._window.ask("window")["dialog"])
+        self.wait_for_widget(name)
+        self.wait_for_window()
+
+    def wait_for_window(self) -> None:
+        """Look until a window is over the main one: it is framed and has the keyboard."""
+        dialog = self.wait("a window over the main one", lambda: self._window.ask("window")["dialog"])
         self._screen.frame(dialog)
         self._screen.focus(dialog)
+
+    def place_dialog(self, corner: Pixel, size: Pixel) -> None:
+        """Move the window over the main one, and make it as large as it is worked with."""
+        over = self.wait("a window over the main one", lambda: self._window.ask("window")["dialog"])
+        self._screen.place(over, corner, size)
 
     def close_dialog(self) -> None:
         """Close the window over the main one by Esc."""

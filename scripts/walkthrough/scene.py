@@ -17,12 +17,13 @@ ROBOTS = ("r1", "r2", "r3")
 
 @dataclass(frozen=True)
 class Scene:
-    """One operator with a ``home`` folder before one window on one gateway."""
+    """One operator with a ``home`` folder before one window on one gateway, which stores in ``database``."""
 
     operator: OperatorAtScreen
     film: Film
     gateway: Gateway
     home: Path
+    database: Path
 
     def wait_until_live(self) -> None:
         """Look until the desk is connected and every robot is fresh."""

@@ -16,7 +16,7 @@ from Xlib.ext import xtest
 
 Pixel = tuple[int, int]
 Pixels = npt.NDArray[np.uint8]
-LEFT, WHEEL_UP = 1, 4
+LEFT, WHEEL_UP, WHEEL_DOWN = 1, 4, 5
 """Buttons, as X numbers them; a turn of the wheel is one, too."""
 DRAG_STEPS = 12
 """Movements that a drag is made of."""
@@ -62,11 +62,11 @@ class Screen:
         with self.dragging(start, end):
             pass
 
-    def turn_wheel(self, at: Pixel) -> None:
-        """Turn the wheel away from the hand by a notch."""
+    def turn_wheel(self, at: Pixel, way: int = WHEEL_UP) -> None:
+        """Turn the wheel by a notch, away from the hand unless told otherwise."""
         self.move(at)
-        self._send(X.ButtonPress, WHEEL_UP)
-        self._send(X.ButtonRelease, WHEEL_UP)
+        self._send(X.ButtonPress, way)
+        self._send(X.ButtonRelease, way)
 
     @contextmanager
     def dragging(self, start: Pixel, end: Pixel) -> Iterator[None]:
@@ -124,6 +124,12 @@ class Screen:
         geometry = self._root.get_geometry()
         found = self._display.create_resource_object("window", window)
         found.configure(x=0, y=0, width=geometry.width, height=geometry.height)
+        self._display.sync()
+
+    def place(self, window: int, corner: Pixel, size: Pixel) -> None:
+        """Move a window and give it a size, as one drags it by its frame."""
+        found = self._display.create_resource_object("window", window)
+        found.configure(x=corner[0], y=corner[1], width=size[0], height=size[1])
         self._display.sync()
 
     def frame(self, dialog: int) -> None:

@@ -7,14 +7,19 @@ from dataclasses import dataclass
 
 from .cone_target import send_cone
 from .connecting import connect
+from .drives import show_drives
 from .keyboard import work_by_keyboard
 from .options import keep_connection
+from .placed_cones import place_cones, report_cones
+from .print_layout import print_atlas
 from .replay import play_again
 from .robot_layer import look_at_layer
 from .route import send_route
 from .scene import Scene
-from .site import drop_site
+from .site import open_site, show_site
 from .stopping import stop_and_clear
+from .styling import ask_for_surfaces, style_robots
+from .toolbox import prepare_site
 from .tour import take_tour
 
 
@@ -39,8 +44,21 @@ WALKS = (
     Walk("operator", (take_tour, connect, send_cone, send_route, stop_and_clear, play_again), greeted=False),
     Walk(
         "qgis",
-        (drop_site, keep_connection, work_by_keyboard, look_at_layer),
+        (show_site, keep_connection, work_by_keyboard, look_at_layer),
         accounts=True,
         theme="Night Mapping",
+    ),
+    Walk(
+        "processing",
+        (
+            open_site,
+            place_cones,
+            prepare_site,
+            style_robots,
+            ask_for_surfaces,
+            print_atlas,
+            report_cones,
+            show_drives,
+        ),
     ),
 )

@@ -7,12 +7,15 @@ import signal
 import subprocess
 import sys
 import zipfile
+from collections.abc import Collection
 from pathlib import Path
 
 import pytest
 from osgeo import gdal
 
 ROOT = Path(__file__).resolve().parents[2]
+SCREEN, A4 = [800, 1280], [620, 877]
+"""Pixels of pictures."""
 LARGEST = 400_000
 """Bytes of a picture that goes into the repository."""
 sys.path.insert(0, str(ROOT / "scripts"))
@@ -66,18 +69,21 @@ def walk(tmp_path):
 
 @pytest.fixture
 def take_pictures(walk, tmp_path):
-    """Take a walk to its end and check that it took a picture of each of its steps, of ``least`` bytes."""
+    """Take a walk to its end and check that it took a picture of each of its steps, of ``least`` bytes.
 
-    def go(name: str, steps: list[str], least: int) -> None:
+    Those named in ``pages`` are of sheets of paper, the others of the screen.
+    """
+
+    def go(name: str, steps: list[str], least: int, pages: Collection[str] = ()) -> None:
         done = walk(name)
         assert done.returncode == 0, done.stdout + done.stderr
         pictures = sorted((tmp_path / "pictures").iterdir())
         assert [picture.stem for picture in pictures] == [
             f"{name}-{number:02d}-{step}" for number, step in enumerate(steps, start=1)
         ]
-        for picture in pictures:
+        for picture, step in zip(pictures, steps, strict=True):
             image = gdal.Open(str(picture))
-            assert (image.RasterXSize, image.RasterYSize) == (1280, 800)
+            assert sorted((image.RasterXSize, image.RasterYSize)) == (A4 if step in pages else SCREEN), step
             assert least < picture.stat().st_size <= LARGEST, picture.name
 
     return go

@@ -40,4 +40,4 @@ def test_it_says_what_is_missing(walk, tmp_path):
 def test_a_walk_that_is_not_there_is_told(walk):
     done = walk("stroll")
     assert done.returncode == 2
-    assert "there is no walk stroll; there are operator and qgis" in done.stderr
+    assert "there is no walk stroll; there are operator, qgis, processing" in done.stderr
