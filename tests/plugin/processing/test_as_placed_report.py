@@ -6,9 +6,11 @@ import re
 import subprocess
 import sys
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from fleet_supervisor.plugin.processing import as_placed_report
 from fleet_supervisor.plugin.processing.column_room import shared, shortened
 from fleet_supervisor.plugin.processing.histogram_svg import bars, histogram, ticks
 from fleet_supervisor.plugin.processing.placed_cones import PlacedCone, deviations
@@ -25,6 +27,7 @@ from qgis.core import (
     QgsProcessingException,
     QgsProject,
 )
+from qgis.gui import QgsMessageBar
 
 from robot_bridge.store import placements
 from robot_bridge.store.address import read_address
@@ -308,3 +311,16 @@ async def test_a_csv_without_a_crs_is_refused_with_what_to_give(qgis_process, ex
     )
     assert done.status != 0
     assert "give CRS, the site's, such as EPSG:32633" in done.said
+
+
+def test_the_window_is_told_where_the_report_is(qgis_app, run, make_layer, monkeypatch, tmp_path):
+    bar = QgsMessageBar()
+    monkeypatch.setattr(as_placed_report, "iface", SimpleNamespace(messageBar=lambda: bar))
+    run(INPUT=make_layer("placed", "Point", FIELDS, rows((0.1, 0)), crs=UTM), OUTPUT=f"{tmp_path}/a & b.pdf")
+    (item,) = bar.items()
+    assert f'<a href="file://{tmp_path}/a%20%26%20b.pdf">{tmp_path}/a &amp; b.pdf</a>' in item.text()
+
+
+def test_without_a_window_nothing_is_told(run, make_layer, monkeypatch):
+    monkeypatch.setattr(as_placed_report, "iface", None)
+    assert run(INPUT=make_layer("placed", "Point", FIELDS, rows((0.1, 0)), crs=UTM))["PAGE_COUNT"] == 2
