@@ -109,7 +109,7 @@ class LayerCheck(QObject):
         self._kept_for = looked_at
         for of_one in layers.values():
             self._watch.watch(of_one)
-        findings = Findings()
+        findings = self._unseen()
         for number, check in enumerate(self._checks):
             work = self._look_by(check, layers[check], draft, placement)
             findings += yield from part_of(work, number, len(self._checks))
@@ -141,6 +141,30 @@ class LayerCheck(QObject):
                 yield 0.0
         self._kept[check] = still_needed
         return (yield from check.told(found_for, bool(layers)))
+
+    def _unseen(self) -> Findings:
+        """Tell of what a draft has to be held against and cannot be."""
+        layers = layers_with_role(self._project, *(role for check in self._checks for role in check.roles))
+        if not layers:
+            return Findings(
+                warnings=(
+                    tr(
+                        "No layer of the project says where obstacles and keepouts are, so nobody has "
+                        "looked. Open the site's project, or give layers their roles."
+                    ),
+                )
+            )
+        return Findings(
+            overridable=tuple(
+                tr(
+                    "The layer {layer} cannot be read, so what is in it was not looked at. Repair its "
+                    "source, or take its role away.",
+                    layer=layer.name(),
+                )
+                for layer in layers
+                if not layer.isValid()
+            )
+        )
 
     def _layers(self, check: Check) -> list[QgsVectorLayer]:
         return [

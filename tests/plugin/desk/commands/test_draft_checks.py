@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import pytest
 from fleet_supervisor.robot_bridge.messages import CommandState
+from qgis.core import QgsProject, QgsVectorLayer
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import QDialog, QLineEdit, QPushButton
@@ -29,6 +30,28 @@ def test_a_target_on_an_obstacle_is_refused_and_the_feature_named(cone, layer_of
     assert cone.points is not None
     cone.click((70, 70))
     assert "Not to be sent" not in cone.told
+
+
+def test_where_no_layer_has_a_role_it_is_said_that_nobody_has_looked(cone, layer_of):
+    cone.click((70, 55))
+    assert "No layer of the project says where obstacles and keepouts are" in cone.told
+    layer_of("Polygon", SQUARE, role="keepout")
+    cone.click((20, 20))
+    assert "No layer of the project" not in cone.told
+    cone.key(Qt.Key.Key_Return)
+    assert cone.sent()["robot"] == "r1"
+
+
+@pytest.mark.parametrize("role", ["keepout", "obstacle", "road_surface"])
+def test_a_layer_whose_file_is_gone_keeps_the_draft_here_unless_overridden(cone, role):
+    layer = QgsVectorLayer("/nowhere/yard.gpkg|layername=bays", "Bays", "ogr")
+    layer.setCustomProperty("fleet/role", role)
+    QgsProject.instance().addMapLayer(layer)
+    cone.click((70, 55))
+    assert cone.complained("The layer Bays cannot be read, so what is in it was not looked at.")
+    cone.key(Qt.Key.Key_Return)
+    assert cone.nothing_sent()
+    assert cone.drafts.draft.can_be_overridden
 
 
 def test_a_feature_without_a_name_is_named_by_layer_and_number(cone, layer_of):
