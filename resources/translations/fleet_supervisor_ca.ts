@@ -946,6 +946,16 @@
         </message>
         <message>
             <location filename="../../plugin/desk/checks.py" />
+            <source>No layer of the project says where obstacles and keepouts are, so nobody has looked. Open the site's project, or give layers their roles.</source>
+            <translation>Cap capa del projecte diu on hi ha obstacles i zones prohibides, així que ningú no ho ha mirat. Obriu el projecte del recinte o doneu papers a les capes.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/checks.py" />
+            <source>The layer {layer} cannot be read, so what is in it was not looked at. Repair its source, or take its role away.</source>
+            <translation>La capa {layer} no es pot llegir, així que no s'ha mirat què hi ha. Repareu-ne l'origen o traieu-li el paper.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/checks.py" />
             <source>The project has no CRS, so the map is taken to be in the site's, {crs}; a layer in another CRS lies at a wrong place on it. Choose the project's CRS at the bottom right in QGIS.</source>
             <translation>El projecte no té SRC, de manera que es considera que el mapa és en el del recinte, {crs}; una capa en un altre SRC hi surt en un lloc equivocat. Trieu el SRC del projecte a baix a la dreta del QGIS.</translation>
         </message>

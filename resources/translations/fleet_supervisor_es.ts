@@ -946,6 +946,16 @@
         </message>
         <message>
             <location filename="../../plugin/desk/checks.py" />
+            <source>No layer of the project says where obstacles and keepouts are, so nobody has looked. Open the site's project, or give layers their roles.</source>
+            <translation>Ninguna capa del proyecto dice dónde hay obstáculos y zonas prohibidas, así que nadie lo ha mirado. Abra el proyecto del recinto o dé papeles a las capas.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/checks.py" />
+            <source>The layer {layer} cannot be read, so what is in it was not looked at. Repair its source, or take its role away.</source>
+            <translation>La capa {layer} no se puede leer, así que no se ha mirado qué hay en ella. Repare su origen o quítele el papel.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/checks.py" />
             <source>The project has no CRS, so the map is taken to be in the site's, {crs}; a layer in another CRS lies at a wrong place on it. Choose the project's CRS at the bottom right in QGIS.</source>
             <translation>El proyecto no tiene SRC, así que se considera que el mapa está en el del recinto, {crs}; una capa en otro SRC aparece en un lugar equivocado. Elija el SRC del proyecto abajo a la derecha en QGIS.</translation>
         </message>

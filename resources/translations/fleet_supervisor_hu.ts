@@ -944,6 +944,16 @@
         </message>
         <message>
             <location filename="../../plugin/desk/checks.py" />
+            <source>No layer of the project says where obstacles and keepouts are, so nobody has looked. Open the site's project, or give layers their roles.</source>
+            <translation>A projekt egyik rétege sem mondja meg, hol vannak akadályok és tiltott területek, ezért ezt senki sem nézte. Nyissa meg a telephely projektjét, vagy adjon szerepet a rétegeknek.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/checks.py" />
+            <source>The layer {layer} cannot be read, so what is in it was not looked at. Repair its source, or take its role away.</source>
+            <translation>A(z) {layer} réteg nem olvasható, ezért a tartalmát senki sem nézte. Javítsa ki a forrását, vagy vegye el a szerepét.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/checks.py" />
             <source>The project has no CRS, so the map is taken to be in the site's, {crs}; a layer in another CRS lies at a wrong place on it. Choose the project's CRS at the bottom right in QGIS.</source>
             <translation>A projektnek nincs vetülete, ezért a térkép a telephelyében, {crs} vetületben értendő; más vetületű réteg rossz helyen látszik rajta. Válassza ki a projekt vetületét a QGIS jobb alsó sarkában.</translation>
         </message>
