@@ -127,9 +127,7 @@ class DrivenPlan(QObject):
         self.offer, self.held = None, {}
         self._followed.begin(draft, tasks)
         self._start(first_steps(self._desk, tasks), self._sent)
-        if self._desk.roads.closures:
-            # The draft may not have been looked at yet since they were closed.
-            self._followed.look_at_closures()
+        self._look_at_what_is_sent()
 
     def plan_rest(self, *, try_again: bool = False) -> None:
         """Hold the robots and plan what is left; :meth:`confirm` sends it, :meth:`discard` lets them go on.
@@ -173,6 +171,7 @@ class DrivenPlan(QObject):
         held, self.held, self.offer = self.held, {}, None
         self._followed.go_on(offer, tasks)
         self._start(later_steps(self._desk, tasks, away, held, tr("its robot is lost")), self._sent)
+        self._look_at_what_is_sent()
 
     def discard(self) -> None:
         """Forget the new plan; robots that were held go on as before."""
@@ -248,6 +247,11 @@ class DrivenPlan(QObject):
             # Tried once: what cannot be planned is told once, and is the operator's from then on.
             self._followed.see_to()
             self._try(self.plan_rest)
+
+    def _look_at_what_is_sent(self) -> None:
+        """Find out which ways lead along closed roads: that may not be known yet of roads closed just now."""
+        if self._desk.roads.closures:
+            self._followed.look_at_closures()
 
     def _take_closures(self) -> None:
         """Find out anew which ways of the new plan lead along closed roads."""

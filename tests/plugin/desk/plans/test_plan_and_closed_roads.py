@@ -139,6 +139,19 @@ def test_a_plan_that_is_sent_before_it_was_held_against_a_closed_road_is_no_less
     assert far_cones.driven.driven.closed != ()
 
 
+def test_a_plan_of_the_rest_that_is_confirmed_before_it_was_held_against_a_closed_road_is_no_less_in_trouble(
+    far_cones, held, gateway, wait
+):
+    planned(far_cones, wait)
+    answer(question(far_cones), send=True)
+    wait(lambda: gateway.asked("set_queue") and not far_cones.driven.busy, 10)
+    offered(far_cones, wait)
+    close_road(far_cones, gateway, wait)
+    press(far_cones, "fleet_plan_confirm")
+    held.let_go()
+    wait(lambda: far_cones.driven.trouble.closed, 5)
+
+
 def test_a_plan_is_not_there_before_it_was_held_against_a_road_that_was_closed_meanwhile(
     far_cones, held, gateway, wait
 ):
