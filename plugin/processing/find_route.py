@@ -84,6 +84,7 @@ class FindRoute(FleetAlgorithm):
         "Finds the shortest or fastest way along road centrelines, and the path that a robot drives."
     )
     ICON = "route_on_roads.svg"
+    STYLES = {ROUTE: "route.qml", PATH: "path.qml"}  # noqa: RUF012
     TAGS = ("road", "route", "shortest path", "fastest", "navigation", "path")
     HELP = tr_page("""
     <p>Finds the way between two places near roads: each is taken to the nearest point of a road that may be
@@ -169,6 +170,7 @@ class FindRoute(FleetAlgorithm):
             )
             path = dense_path(route.points, route.widths, driving)
             made = self._written(route, path, reading, parameters, context, feedback)
+        self.remember(made)
         _report(route, path, feedback)
         figures = (route.metres, route.seconds, len(path.points), len(path.tight), len(reading.warnings))
         return {**made, **dict(zip(NUMBERS, figures, strict=True)), ENGINE_USED: route.engine}

@@ -28,12 +28,19 @@ def prepare_site(scene: Scene) -> None:
     open_toolbox(scene)
     export_map(scene)
     find_route(scene)
-    scene.operator.press("Ctrl+Alt+T")
+    close_toolbox(scene)
 
 
 def open_toolbox(scene: Scene) -> None:
     scene.operator.press("Ctrl+Alt+T")
     scene.operator.wait_for_widget("ProcessingToolbox")
+
+
+def close_toolbox(scene: Scene) -> None:
+    """Close the toolbox."""
+    operator = scene.operator
+    operator.press("Ctrl+Alt+T")
+    operator.wait("the toolbox closing", lambda: not operator.widget("ProcessingToolbox")["visible"])
 
 
 def export_map(scene: Scene) -> None:
