@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 from fleet_supervisor.robot_bridge.messages import CommandState
 from qgis.PyQt.QtCore import QEvent, QPoint, QPointF, Qt
@@ -9,6 +11,12 @@ from qgis.PyQt.QtGui import QMouseEvent
 from qgis.PyQt.QtWidgets import QApplication, QLabel
 
 NO_BUTTON = Qt.MouseButton.NoButton
+
+
+@pytest.fixture
+def site(site):
+    """Robots report once here: they are fresh however long a slow machine takes."""
+    return replace(site, stale_after=3600.0, lost_after=7200.0)
 
 
 @pytest.fixture
