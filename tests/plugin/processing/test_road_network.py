@@ -11,7 +11,7 @@ from fleet_supervisor.robot_bridge.roads.centrelines import centrelines
 from fleet_supervisor.robot_bridge.roads.errors import NoRouteError
 from fleet_supervisor.robot_bridge.roads.network import build_network
 from fleet_supervisor.robot_bridge.roads.routes import Router
-from qgis.core import QgsProcessingContext, QgsProcessingException, QgsProject
+from qgis.core import QgsProcessingContext, QgsProcessingException, QgsProject, QgsVectorLayer
 
 ALL = (
     "&field=width_m:double&field=surface:string&field=oneway:string&field=maxspeed:string&field=closed:string"
@@ -288,3 +288,16 @@ def test_a_script_builds_checks_and_finds_ways_on_the_sample_site(qgis_process, 
         found = qgis_process("run", "fleet:route", "--", roads, *places, *files, packages=packages)
         assert found.status == 0, found.said
         assert found.result("METRES") == pytest.approx(199.751, abs=0.001)
+
+
+def test_a_route_and_its_path_are_told_apart_when_they_are_opened(root, qgis_app):
+    layer = QgsVectorLayer("LineString", "line", "memory")
+
+    def looks(output):
+        layer.loadNamedStyle(str(root / "resources" / "styles" / FindRoute.STYLES[output]))
+        symbol = layer.renderer().symbol()
+        return symbol.width(), symbol.symbolLayer(0).color().alpha()
+
+    (wide, pale), (thin, full) = looks("ROUTE"), looks("PATH")
+    assert wide > 3 * thin
+    assert pale < full == 255
