@@ -11,7 +11,11 @@ from dataclasses import fields
 
 import pytest
 
+from robot_bridge.messages import SendPos
 from robot_bridge.sites.settings import TABLES
+from robot_bridge.store import revisions, trajectories
+from robot_bridge.store.database import run_once
+from robot_bridge.store.trajectories import Fix
 
 SHELL = ["sh", "-eu"]
 
@@ -29,10 +33,13 @@ def test_the_commands_for_sqlite_do_what_they_say(page, root, sample_site, tmp_p
     program.chmod(0o755)
     blocks = re.findall(r"^```sh sqlite\n(.*?)^```$", page, re.DOTALL | re.MULTILINE)
     assert len(blocks) == 4
-    script = "robot-bridge database create\n" + "".join(blocks)
+    # The track of a robot that was never there is refused.
+    database = f"sqlite:///{tmp_path}/robot-bridge.db"
+    run_once(database, revisions.create)
+    run_once(database, trajectories.add, [Fix("r1", 1_790_000_000.0, SendPos(1.0, 2.0, 0.0, 0.0))])
     done = subprocess.run(
         SHELL,
-        input=script,
+        input="".join(blocks),
         cwd=tmp_path,
         text=True,
         capture_output=True,
