@@ -22,6 +22,7 @@ KEYS_IN_TEXT = {
 }
 EMPHASIS = {
     *("A published site", "Find a robot", "In expressions", "Rest the mouse on a robot", "Select"),
+    *("Print them", "Styles"),
     *("What a robot is told", "What each layer is to robots", "What is wrong with a map"),
     "Without a link nothing can be sent: use the robots' own emergency stops.",
     *("it is", "nothing on that map is live", "pauses", "send a robot", "the map", "token"),
