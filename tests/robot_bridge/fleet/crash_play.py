@@ -11,6 +11,7 @@ import itertools
 import math
 from dataclasses import replace
 from pathlib import Path
+from typing import NamedTuple
 
 import pytest
 from database_client import DatabaseClient
@@ -42,11 +43,21 @@ async def _tried(work):
         await work
 
 
-class Play:
-    """One run of a scenario. ``death`` says when the gateway dies, ``how`` what robots do meanwhile."""
+class Cut(NamedTuple):
+    """In which turn all robots' links are cut, and for how many seconds."""
 
-    def __init__(self, site, url, journal: Path, death, how=DRIVE_ON, *, roads=False):
+    turn: int
+    seconds: float
+
+
+class Play:
+    """One run of a scenario. ``death`` says when the gateway dies, ``cut`` when robots are out of reach, and
+    ``how`` what they do meanwhile.
+    """
+
+    def __init__(self, site, url, journal: Path, death, how=DRIVE_ON, *, cut=None, roads=False):
         self.site, self.url, self.death, self.how, self.roads = site, url, death, how, roads
+        self.cut = cut
         self.now = 1000.0
         self.robots = {}
         self.turns = 0
@@ -125,10 +136,23 @@ class Play:
         self.now += 1
         for robot in self.robots.values():
             robot.move(1.0)
+        if self.cut is not None and self.turns == self.cut.turn:
+            self._cut_links(self.cut.seconds)
         try:
             await self._work()
         except Killed:
             await self._revive()
+
+    def _cut_links(self, seconds):
+        for robot in self.robots.values():
+            robot.away_until, robot.says_late = self.now + seconds, True
+            if self.how == START_ANEW:
+                robot.start_anew()
+
+    @property
+    def was_disturbed(self):
+        """Whether the gateway has died, a transaction failed, or the links were cut."""
+        return self.death.has_come or (self.cut is not None and self.turns >= self.cut.turn)
 
     async def _work(self):
         """Do what a gateway does in a second; what fails is done again in the next one."""
@@ -151,11 +175,11 @@ class Play:
             await self.turn()
 
     async def wait(self, seconds):
-        """Let so many seconds pass, and more if the gateway dies: who goes on then has looked at it again."""
-        alive = not self.death.has_come
+        """Let so many seconds pass, and more if something happens: who goes on has looked at it again."""
+        quiet = not self.was_disturbed
         for _ in range(seconds):
             await self.turn()
-        if alive and self.death.has_come:
+        if quiet and self.was_disturbed:
             await self._look()
 
     # --- an operator ----------------------------------------------------------------------------------------
@@ -183,7 +207,7 @@ class Play:
         try:
             return await self.ask(request)
         except RefusedError:
-            if not self.death.has_come:
+            if not self.was_disturbed:
                 raise
             return None
 
@@ -219,6 +243,21 @@ class Play:
                 await self.resume(name)
             else:
                 assert not queue.tasks
+
+    async def resume_until_done(self):
+        """Let all queues go on until everything is done, again where they paused once more.
+
+        They do if they were resumed before their robot, which was out of reach, had taken an Abort on.
+        """
+        await self.resume_all()
+        await self.until(lambda: self.is_done() or self._held_again())
+        for robot in self._held_again():
+            assert self.was_disturbed
+            await self.resume(robot)
+        await self.until_done()
+
+    def _held_again(self):
+        return [robot for robot in self.robots if self.is_held(robot, "the robot acknowledged the Abort")]
 
     async def order(self, id, op, robot="r1", **params):
         """Order a robot to do something beside its queue."""
@@ -285,7 +324,7 @@ class Play:
         assert [(x, y) for x, y, _ in found] == near
         assert all(deviation < 0.05 for _, _, deviation in found)
         put_down = sorted(cone for robot in self.robots.values() for cone in robot.record.placed)
-        if self.how == START_ANEW or (interrupted and self.death.has_come):
+        if self.how == START_ANEW or (interrupted and self.was_disturbed):
             put_down = [
                 b for a, b in itertools.pairwise([None, *put_down]) if a is None or math.dist(a, b) > 0.1
             ]

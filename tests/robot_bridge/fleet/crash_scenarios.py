@@ -6,6 +6,7 @@ drove on meanwhile.
 
 from __future__ import annotations
 
+from crash_play import START_ANEW
 from living_robots import SqlRobot, WebSocketRobot
 from queue_line import PLACES, task
 from road_places import SOUTH, highest
@@ -114,8 +115,7 @@ async def aborted(play):
         )
     await play.until(lambda: all(robot.record.stops for robot in play.robots.values()))
     await play.stand_for(6)
-    await play.resume_all()
-    await play.until_done()
+    await play.resume_until_done()
     play.check({"r1": COURSE, "r2": [OTHER.task]})
     play.check_cones([OTHER, *COURSE_CONES], interrupted=True)
 
@@ -258,7 +258,7 @@ async def seen(play):
         robot.see(SetObject(30.0 + number, 20.0, "cone-7", source="1"))
         await play.turn()
         robot.see(SetObject(30.0 + number, 22.0, "cone-8", source="2"))
-    await play.until(lambda: play.sql("select count(*) from observations") == [(4,)])
+    await play.until(lambda: play.sql("select count(*) from observations") >= [(4,)])
     await play.wait(2)
 
     async def review(fleet):
@@ -268,7 +268,9 @@ async def seen(play):
 
     await play.ask(review)
     await play.turn()
-    found = play.sql("select robot, object, state from observations order by robot, object")
+    # What a robot tells once more after it has started anew is something new.
+    once = "distinct" if play.how == START_ANEW else ""
+    found = play.sql(f"select {once} robot, object, state from observations order by robot, object")
     kinds = [("cone-7", "accepted"), ("cone-8", "rejected")]
     assert found == [(robot, *one) for robot in ("r1", "r2") for one in kinds]
     play.check()
@@ -281,16 +283,18 @@ async def led_round_a_closed_road(play, robot=WebSocketRobot):
     await play.give(*tasks)
     await play.until(lambda: play.robots["r1"].record.began)
     await play.ask(lambda fleet: fleet.closures.close(CloseRoad("closure-1", *SOUTH), "Ada"))
+    has_passed = play.robots["r1"].x > SOUTH[0]
+    assert not has_passed or play.was_disturbed
     await play.until(lambda: play.is_done() or play.is_held("r1", "no other way"))
     (closed,) = play.fleet.closures.report().closures
     assert closed.edges == 1
     if not play.is_done():
         # It was in the midst of that road by then.
-        assert play.death.has_come
+        assert play.was_disturbed
         assert play.robots["r1"].y == SOUTH[1]
         return
     play.check({"r1": [one.task for one in tasks]})
-    assert highest(play.robots["r1"].record.driven) > 21.0
+    assert has_passed or highest(play.robots["r1"].record.driven) > 21.0
 
 
 async def led_round_a_closed_road_over_sql(play):
@@ -314,7 +318,7 @@ async def _let_pass(play):
     await play.order("two", "SetPath", robot="r2", points=CROSSING[1])
     await play.wait(2)
     await play.ask_once(lambda fleet: fleet.traffic.resolve(ResolveConflict("r1", "r2", "waiting"), "Ada"))
-    assert play.sql("select robot from holds") == [("r1",)] or play.death.has_come
+    assert play.sql("select robot from holds") == [("r1",)] or play.was_disturbed
     await play.until(lambda: play.sql("select robot from holds") == [])
     await play.until_done()
     play.check()

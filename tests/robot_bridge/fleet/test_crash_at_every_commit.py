@@ -4,7 +4,7 @@ Each scenario is played once for every transaction that it takes: there the gate
 after it, another one starts on the same database, and the robots, which have lived on, come back to it.
 With EVERY_CRASH=1 in the environment each of them is played before and after, with all that robots may do
 meanwhile: six times as many plays. And so it is played with each transaction that fails, of which the gateway
-does not die.
+does not die, and with the links of all robots cut at each moment.
 """
 
 from __future__ import annotations
@@ -16,12 +16,14 @@ import tempfile
 from pathlib import Path
 
 import pytest
-from crash_play import DRIVE_ON, START_ANEW, STAY_AWAY, Play
+from crash_play import DRIVE_ON, START_ANEW, STAY_AWAY, Cut, Play
 from crash_scenarios import SCENARIOS
 from mortal_database import FAILURES, Death
 
 WAYS_TO_DIE = [(done, how) for how in (DRIVE_ON, START_ANEW, STAY_AWAY) for done in (False, True)]
 """Whether the commit was done, and what robots do meanwhile."""
+WAYS_TO_BE_CUT = [(seconds, how) for how in (DRIVE_ON, START_ANEW) for seconds in (2.0, 15.0)]
+"""For how many seconds links are cut, shorter than robots are lost in and longer, and what robots do then."""
 ON_SERVERS = ["cones_over_sql", "stopped", "taken_over", "waited_with_its_queue"]
 EVERY_SO_MANY = 17
 """transactions between two at which it dies on a database server, where a play takes longer."""
@@ -40,19 +42,26 @@ def crash(own_site, quick_folder):
     """Play a scenario with one death of its gateway: ``await crash(scenario, url, death, how)``."""
     journals = itertools.count()
 
-    async def crash(scenario, url, death, how):
+    async def crash(scenario, url, death, how, cut=None):
         journal = quick_folder / f"{next(journals)}.stop"
-        play = Play(own_site, url, journal, death, how, roads=scenario.startswith(("led", "waited")))
+        roads = scenario.startswith(("led", "waited"))
+        play = Play(own_site, url, journal, death, how, cut=cut, roads=roads)
         try:
             await SCENARIOS[scenario](play)
         except AssertionError as error:
-            when = f"{'after' if death.done else 'before'} commit {death.at}, robots {how}"
-            what = "the gateway died" if death.fails is None else f"{death.fails.__name__} came"
-            raise AssertionError(f"{what} {when}: {error}") from error
+            raise AssertionError(f"{_told(death, cut)}, robots {how}: {error}") from error
         finally:
             await play.end()
+        return play
 
     return crash
+
+
+def _told(death, cut):
+    if cut is not None:
+        return f"links were cut in turn {cut.turn} for {cut.seconds:g} s"
+    what = "the gateway died" if death.fails is None else f"{death.fails.__name__} came"
+    return f"{what} {'after' if death.done else 'before'} commit {death.at}"
 
 
 def some_of(ways, number):
@@ -62,14 +71,14 @@ def some_of(ways, number):
 
 @pytest.fixture
 def play(crash, sqlite_url, quick_folder):
-    """Play a scenario on a new SQLite database: ``await play(scenario, death, how)``."""
+    """Play a scenario on a new SQLite database: ``await play(scenario, death, how, cut)``; return it."""
     file = quick_folder / "play.db"
 
-    async def play(scenario, death, how):
+    async def play(scenario, death, how, cut=None):
         for old in quick_folder.glob("play.db*"):
             old.unlink()
         shutil.copy(sqlite_url.removeprefix("sqlite:///"), file)
-        await crash(scenario, f"sqlite:///{file}", death, how)
+        return await crash(scenario, f"sqlite:///{file}", death, how, cut)
 
     return play
 
@@ -98,6 +107,14 @@ async def test_and_so_it_does_whichever_transaction_fails(scenario, play):
             failure = Death(at, done, error)
             await play(scenario, failure, DRIVE_ON)
             assert failure.has_come
+
+
+@pytest.mark.parametrize("scenario", SCENARIOS)
+async def test_and_so_it_does_whenever_links_are_cut(scenario, play):
+    turns = (await play(scenario, Death(), DRIVE_ON)).turns
+    for turn in range(1, turns + 1):
+        for seconds, how in some_of(WAYS_TO_BE_CUT, turn):
+            await play(scenario, Death(), how, Cut(turn, seconds))
 
 
 @pytest.fixture(params=["postgresql", "mariadb"])
