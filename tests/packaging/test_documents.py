@@ -84,7 +84,7 @@ def test_gateway_and_robot_run_as_the_readme_says(tmp_path):
         processes.start("gateway", [*words(serve), "--port", "0", "--database", database])
         address = processes.wait_for_line("gateway", r"listening on (ws://\S+)", START).group(1)
         processes.start("robot", words(robot.replace("ws://127.0.0.1:8765", address)))
-        until = time.monotonic() + 15
+        until = time.monotonic() + START
         while not (robots := ask(address, ("get_positions", {}))[0]["robots"]) or robots[0].get("x") is None:
             processes.require_running()
             assert time.monotonic() < until, "the robot did not come up"
