@@ -139,7 +139,7 @@ class ReplannedRobot:
     """A robot whose way led along a road that was closed, and what became of it.
 
     ``became`` is ``another way``, ``stopped``, ``told only`` (the site's settings ask for no more), ``later``
-    (it is not known where it is now: as soon as it says so it is told) or ``failed``: look after that robot
+    (as soon as it says where it is now, or the database can be written) or ``failed``: look after that robot
     yourself. ``command`` is the one that does it, if one does.
     """
 
