@@ -98,7 +98,7 @@ class SiteWatch:
             # Two files are replaced one after the other: what is wrong may be half of something right.
             if stamp == self._doubtful or asked:
                 self._seen = stamp
-                log.error("%s; version %d is served on", error, self._maps.report.version)
+                log.error("version %d is served on: %s", self._maps.report.version, error)
             self._doubtful = stamp
             return
         self._seen = stamp
@@ -125,7 +125,7 @@ class SiteWatch:
             site = read_site(folder)
             check_roads(site)
         except (SiteError, BridgeError) as error:
-            raise RefusedError(f"{error}; {self._maps.report.id} is served on") from error
+            raise RefusedError(f"{self._maps.report.id} is served on: {error}") from error
         if (why := other_frame(self._maps.settings, site.settings)) is not None:
             raise RefusedError(why)
         return site
