@@ -27,7 +27,6 @@ from ..wire.addresses import DEFAULT_URL, Credentials
 from ..wire.status import LinkStatus, Phase
 from .access_fields import AccessFields
 from .connection_menu import ConnectionMenu
-from .role_words import role_in_words
 
 URL_KEY = "fleet_supervisor/url"
 OPERATOR_KEY = "fleet_supervisor/operator"
@@ -217,8 +216,7 @@ def _in_words(link: LinkStatus, site: SiteReport | None, now: float) -> str:
     colour, word = MARKS[link.phase]
     detail = _escaped(link.reason)
     if link.phase is Phase.CONNECTED and site is not None:
-        who = ", ".join(filter(None, (link.operator, role_in_words(link.role))))
-        detail = " · ".join(_escaped(text) for text in (site.name, who) if text)
+        detail = " · ".join(_escaped(text) for text in (site.name, link.who) if text)
     if link.phase is Phase.RETRYING:
         word = tr("Retrying in {wait:.0f} s", wait=link.wait(now))
     dot = f'<span style="color:{colour}">⬤</span>'

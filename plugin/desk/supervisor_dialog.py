@@ -22,12 +22,12 @@ from ...robot_bridge.messages import Role
 from ..help.help_window import show_help
 from ..help.topics import Topic
 from ..language import tr
+from ..wire.role_words import role_in_words
 from ..wire.status import LinkStatus, Phase
 from .column_heads import fit_heads
 from .desk import Desk
 from .inquiries import Inquiries, Take
 from .push_button import push_button
-from .role_words import role_in_words
 from .row_model import RowModel
 from .whole_text import WholeText
 

@@ -60,7 +60,7 @@ class ConnectionTrial(QObject):
             return False, link.reason
         if link.phase is Phase.CONNECTED and self._site is not None:
             site = {"site": self._site.name, "crs": self._site.crs}
-            if link.reason:
-                return True, tr("{site} ({crs}) answers, as {who}.", who=link.reason, **site)
+            if link.who:
+                return True, tr("{site} ({crs}) answers, as {who}.", who=link.who, **site)
             return True, tr("{site} ({crs}) answers.", **site)
         return None

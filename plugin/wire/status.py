@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum
 
+from .role_words import role_in_words
+
 
 class Phase(str, Enum):
     """The stages of the link."""
@@ -30,6 +32,11 @@ class LinkStatus:
     wants_token: bool = False
     operator: str = ""
     role: str = ""
+
+    @property
+    def who(self) -> str:
+        """Who the desk is to the gateway, as people read it: ``Ada, supervisor``."""
+        return ", ".join(filter(None, (self.operator, role_in_words(self.role))))
 
     def wait(self, now: float) -> float:
         """Return the seconds until the next attempt, 0 when it is due."""

@@ -3864,21 +3864,6 @@
             <translation>cap lloc així</translation>
         </message>
         <message>
-            <location filename="../../plugin/desk/role_words.py" />
-            <source>operator</source>
-            <translation>operador</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/role_words.py" />
-            <source>supervisor</source>
-            <translation>supervisor</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/role_words.py" />
-            <source>viewer</source>
-            <translation>observador</translation>
-        </message>
-        <message>
             <location filename="../../plugin/desk/route_preview.py" />
             <source>corners tighter than the robot turns: {tight}</source>
             <translation>cantonades més tancades que el gir del robot: {tight}</translation>
@@ -8301,6 +8286,21 @@
             <location filename="../../plugin/wire/protocol.py" />
             <source>What answers at {url} sent something that is not the desk's protocol: {text} ({kind}: {error}). Check that the URL leads to a Fleet Supervisor gateway of this version.</source>
             <translation>El que respon a {url} ha enviat una cosa que no és el protocol de la consola: {text} ({kind}: {error}). Comproveu que l'URL porta a una passarel·la de Fleet Supervisor d'aquesta versió.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/role_words.py" />
+            <source>operator</source>
+            <translation>operador</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/role_words.py" />
+            <source>supervisor</source>
+            <translation>supervisor</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/role_words.py" />
+            <source>viewer</source>
+            <translation>observador</translation>
         </message>
     </context>
 </TS>

@@ -3864,21 +3864,6 @@
             <translation>ningún lugar así</translation>
         </message>
         <message>
-            <location filename="../../plugin/desk/role_words.py" />
-            <source>operator</source>
-            <translation>operador</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/role_words.py" />
-            <source>supervisor</source>
-            <translation>supervisor</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/role_words.py" />
-            <source>viewer</source>
-            <translation>observador</translation>
-        </message>
-        <message>
             <location filename="../../plugin/desk/route_preview.py" />
             <source>corners tighter than the robot turns: {tight}</source>
             <translation>esquinas más cerradas que el giro del robot: {tight}</translation>
@@ -8301,6 +8286,21 @@
             <location filename="../../plugin/wire/protocol.py" />
             <source>What answers at {url} sent something that is not the desk's protocol: {text} ({kind}: {error}). Check that the URL leads to a Fleet Supervisor gateway of this version.</source>
             <translation>Lo que responde en {url} envió algo que no es el protocolo de la consola: {text} ({kind}: {error}). Compruebe que la URL lleva a una pasarela de Fleet Supervisor de esta versión.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/role_words.py" />
+            <source>operator</source>
+            <translation>operador</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/role_words.py" />
+            <source>supervisor</source>
+            <translation>supervisor</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/role_words.py" />
+            <source>viewer</source>
+            <translation>observador</translation>
         </message>
     </context>
 </TS>

@@ -3861,21 +3861,6 @@
             <translation>nincs ilyen hely</translation>
         </message>
         <message>
-            <location filename="../../plugin/desk/role_words.py" />
-            <source>operator</source>
-            <translation>kezelő</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/role_words.py" />
-            <source>supervisor</source>
-            <translation>felügyelő</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/role_words.py" />
-            <source>viewer</source>
-            <translation>megfigyelő</translation>
-        </message>
-        <message>
             <location filename="../../plugin/desk/route_preview.py" />
             <source>corners tighter than the robot turns: {tight}</source>
             <translation>a robot fordulásánál élesebb sarkok: {tight}</translation>
@@ -8293,6 +8278,21 @@
             <location filename="../../plugin/wire/protocol.py" />
             <source>What answers at {url} sent something that is not the desk's protocol: {text} ({kind}: {error}). Check that the URL leads to a Fleet Supervisor gateway of this version.</source>
             <translation>Ami a(z) {url} címen válaszol, olyasmit küldött, ami nem a kezelőpult protokollja: {text} ({kind}: {error}). Ellenőrizze, hogy az URL ugyanilyen verziójú Fleet Supervisor-átjáróra mutat-e.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/role_words.py" />
+            <source>operator</source>
+            <translation>kezelő</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/role_words.py" />
+            <source>supervisor</source>
+            <translation>felügyelő</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/wire/role_words.py" />
+            <source>viewer</source>
+            <translation>megfigyelő</translation>
         </message>
     </context>
 </TS>

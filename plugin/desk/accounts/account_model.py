@@ -10,7 +10,7 @@ from qgis.PyQt.QtCore import QObject
 
 from ....robot_bridge.messages import OperatorReport, SessionReport, TokenState
 from ...language import tr
-from ..role_words import ROLES
+from ...wire.role_words import ROLES
 from ..row_model import TextModel
 
 COLUMNS = (tr("Operator"), tr("Role"), tr("Since"), tr("Last connected"), tr("Token"))

@@ -22,8 +22,8 @@ from ....robot_bridge.messages import (
 )
 from ...help.topics import ACCOUNTS
 from ...language import tr, tr_count
+from ...wire.role_words import ROLES
 from ..desk import Desk
-from ..role_words import ROLES
 from ..supervisor_dialog import SupervisorDialog, fit_columns
 from .account_model import Account, AccountModel, accounts_of
 from .questions import AnotherRole, AnotherToken, NewAccount, revocation

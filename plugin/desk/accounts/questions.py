@@ -9,8 +9,8 @@ from qgis.PyQt.QtWidgets import QComboBox, QLineEdit, QMessageBox, QWidget
 
 from ....robot_bridge.messages import Role
 from ...language import tr
+from ...wire.role_words import ROLES
 from ..question_dialog import QuestionDialog
-from ..role_words import ROLES
 from ..safe_question import safe_question
 from .account_model import Account
 

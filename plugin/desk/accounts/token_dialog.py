@@ -16,7 +16,7 @@ from qgis.PyQt.QtWidgets import (
 
 from ....robot_bridge.messages import NewToken
 from ...language import tr
-from ..role_words import ROLES
+from ...wire.role_words import ROLES
 from ..whole_text import WholeText
 from .account_model import until_in_words
 

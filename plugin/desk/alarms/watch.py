@@ -71,8 +71,7 @@ class AlarmWatch(QObject):
     def acknowledge(self, keys: Iterable[Key]) -> None:
         """Note that the operator has seen these alarms."""
         link = self._desk.link
-        # While connected the link's text is who this desk is to the gateway.
-        operator = (link.reason if link.phase is Phase.CONNECTED else "") or tr("this desk")
+        operator = (link.who if link.phase is Phase.CONNECTED else "") or tr("this desk")
         self._tell(self.board.acknowledge(keys, operator, time.time()))
 
     def acknowledge_all(self) -> None:

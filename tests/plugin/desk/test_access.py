@@ -10,10 +10,10 @@ from pathlib import Path
 import pytest
 from fleet_supervisor.plugin.connection import Connection
 from fleet_supervisor.plugin.desk.access_fields import AccessFields
-from fleet_supervisor.plugin.desk.role_words import ROLES
 from fleet_supervisor.plugin.errors import AddressError
 from fleet_supervisor.plugin.settings.token_store import TokenStore
 from fleet_supervisor.plugin.wire.addresses import Credentials
+from fleet_supervisor.plugin.wire.role_words import ROLES
 from fleet_supervisor.plugin.wire.status import LinkStatus, Phase
 from fleet_supervisor.robot_bridge.messages import Role
 from qgis.core import QgsApplication, QgsSettings

@@ -215,6 +215,16 @@ def test_the_log_is_written_as_csv(at_alarms, gateway, make_robot, tmp_path, wai
     dialog.close()
 
 
+def test_who_has_seen_an_alarm_is_noted_as_the_gateway_knows_them(gateway, make_robot, request, wait):
+    gateway.who = {"operator": "Anna Nagy", "role": "supervisor"}
+    at_alarms = request.getfixturevalue("at_alarms")
+    gateway.show(make_robot("r1", 50, 40, battery=0.1))
+    wait(lambda: alarms(at_alarms))
+    press(at_alarms.dock, "fleet_acknowledge_all")
+    (alarm,) = at_alarms.dock.findChild(QTableView, "fleet_alarms").parent()._watch.board.alarms()
+    assert alarm.by == "Anna Nagy, supervisor"
+
+
 def test_settings_hold_at_once(at_alarms, gateway, make_robot, wait):
     press(at_alarms.dock, "fleet_alarm_limits")
     open_ones = (w for w in QApplication.topLevelWidgets() if w.isVisible())
