@@ -81,12 +81,13 @@ def take(widget, name):
 
 
 def test_a_new_connection_is_tested_and_kept(widget, gateway, wait):
+    gateway.who = {"operator": "Anna Nagy", "role": "viewer"}
     press(widget, "fleet_connections_new")
     dialog = widget.findChild(ConnectionDialog)
     fill(dialog, name="Yard", url=gateway.url, operator="anna")
     press(dialog, "fleet_connection_test")
     wait(lambda: verdict(dialog).startswith("✔"), 8)
-    assert "Yard (EPSG:32633) answers" in verdict(dialog)
+    assert "Yard (EPSG:32633) answers, as Anna Nagy, viewer." in verdict(dialog)
     assert gateway.asked("hello")[0]["operator"] == "anna"
     assert Connections().names() == []
     ok(dialog)
