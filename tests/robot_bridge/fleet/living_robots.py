@@ -198,7 +198,8 @@ class WebSocketRobot(Robot):
         if not self.says_late:
             await self._say_where_it_is()
         for row in await fleet.outbox(self.name, self._last[False], self._last[True]):
-            await self._take(row)
+            if not await self._take(row):
+                break
         if self.says_late:
             await self._say_where_it_is()
         if self.task is None and not self._told_stopped:
@@ -206,6 +207,7 @@ class WebSocketRobot(Robot):
             self._told_stopped = True
 
     async def _take(self, row):
+        """Do what a message says and acknowledge it; return false where the gateway begins anew with all."""
         fleet = self.play.fleet
         self.hear(row.id, row.op, parse_params(row.op, row.params) or {})
         self._last[row.urgent] = row.id
@@ -214,8 +216,9 @@ class WebSocketRobot(Robot):
         try:
             await fleet.receive(self.name, self.link, OpAck(id=row.id), None)
         except StoreError:
-            # The gateway asks it again.
             self._last = {False: 0, True: 0}
+            return False
+        return True
 
     async def _say_where_it_is(self):
         if (rest := self.play.fleet.take_pose(self.name, self.link, self.position())) is not None:
