@@ -185,9 +185,9 @@ def test_what_changes_is_put_in_order_again_and_stays_selected(table, at_desk, g
 
 def test_the_field_can_be_read_however_little_room_its_neighbours_leave(table, at_desk, wait):
     field = at_desk.dock.findChild(QLineEdit, "fleet_robot_search")
-    before = field.width()
-    at_desk.dock.findChild(QComboBox, "fleet_robot_filter").setMinimumWidth(300)
-    wait(lambda: field.width() < before, what="the field giving way")
+    which = at_desk.dock.findChild(QComboBox, "fleet_robot_filter")
+    which.setMinimumWidth(300)
+    wait(lambda: which.width() >= 300, what="the room that its neighbour takes")
     words = field.fontMetrics().horizontalAdvance(field.placeholderText())
     assert field.width() >= words + AROUND_SEARCH
 
