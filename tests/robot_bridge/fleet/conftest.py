@@ -13,6 +13,7 @@ sys.path.insert(0, str(Path(__file__).parent))
 
 from queue_line import Line
 
+from robot_bridge.errors import UncertainError
 from robot_bridge.fleet import Fleet
 from robot_bridge.links.sql import SqlLink
 from robot_bridge.messages import (
@@ -121,6 +122,26 @@ class Yard:
 @pytest.fixture(scope="session")
 def site_maps(sample_site) -> SiteMaps:
     return SiteMaps(read_site(sample_site))
+
+
+@pytest.fixture
+def lose(monkeypatch):
+    """Let the next transaction raise ``error``, of ``work`` or of anything: ``lose(yard, work, done)``."""
+
+    def lose(yard, work, done, error=UncertainError):
+        run = yard.database.run
+
+        async def lost(asked, *arguments):
+            if work not in (None, asked):
+                return await run(asked, *arguments)
+            monkeypatch.setattr(yard.database, "run", run)
+            if done:
+                await run(asked, *arguments)
+            raise error("the connection was lost during the commit")
+
+        monkeypatch.setattr(yard.database, "run", lost)
+
+    return lose
 
 
 @pytest.fixture(params=["sqlite", "postgresql", "mariadb"])

@@ -14,19 +14,9 @@ from robot_bridge.queueing.settling import write_outcome
 
 
 @pytest.mark.parametrize("done", [True, False], ids=["done", "not done"])
-async def test_after_a_commit_of_which_nobody_knows_the_queue_is_what_the_database_holds(
-    line, done, monkeypatch
-):
+async def test_after_a_commit_of_which_nobody_knows_the_queue_is_what_the_database_holds(line, done, lose):
     await line.set(task("a"), task("b"))
-    run = line.yard.database.run
-
-    async def lost(*work):
-        monkeypatch.setattr(line.yard.database, "run", run)
-        if done:
-            await run(*work)
-        raise UncertainError("the connection was lost during the commit")
-
-    monkeypatch.setattr(line.yard.database, "run", lost)
+    lose(line.yard, None, done)
     with pytest.raises(UncertainError):
         await line.queues.pause(PauseQueue("r1"), "Ada")
     await line.reach(*PLACES["a"])
@@ -35,22 +25,12 @@ async def test_after_a_commit_of_which_nobody_knows_the_queue_is_what_the_databa
 
 
 @pytest.mark.parametrize("done", [True, False], ids=["done", "not done"])
-async def test_a_queue_of_which_nobody_knows_whether_it_was_resumed_goes_on_if_it_was(
-    line, done, monkeypatch
-):
+async def test_a_queue_of_which_nobody_knows_whether_it_was_resumed_goes_on_if_it_was(line, done, lose):
     await line.set(task("a"))
     await line.queues.pause(PauseQueue("r1"), "Ada")
     await line.reach(*PLACES["a"])
     await line.set(task("b"))
-    run = line.yard.database.run
-
-    async def lost(*work):
-        monkeypatch.setattr(line.yard.database, "run", run)
-        if done:
-            await run(*work)
-        raise UncertainError("the connection was lost during the commit")
-
-    monkeypatch.setattr(line.yard.database, "run", lost)
+    lose(line.yard, None, done)
     with pytest.raises(UncertainError):
         await line.resume()
     await line.go()
@@ -59,18 +39,8 @@ async def test_a_queue_of_which_nobody_knows_whether_it_was_resumed_goes_on_if_i
 
 
 @pytest.mark.parametrize("done", [True, False], ids=["done", "not done"])
-async def test_a_task_of_which_nobody_knows_whether_it_was_sent_is_sent_once(line, done, monkeypatch):
-    run = line.yard.database.run
-
-    async def lost(work, *arguments):
-        if work is not write_drafts:
-            return await run(work, *arguments)
-        monkeypatch.setattr(line.yard.database, "run", run)
-        if done:
-            await run(work, *arguments)
-        raise UncertainError("the connection was lost during the commit")
-
-    monkeypatch.setattr(line.yard.database, "run", lost)
+async def test_a_task_of_which_nobody_knows_whether_it_was_sent_is_sent_once(line, done, lose):
+    lose(line.yard, write_drafts, done)
     await line.set(task("a"), task("b"))
     await line.go()
     await line.reach(*PLACES["a"])
@@ -78,20 +48,11 @@ async def test_a_task_of_which_nobody_knows_whether_it_was_sent_is_sent_once(lin
     assert await line.sent() == [PLACES["a"], PLACES["b"]]
 
 
-async def test_a_cone_of_which_nobody_knows_whether_it_was_written_down_is_so_once(line, monkeypatch):
+async def test_a_cone_of_which_nobody_knows_whether_it_was_written_down_is_so_once(line, lose):
     await line.set(task("a", "place"), task("b"))
     await line.yard.take()
     await line.yard.at(*PLACES["a"])
-    run = line.yard.database.run
-
-    async def lost(work, *arguments):
-        done = await run(work, *arguments)
-        if work is write_outcome:
-            monkeypatch.setattr(line.yard.database, "run", run)
-            raise UncertainError("the connection was lost during the commit")
-        return done
-
-    monkeypatch.setattr(line.yard.database, "run", lost)
+    lose(line.yard, write_outcome, True)
     await line.go()
     await line.go()
     assert len(await placed(line)) == 1

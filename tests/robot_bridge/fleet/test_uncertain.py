@@ -21,26 +21,6 @@ LANE = [(20.0, 40.0), (50.0, 40.0)]
 DONE = pytest.mark.parametrize("done", [True, False], ids=["done", "not done"])
 
 
-@pytest.fixture
-def lose(monkeypatch):
-    """Let the next transaction of ``work`` raise ``error``: ``lose(yard, work, done)``."""
-
-    def lose(yard, work, done, error=UncertainError):
-        run = yard.database.run
-
-        async def lost(asked, *arguments):
-            if asked is not work:
-                return await run(asked, *arguments)
-            monkeypatch.setattr(yard.database, "run", run)
-            if done:
-                await run(asked, *arguments)
-            raise error("the connection was lost during the commit")
-
-        monkeypatch.setattr(yard.database, "run", lost)
-
-    return lose
-
-
 @DONE
 async def test_an_acknowledgement_is_looked_up_and_its_robot_is_seen_to_arrive(roads, lose, done):
     await roads.ready()
