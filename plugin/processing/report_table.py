@@ -65,16 +65,17 @@ def add_table(layout: QgsPrintLayout, cones: Sequence[PlacedCone], tolerance: fl
 
 def _fill(table: QgsLayoutItemTextTable, rows: Sequence[list[str]], width_of: Callable[[str], float]) -> None:
     """Give the table its rows, and columns in which the names fit as far as there is room."""
-    heads, widths, numbers = zip(*COLUMNS)  # noqa: B905
+    heads, widths, numbers = zip(*COLUMNS, strict=True)
     texts = [{head, *(row[k] for row in rows)} for k, head in enumerate(heads[:NAMES])]
     room = shared(sum(widths[:NAMES]), [max(map(width_of, column)) for column in texts])
     fitting = [
         {text: shortened(text, width, width_of) for text in column}
-        for column, width in zip(texts, room)  # noqa: B905
+        for column, width in zip(texts, room, strict=True)
     ]
     for row in rows:
-        row[:NAMES] = [short[text] for short, text in zip(fitting, row)]  # noqa: B905
-    table.setColumns([_column(*column) for column in zip(heads, [*room, *widths[NAMES:]], numbers)])  # noqa: B905
+        row[:NAMES] = [short[text] for short, text in zip(fitting, row[:NAMES], strict=True)]
+    columns = zip(heads, [*room, *widths[NAMES:]], numbers, strict=True)
+    table.setColumns([_column(*column) for column in columns])
     table.setContents(rows)
 
 
