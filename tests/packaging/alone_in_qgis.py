@@ -53,13 +53,13 @@ def connect(url):
     connection = Connection()
     connection.open(url, "packaging test")
     try:
-        until = time.monotonic() + 10
+        until = time.monotonic() + 40
         while time.monotonic() < until:
             news = connection.take()
             if news.site is not None:
                 return news
             time.sleep(0.05)
-        sys.exit(f"not connected after 10 s: {news.link}")
+        sys.exit(f"not connected after 40 s: {news.link}")
     finally:
         connection.shut_down()
 

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 from stage.fleet import STARTS
+from stage.patience import BUSY
 
 from robot_bridge.robotmap.binary import decode_text
 
@@ -92,7 +93,7 @@ def test_the_desktop_opens_connected_and_takes_everything_with_it_when_it_is_end
         finally:
             desktop.send_signal(signal.SIGINT)
         assert desktop.wait(30) == 130
-    until = time.monotonic() + 5
+    until = time.monotonic() + 5 * BUSY
     while left_running(tmp_path) and time.monotonic() < until:
         time.sleep(0.1)
     assert not left_running(tmp_path)

@@ -21,12 +21,13 @@ from qgis.gui import QgsMapToolPan
 from qgis.PyQt.QtCore import QCoreApplication, QEvent, Qt
 from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import QAction, QApplication, QToolTip
+from stage.patience import BUSY
 
 ORIGIN = (488000.0, 5190000.0)
 
 
 def until(condition, what):
-    end = time.monotonic() + 10
+    end = time.monotonic() + 10 * BUSY
     while not condition():
         assert time.monotonic() < end, what
         QApplication.processEvents()

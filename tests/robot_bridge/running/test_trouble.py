@@ -16,6 +16,7 @@ import urllib.request
 import pytest
 from bridge_programs import wait_until
 from prometheus_client.parser import text_string_to_metric_families
+from stage.patience import BUSY
 
 from robot_bridge.store import revisions
 from robot_bridge.store.accounts.choice import keeper_on
@@ -130,10 +131,10 @@ def test_what_comes_over_http_and_is_no_request_does_no_harm(bridge):
         b"GET /healthz HTTP/1.1\r\n" + b"X: y\r\n" * 5000,
         b"POST /metrics HTTP/1.1\r\n\r\n",
     ):
-        with socket.create_connection(("127.0.0.1", bridge.port), timeout=5) as link:
+        with socket.create_connection(("127.0.0.1", bridge.port), timeout=5 * BUSY) as link:
             link.sendall(text)
             link.shutdown(socket.SHUT_WR)
-            until = time.monotonic() + 5
+            until = time.monotonic() + 5 * BUSY
             while link.recv(4096):
                 assert time.monotonic() < until
     assert healthy(bridge)
