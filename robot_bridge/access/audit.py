@@ -54,6 +54,11 @@ def newest(
     return [_entry(row) for row in connection.execute(query).mappings()]
 
 
+def accounts(connection: Connection) -> list[str]:
+    """Return who stands in the log, sorted."""
+    return sorted(connection.scalars(select(audit.c.who).distinct()))
+
+
 def forget(connection: Connection, before: float, limit: int) -> int:
     """Delete at most ``limit`` entries from before a time; return how many."""
     return len(delete_oldest(connection, audit.c.id, audit.c.at, before, limit))

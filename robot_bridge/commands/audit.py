@@ -9,6 +9,7 @@ import typer
 
 from ..access import audit as audit_log
 from ..errors import BridgeError
+from ..known_names import told
 from .database_option import DEFAULT, DatabaseOption, PasswordFileOption, database_address
 from .noted import moment, read
 
@@ -26,6 +27,10 @@ def audit(
     at = _seconds(since)
     address = database_address(database, database_password_file)
     found = read(address, lambda c: audit_log.newest(c, limit, since=at, who=who))
+    if not found and who is not None:
+        known = read(address, audit_log.accounts)
+        if who not in known:
+            raise BridgeError(f"{who!r} stands nowhere in this audit log; accounts that do: {told(known)}")
     for entry in reversed(found):
         row = (
             moment(entry.at),

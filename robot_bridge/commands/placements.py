@@ -10,13 +10,14 @@ from typing import Annotated
 import typer
 
 from ..errors import BridgeError
+from ..known_names import told
 from ..messages import GetPlacements, PlacementReport
 from ..messages.placements import MOST_PLACEMENTS
 from ..sites.settings import SETTINGS_FILE, read_settings
 from ..store import placements as stored
 from ..store.database import Database
 from .database_option import DEFAULT, DatabaseOption, PasswordFileOption, database_address
-from .times import seconds_of
+from .times import span_of
 
 app = typer.Typer(help="Where cones were put down.", no_args_is_help=True)
 
@@ -55,12 +56,13 @@ def export(
         )
     if file.exists() and not replace:
         raise BridgeError(f"{file} is there already; choose another name, or give --replace")
+    first, last = span_of(since, until)
     wanted = GetPlacements(
         layout=layout,
         plan=plan,
         robot=robot,
-        since=seconds_of("--since", since),
-        until=seconds_of("--until", until),
+        since=first,
+        until=last,
         collected=collected,
         limit=MOST_PLACEMENTS,
     )
@@ -70,6 +72,7 @@ def export(
     async def work() -> list[PlacementReport]:
         opened = Database(address, patience=None)
         try:
+            await _check_named(opened, wanted)
             return await _all(opened, wanted)
         finally:
             await opened.close()
@@ -78,6 +81,19 @@ def export(
     write(rows(found, frame), frame, file)
     worst = max((one.deviation for one in found), default=0.0)
     typer.echo(f"{file}: {len(found)} cones, {worst:.3f} m off their places at most")
+
+
+async def _check_named(database: Database, wanted: GetPlacements) -> None:
+    """Raise BridgeError for a layout, plan or robot of which no cone is stored, as for a misspelt one."""
+    for kind in ("layout", "plan", "robot"):
+        name = getattr(wanted, kind)
+        if name is None or await database.run(stored.has_any, kind, name):
+            continue
+        known = await database.run(stored.names, kind)
+        raise BridgeError(
+            f"no cone of {kind} {name!r} is stored in this database; "
+            f"{kind}s with cones in it: {told(known)}. Nothing was written"
+        )
 
 
 async def _all(database: Database, wanted: GetPlacements) -> list[PlacementReport]:

@@ -16,7 +16,7 @@ from ..store.trajectories import Wanted
 from ..trajectories.exporting import export as write
 from ..trajectories.geopackage import TrajectoryFile
 from .database_option import DEFAULT, DatabaseOption, PasswordFileOption, database_address
-from .times import seconds_of
+from .times import span_of
 
 app = typer.Typer(help="Where robots have been.", no_args_is_help=True)
 
@@ -48,10 +48,11 @@ def export(
         raise BridgeError(f"{file} is no name for a GeoPackage; write one that ends in .gpkg")
     if file.exists() and not replace:
         raise BridgeError(f"{file} is there already; choose another name, or give --replace")
+    first, last = span_of(since, until)
     wanted = Wanted(
         robots=tuple(check_robot_name(name) for name in robot or ()),
-        since=seconds_of("--since", since),
-        until=seconds_of("--until", until),
+        since=first,
+        until=last,
         bounds=_bounds(bounds),
     )
     frame = read_settings(site / SETTINGS_FILE).frame

@@ -72,6 +72,18 @@ def newest(connection: Connection, wanted: GetPlacements) -> list[PlacementRepor
     return [_report(row) for row in connection.execute(query.limit(wanted.limit)).mappings()]
 
 
+def has_any(connection: Connection, kind: str, name: str) -> bool:
+    """Tell whether a cone is stored of the layout, plan or robot ``name``; ``kind`` says which that is."""
+    c = placements.c
+    return connection.scalar(select(c.id).where(c[kind] == name).limit(1)) is not None
+
+
+def names(connection: Connection, kind: str) -> list[str]:
+    """Return the layouts, plans or robots, as ``kind`` says, of which cones are stored, sorted."""
+    column = placements.c[kind]
+    return sorted(connection.scalars(select(column).where(column.is_not(None)).distinct()))
+
+
 def standing(connection: Connection, layout: str | None) -> list[PlacementReport]:
     """Return the cones of a layout, or of all, that were not collected, in the order they were put down."""
     query = select(placements).where(placements.c.collected_at.is_(None))

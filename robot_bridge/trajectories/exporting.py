@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ..errors import BridgeError
+from ..known_names import told
 from ..sites.frame import SiteFrame
 from ..store import robots as stored_robots
 from ..store import trajectories
@@ -17,8 +18,6 @@ from .geopackage import TrajectoryFile
 
 PAGE = 20_000
 """positions read and written at once."""
-NAMED = 10
-"""robots that are named where another one is not known; the others are counted."""
 
 
 async def export(
@@ -46,10 +45,9 @@ async def _check_robots(database: Database, robots: Sequence[str]) -> None:
     unknown = await database.run(trajectories.never_seen, robots)
     if unknown:
         known = await database.run(stored_robots.names)
-        told = ", ".join(known[:NAMED]) + (f" and {len(known) - NAMED} more" if len(known) > NAMED else "")
         raise BridgeError(
             f"no position of robot {unknown[0]!r} is stored in this database; robots that are known in it: "
-            f"{told or 'none'}. Nothing was written"
+            f"{told(known)}. Nothing was written"
         )
 
 

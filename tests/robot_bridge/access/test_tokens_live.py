@@ -261,3 +261,10 @@ def test_the_command_line_says_what_it_did_in_the_audit_log_without_a_token(brid
     done = accounts.run("audit", "--since", "yesterday")
     assert done.returncode == 1
     assert "is no time; write it like" in done.stderr
+
+
+def test_an_account_that_did_nothing_is_told_from_one_that_is_unknown(accounts, ada):
+    assert accounts.do("audit", "--who", "Ada", "--since", "2100-01-01") == ""
+    done = accounts.run("audit", "--who", "Adda")
+    assert done.returncode == 1
+    assert "'Adda' stands nowhere in this audit log; accounts that do: " in done.stderr

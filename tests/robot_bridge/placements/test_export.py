@@ -107,7 +107,7 @@ def test_a_geopackage_has_what_stands_what_was_planned_and_the_way_between(where
         (["--robot", "r2"], ["c7"]),
         (["--plan", "p1"], ["c7"]),
         (["--since", "2026-09-21T14:13:22"], ["c2", "c7"]),
-        (["--layout", "nowhere"], []),
+        (["--layout", "circle", "--collected"], []),
     ],
 )
 def test_it_is_narrowed_down(where, tmp_path, options, cones):
@@ -117,8 +117,27 @@ def test_it_is_narrowed_down(where, tmp_path, options, cones):
 
 
 def test_nothing_at_all_is_a_file_that_says_so(where, tmp_path):
-    assert run(tmp_path / "cones.gpkg", *where, "--layout", "nowhere").returncode == 0
+    assert run(tmp_path / "cones.gpkg", *where, "--layout", "circle", "--collected").returncode == 0
     assert ogr.Open(str(tmp_path / "cones.gpkg")).GetLayerByName("placed").GetFeatureCount() == 0
+
+
+@pytest.mark.parametrize(
+    ("option", "known"), [("layout", "circle, slalom"), ("plan", "p1"), ("robot", "r1, r2")]
+)
+def test_a_name_that_no_cone_has_is_said_and_nothing_is_written(where, tmp_path, option, known):
+    done = run(tmp_path / "cones.csv", *where, f"--{option}", "nowhere")
+    assert done.returncode == 1
+    assert (
+        f"no cone of {option} 'nowhere' is stored in this database; {option}s with cones in it: {known}."
+        in (done.stderr)
+    )
+    assert list(tmp_path.glob("cones.*")) == []
+
+
+def test_a_time_that_ends_before_it_begins_is_said(where, tmp_path):
+    done = run(tmp_path / "cones.csv", *where, "--since", "2026-09-22", "--until", "2026-09-21")
+    assert done.returncode == 1
+    assert "--since '2026-09-22' is later than --until '2026-09-21'; nothing lies between" in done.stderr
 
 
 def test_a_file_is_replaced_only_when_that_is_wanted(where, tmp_path):
