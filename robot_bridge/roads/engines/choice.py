@@ -32,10 +32,13 @@ def engines_for(graph: Graph, name: str = AUTOMATIC) -> Engines:
 
     :raises MissingEngineError: when ``name`` is none, or its package is not installed.
     """
+    if name not in ENGINES:
+        raise MissingEngineError(f"There is no engine {name!r} for routes: choose of {', '.join(ENGINES)}.")
+    if not len(graph.tail):
+        # There is no way to find, and RoutingKit ends the process on a graph without arcs.
+        return lambda costs: PlainEngine(graph, costs)
     if name == AUTOMATIC:
         return _fastest(graph)
-    if name not in _MAKERS:
-        raise MissingEngineError(f"There is no engine {name!r} for routes: choose of {', '.join(ENGINES)}.")
     module, package, maker = _MAKERS[name]
     try:
         return maker(graph)

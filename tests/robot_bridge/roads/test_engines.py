@@ -38,6 +38,19 @@ router.close([0])
 print(router.engine_name, router.route((0, 0), (100, 0)).metres)
 """
 
+WITHOUT_ROADS = """
+from robot_bridge.roads.centrelines import centrelines
+from robot_bridge.roads.errors import OffNetworkError
+from robot_bridge.roads.network import build_network
+from robot_bridge.roads.routes import Router
+
+for engine in ("automatic", "contraction"):
+    try:
+        Router(build_network(centrelines([])), engine).route((0, 0), (1, 0))
+    except OffNetworkError as error:
+        print(engine, type(error).__name__)
+"""
+
 
 @pytest.fixture(params=NAMES)
 def engine(request: pytest.FixtureRequest) -> str:
@@ -69,6 +82,15 @@ def test_after_any_changes_ways_cost_what_they_cost_from_the_beginning(seed: int
         for engine in engines:
             engine.set_costs(arcs, costs[arcs])
             assert cost(graph, engine.way(starts, goals), costs) == pytest.approx(wanted), engine.name
+
+
+def test_a_layer_without_roads_has_no_way_and_ends_no_process(root) -> None:
+    pytest.importorskip("routingkit_cch")
+    done = subprocess.run(
+        [sys.executable, "-c", WITHOUT_ROADS], capture_output=True, text=True, cwd=root, check=False,
+        timeout=120,
+    )  # fmt: skip
+    assert (done.returncode, done.stdout) == (0, "automatic OffNetworkError\ncontraction OffNetworkError\n")
 
 
 def test_of_parallel_arcs_the_cheapest_open_one_is_used(engine: str) -> None:
