@@ -6,8 +6,7 @@ import json
 from dataclasses import dataclass
 from pathlib import Path
 
-from qgis.core import QgsProject, QgsSingleSymbolRenderer, QgsVectorLayer
-from qgis.PyQt.QtGui import QColor
+from qgis.core import QgsFillSymbol, QgsLineSymbol, QgsProject, QgsRuleBasedRenderer, QgsVectorLayer
 
 from ...robot_bridge.sites.geopackage import GEOPACKAGE_FILE
 from ...robot_bridge.sites.layers import CENTRELINES, KEEPOUTS, OBSTACLES, SURFACES
@@ -28,7 +27,8 @@ from .roles import (
 )
 
 PLAIN = "#78808a"
-"""The colour of a layer that has no style of its own: none that warns."""
+PLAIN_EDGE = "#4b5159"
+"""The colours of obstacles: none that warns."""
 AGAIN = tr("Publish the site again.")
 STYLES = Path(__file__).parents[2] / "resources" / "styles"
 
@@ -148,9 +148,21 @@ def _open(folder: Path) -> list[tuple[_Part, QgsVectorLayer]]:
 def _dress(layer: QgsVectorLayer, style: str) -> None:
     if style:
         layer.loadNamedStyle(str(STYLES / style))
-    elif isinstance(renderer := layer.renderer(), QgsSingleSymbolRenderer):
-        # Of whatever kind its shapes are; QGIS would choose a colour by chance, red as well.
-        renderer.symbol().setColor(QColor(PLAIN))
+    else:
+        layer.setRenderer(_areas_and_lines())
+
+
+def _areas_and_lines() -> QgsRuleBasedRenderer:
+    """Return what draws a layer that holds both: one symbol would leave out what is not of its kind."""
+    symbols = {
+        "Polygon": QgsFillSymbol.createSimple({"color": PLAIN, "outline_color": PLAIN_EDGE}),
+        "Line": QgsLineSymbol.createSimple({"color": PLAIN_EDGE, "width": "0.4"}),
+    }
+    root = QgsRuleBasedRenderer.Rule(None)
+    for kind, symbol in symbols.items():
+        which = f"geometry_type($geometry) = '{kind}'"
+        root.appendChild(QgsRuleBasedRenderer.Rule(symbol, filterExp=which))
+    return QgsRuleBasedRenderer(root)
 
 
 def _site_name(folder: Path) -> str:

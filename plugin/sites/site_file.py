@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -59,13 +60,15 @@ def _write_layer(
     target: Any, spec: LayerSpec, rows: Iterator[SiteRow], crs: Any, stamp: str, feedback: QgsFeedback
 ) -> bool:
     _, ogr, _ = _bindings()
-    layer = _there(target.CreateLayer(spec.name, crs, getattr(ogr, _GEOMETRIES[spec.geometry])))
+    first = next(rows, None)
+    declared = _GEOMETRIES[spec.declared_geometry(first is None)]
+    layer = _there(target.CreateLayer(spec.name, crs, getattr(ogr, declared)))
     for name, kind in spec.fields.items():
         _done(layer.CreateField(_field(name, kind)))
     # On the layer, not the file: GDAL would put that into an .aux.xml file beside the site on every reading.
     _done(layer.SetMetadataItem(STAMP_KEY, stamp))
     _done(target.StartTransaction())
-    for number, row in enumerate(rows):
+    for number, row in enumerate(chain([] if first is None else [first], rows)):
         if number % _EVERY == 0 and feedback.isCanceled():
             target.RollbackTransaction()
             return False

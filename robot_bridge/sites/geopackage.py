@@ -62,7 +62,7 @@ def write_layers(file: Path, layers: Sequence[Layer], crs: str, stamp: str) -> N
                 fields=list(layer.spec.fields),
                 layer=layer.spec.name,
                 driver="GPKG",
-                geometry_type=layer.spec.geometry,
+                geometry_type=layer.spec.declared_geometry(len(layer.geometries) == 0),
                 crs=crs,
                 append=file.exists(),
                 dataset_options={"VERSION": "1.3"},

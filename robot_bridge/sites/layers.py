@@ -21,6 +21,14 @@ class LayerSpec:
     fields: dict[str, type]
     defaults: Mapping[str, float | str] = field(default_factory=dict)
 
+    def declared_geometry(self, empty: bool) -> str:
+        """Return the geometry type that the layer's table declares.
+
+        A layer of any geometry with nothing in it is to QGIS 3.22 a table without geometry and CRS: an empty
+        one declares polygons.
+        """
+        return "Polygon" if empty and self.geometry == "Unknown" else self.geometry
+
 
 OBSTACLES = LayerSpec(
     "obstacles",

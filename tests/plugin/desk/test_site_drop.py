@@ -4,13 +4,24 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
-from fleet_supervisor.plugin.sites.published_layers import PLAIN
+from fleet_supervisor.plugin.sites.published_layers import PLAIN, PLAIN_EDGE
+from fleet_supervisor.robot_bridge.robotmap.model import ShapeType
+from fleet_supervisor.robot_bridge.robotmap.outlines import OutlineRow, Outlines
+from fleet_supervisor.robot_bridge.sites.publication import write_site
+from fleet_supervisor.robot_bridge.sites.settings import Bounds, SiteSettings
 from qgis.core import (
     QgsDirectoryItem,
+    QgsMapRendererSequentialJob,
+    QgsMapSettings,
     QgsMimeDataUtils,
     QgsProject,
+    QgsRectangle,
+    QgsRenderContext,
 )
+from qgis.PyQt.QtCore import QSize, Qt
+from qgis.PyQt.QtGui import QColor
 
 SITE = Path(__file__).parents[3] / "resources" / "sample_site"
 
@@ -28,10 +39,45 @@ def test_a_published_site_that_is_dropped_is_loaded_with_roles_and_styles(plugin
     assert all(layer.isValid() and layer.featureCount() > 0 for layer in layers.values())
     assert layers["Keepouts"].customProperty("fleet/role") == "keepout"
     assert layers["Road surfaces"].renderer().type() == "categorizedSymbol"
-    assert layers["Obstacles"].renderer().symbol().color().name() == PLAIN
+    colours = {symbol.color().name() for symbol in layers["Obstacles"].renderer().symbols(QgsRenderContext())}
+    assert colours == {PLAIN, PLAIN_EDGE}
     group = QgsProject.instance().layerTreeRoot().findGroup("Fleet")
     assert [child.name() for child in group.children()] == ["Sample proving ground and campus"]
     assert iface.texts() == ["Fleet Supervisor: Sample proving ground and campus: 4 layers loaded."]
+
+
+def test_obstacles_of_every_shape_are_drawn(plugin, iface, tmp_path):
+    square = np.array([[1.0, 1.0], [9.0, 1.0], [9.0, 9.0], [1.0, 9.0], [1.0, 1.0]])
+    rows = []
+    for number, shape in enumerate(ShapeType):
+        outline = square if shape.name.startswith(("CLOSED", "RAMP")) else square[:4]
+        rows.append(OutlineRow(outline + np.array([10.0 * number, 0.0]), shape, 1.0, "", shape.name))
+    settings = SiteSettings("yard", "Yard", 1, "EPSG:32633", (0.0, 0.0), Bounds(0.0, 0.0, 60.0, 10.0))
+    write_site(tmp_path, settings, Outlines.from_rows(rows))
+    drop(iface, tmp_path)
+    (layer,) = QgsProject.instance().mapLayersByName("Obstacles")
+    picture = drawn(layer, QgsRectangle(0.0, 0.0, 10.0 * len(rows), 10.0))
+    widths = np.split(picture, len(rows), axis=1)
+    assert {shape.name: bool(part.any()) for shape, part in zip(ShapeType, widths, strict=True)} == {
+        shape.name: True for shape in ShapeType
+    }
+
+
+def drawn(layer, extent):
+    """Where something of a layer is drawn, as rows of pixels, ten to a metre."""
+    settings = QgsMapSettings()
+    settings.setLayers([layer])
+    settings.setOutputSize(QSize(round(10 * extent.width()), round(10 * extent.height())))
+    settings.setExtent(extent)
+    settings.setBackgroundColor(Qt.GlobalColor.white)
+    job = QgsMapRendererSequentialJob(settings)
+    job.start()
+    job.waitForFinished()
+    image = job.renderedImage()
+    white = QColor(Qt.GlobalColor.white)
+    return np.array(
+        [[image.pixelColor(x, y) != white for x in range(image.width())] for y in range(image.height())]
+    )
 
 
 def test_dropped_twice_it_is_there_once(plugin, iface):

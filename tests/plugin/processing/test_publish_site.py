@@ -10,13 +10,20 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from fleet_supervisor.plugin.sites.obstacle_source import obstacle_sources
 from fleet_supervisor.plugin.sites.roles import LayerExpressions, LayerSetup, keep_setup
 from fleet_supervisor.robot_bridge.robotmap.binary import decode_text
 from fleet_supervisor.robot_bridge.robotmap.model import ShapeType
 from fleet_supervisor.robot_bridge.robotmap.text import read_text, write_text
 from fleet_supervisor.robot_bridge.sites.errors import LayerError
 from fleet_supervisor.robot_bridge.sites.publication import read_site
-from qgis.core import QgsProcessingContext, QgsProcessingException, QgsProject
+from qgis.core import (
+    QgsExpressionContext,
+    QgsProcessingContext,
+    QgsProcessingException,
+    QgsProject,
+    QgsVectorLayer,
+)
 from stage.patience import START
 from stage.processes import Processes
 from websockets.sync.client import connect
@@ -126,6 +133,13 @@ def test_what_is_published_is_what_the_layers_hold(publish, yard):
         "Layer roads, feature 3: its width -1.0 is not a number of metres above 0; the default is used",
         "Layer roads: the width of 1 of its roads is not known and taken as 3.5 m (feature 3 is the first)",
     ]
+
+
+def test_a_site_without_obstacles_has_a_layer_that_can_be_given_as_obstacles(publish, yard):
+    del yard["OBSTACLES"]
+    layer = QgsVectorLayer(f"{publish(**yard).folder}/site.gpkg|layername=obstacles", "obstacles", "ogr")
+    assert (layer.featureCount(), layer.crs().authid()) == (0, "EPSG:32633")
+    obstacle_sources([layer], LayerExpressions(), QgsExpressionContext())
 
 
 def test_layers_come_from_the_project_by_their_roles(publish, make_layer):

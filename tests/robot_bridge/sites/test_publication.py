@@ -154,6 +154,9 @@ def test_a_site_without_any_obstacle_is_a_site(tmp_path):
     site = read_site(tmp_path / "empty")
     assert (len(site.outlines), site.centrelines, site.surfaces, site.keepouts) == (0, (), (), ())
     assert site.whole_map().obstacles == ()
+    # Of any geometry and empty, it would have neither geometry nor CRS to QGIS 3.22.
+    info = pyogrio.read_info(str(tmp_path / "empty" / "site.gpkg"), layer="obstacles")
+    assert (info["geometry_type"], info["crs"]) == ("Polygon", "EPSG:32633")
 
 
 def test_publishing_again_replaces_both_files_and_leaves_others(folder):
