@@ -62,6 +62,23 @@ def test_pages_in_any_number_give_the_same(history):
         assert np.array_equal(whole.at(moment).xy, by_one.at(moment).xy, equal_nan=True)
 
 
+def test_no_position_is_held_twice(history):
+    """A million of them, all that a replay may have, are 48 MB."""
+    history.at(T0 + 4)
+    held = {id(numbers): numbers.nbytes for numbers in (*history._pages, history._sorted)}
+    assert sum(held.values()) == len(history) * 6 * 8
+
+
+def test_pages_that_come_after_a_look_join_those_before():
+    whole, looked_at = History(), History()
+    pages = [[place(f"r{k % 3}", k, float(k)) for k in range(10 * n, 10 * n + 10)] for n in range(3)]
+    for page in pages:
+        whole.add(page)
+        looked_at.add(page)
+        looked_at.at(T0)
+    assert looked_at.table.tolist() == whole.table.tolist()
+
+
 def test_nothing_is_nowhere():
     assert History().at(T0).names == []
 
