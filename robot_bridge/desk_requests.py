@@ -117,7 +117,7 @@ async def _set_positions(fleet: Fleet, request: SetPositions, caller: Caller) ->
     return _commands(await fleet.orders.set_positions(request.positions, caller.operator))
 
 
-def _check_override(fleet: Fleet, request: Send | AddTasks, caller: Caller) -> None:
+def _check_override(fleet: Fleet, request: Send | SetQueue | AddTasks | TakeOver, caller: Caller) -> None:
     """Raise ForbiddenError for an override that the caller's role does not reach."""
     least = Role(fleet.site.settings.commands.override_role)
     if request.override is not None and not caller.role.includes(least):
@@ -222,6 +222,7 @@ async def _get_trajectory(fleet: Fleet, request: GetTrajectory, _caller: Caller)
 
 
 async def _set_queue(fleet: Fleet, request: SetQueue, caller: Caller) -> Json:
+    _check_override(fleet, request, caller)
     return to_json(await fleet.queues.set(request, caller.operator))
 
 
@@ -251,6 +252,7 @@ async def _resume_queue(fleet: Fleet, request: ResumeQueue, caller: Caller) -> J
 
 
 async def _take_over(fleet: Fleet, request: TakeOver, caller: Caller) -> Json:
+    _check_override(fleet, request, caller)
     return _queues(await fleet.queues.take_over(request, caller.operator))
 
 

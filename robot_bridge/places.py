@@ -1,12 +1,14 @@
-"""Is a place on the site?"""
+"""May a robot be sent there: is the place on the site, and the way outside its keepouts?"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import asyncio
+from collections.abc import Iterable, Sequence
 from typing import Protocol
 
 from .errors import RefusedError
-from .messages import Abort, Command, SetPath, SiteReport
+from .messages import Abort, Command, SetPath, SetPosEnd, SiteReport
+from .polyline import Track
 
 
 class Ground(Protocol):
@@ -18,6 +20,13 @@ class Ground(Protocol):
 
     def contains(self, x: float, y: float) -> bool:
         """Tell whether (x, y), metres in the site frame, lies on the site."""
+
+
+class Fenced(Protocol):
+    """What is known of where nobody may drive."""
+
+    def keepout_entered(self, tracks: Sequence[Track]) -> tuple[int, str] | None:
+        """Return the number of the first of ``tracks`` that comes into a keepout, and that one's name."""
 
 
 def check_places(site: Ground, points: Iterable[tuple[float, float]]) -> None:
@@ -36,3 +45,23 @@ def places_of(message: Command) -> list[tuple[float, float]]:
     if isinstance(message, SetPath):
         return message.points
     return [] if isinstance(message, Abort) else [(message.x, message.y)]
+
+
+async def check_keepouts(site: Fenced, messages: Sequence[Command]) -> None:
+    """Raise RefusedError for the first of ``messages`` that sends a robot into a keepout of the site.
+
+    Where a robot is told that it stands is not looked at, nor the way that it finds to a target by itself.
+    """
+    tracks: list[Track] = []
+    for message in messages:
+        if isinstance(message, (SetPosEnd, SetPath)):
+            tracks.append(places_of(message))
+    entered = await asyncio.to_thread(site.keepout_entered, tracks) if tracks else None
+    if entered is None:
+        return
+    track, name = tracks[entered[0]], entered[1]
+    x, y = track[-1]
+    what = f"({x:.2f}, {y:.2f}) lies in" if len(track) == 1 else f"the path to ({x:.2f}, {y:.2f}) enters"
+    raise RefusedError(
+        f"{what} the keepout {name!r}: choose a place or way outside it, or send it with an override"
+    )

@@ -8,6 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+Track = Sequence[tuple[float, float]]
+"""One point is a place, several are a path; metres in the site frame."""
+
 
 class Polyline:
     """A line through n ≥ 1 points, (x, y) in metres; a station is metres along it from its beginning."""

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Protocol
 
 from .messages import ObservationReport, SiteOffer, SiteReport
+from .polyline import Track
 from .roads.surfaces.surface import Surface
 from .sites.settings import SiteSettings
 
@@ -23,6 +24,9 @@ class ServedSite(Protocol):
 
     def contains(self, x: float, y: float) -> bool:
         """Tell whether (x, y), metres in the site frame, lies on the site."""
+
+    def keepout_entered(self, tracks: Sequence[Track]) -> tuple[int, str] | None:
+        """Return the number of the first of ``tracks`` that comes into a keepout, and that one's name."""
 
     def whole_map(self) -> bytes:
         """Return the map of the whole site."""

@@ -9,6 +9,7 @@ from typing import NamedTuple
 from .errors import RefusedError
 from .messages import ObservationReport, SiteReport
 from .observed_objects import ObservedObjects
+from .polyline import Track
 from .roads.surfaces.index import NOWHERE
 from .roads.surfaces.surface import Surface
 from .robotmap.binary import encode
@@ -74,6 +75,16 @@ class SiteMaps:
     def contains(self, x: float, y: float) -> bool:
         """Tell whether (x, y), metres in the site frame, lies on the site."""
         return self._site.contains(x, y)
+
+    def keepout_entered(self, tracks: Sequence[Track]) -> tuple[int, str] | None:
+        """Return the number of the first of ``tracks`` that comes into a keepout, and that one's name."""
+        site = self._site
+        if not site.keepouts:
+            return None
+        with self._indexing:
+            index = site.keepout_index
+        entry = index.first_entry(tracks)
+        return None if entry is None else (entry.track, site.keepouts[entry.area].label)
 
     def whole_map(self) -> bytes:
         """Return the map of the whole site in the binary format."""

@@ -149,16 +149,19 @@ class SetQueue:
     """Replace what is not yet begun by ``tasks``; what the robot is doing goes on.
 
     Tasks of this queue that are being done, or were done meanwhile, are passed over. A robot without a queue
-    has revision 0.
+    has revision 0. ``override`` says what speaks against them, and why they are asked for all the same, as
+    with ``send``.
     """
 
     method: ClassVar[str] = "set_queue"
     robot: str
     revision: int
     tasks: list[QueueTask]
+    override: str | None = None
 
     def __post_init__(self) -> None:
         _check_edit(self.robot, self.revision)
+        check_override(self.override)
         _check_tasks(self.tasks)
 
 
@@ -304,7 +307,8 @@ class TakeOver:
 
     ``shares`` say for each of them what then waits in its queue: its own tasks and those it takes over. All
     tasks of these queues that are not being done must be in them once. The task that ``robot`` is doing may
-    be among them: then that robot is told to abort it. Its queue is paused.
+    be among them: then that robot is told to abort it. Its queue is paused. ``override`` says what speaks
+    against a new path, and why it is asked for all the same, as with ``send``.
     """
 
     method: ClassVar[str] = "take_over"
@@ -312,10 +316,12 @@ class TakeOver:
     revision: int
     shares: list[Share]
     reason: str | None = None
+    override: str | None = None
 
     def __post_init__(self) -> None:
         _check_edit(self.robot, self.revision)
         check_reason(self.reason)
+        check_override(self.override)
         names = [self.robot, *(share.robot for share in self.shares)]
         twice = sorted({name for name in names if names.count(name) > 1})
         if twice:

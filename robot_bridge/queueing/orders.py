@@ -26,13 +26,15 @@ from ..messages import (
     QueueTask,
     RemoveTask,
     ResumeQueue,
+    SetPath,
+    SetPosEnd,
     SetQueue,
     TakeOver,
     TaskKind,
     TaskState,
     check_robot_name,
 )
-from ..places import check_places
+from ..places import check_keepouts, check_places
 from ..queues import edits, life, sharing
 from ..queues.legs import legs
 from ..queues.queue import Queue, queue_report
@@ -69,14 +71,14 @@ class QueueOrders:
     async def set(self, request: SetQueue, operator: str) -> QueueReport:
         """Replace what is not begun."""
         async with self._editing(request.robot, request.revision) as queue:
-            known = await self._checked(request.robot, request.tasks)
+            known = await self._checked(request, queue)
             after = edits.replaced(queue, request.tasks, known, operator, self._clock())
             return await self._edit(queue, after, operator, "another list took its place")
 
     async def add(self, request: AddTasks, operator: str) -> QueueReport:
         """Put tasks into a queue."""
         async with self._editing(request.robot, request.revision) as queue:
-            known = await self._checked(request.robot, request.tasks)
+            known = await self._checked(request, queue)
             now = self._clock()
             after = edits.added(queue, request.tasks, request.before, known, operator, now)
             return await self._edit(queue, after, operator)
@@ -124,8 +126,11 @@ class QueueOrders:
             before = {name: self._book.get(name) for name in names}
             after = sharing.taken_over(before, request, operator, self._clock())
             for share in request.shares:
-                for wanted in share.tasks:
-                    check_places(self._site, wanted.path or ())
+                paths = [wanted.path for wanted in share.tasks if wanted.path]
+                for path in paths:
+                    check_places(self._site, path)
+                if request.override is None:
+                    await check_keepouts(self._site, [SetPath(path) for path in paths])
             write = partial(_save_many, [(before[name], after[name]) for name in names])
             taken = sharing.takes_current(before[request.robot], request)
             if taken is not None and taken.command is not None and self._commands.is_open(taken.command):
@@ -194,9 +199,17 @@ class QueueOrders:
                 robot, f"the queue of robot {robot!r} is at revision {now}, not {revision}; look at it again"
             )
 
-    async def _checked(self, robot: str, tasks: Sequence[QueueTask]) -> dict[str, edits.Whereabouts]:
-        """Return which of ``tasks`` were given before; raises RefusedError for one that cannot be driven."""
-        self._check_places(tasks)
+    async def _checked(self, request: SetQueue | AddTasks, queue: Queue) -> dict[str, edits.Whereabouts]:
+        """Return which of the tasks were given before; raises RefusedError for one that cannot be driven.
+
+        What stands in the robot's ``queue`` as it is asked for may lead into a keepout: that was overridden.
+        """
+        tasks = request.tasks
+        driven = {task.task: self._driven(task) for task in tasks}
+        if request.override is None:
+            waiting = {queued.id: queued.task for queued in queue.tasks}
+            new = [leg for task in tasks if waiting.get(task.task) != task for leg in driven[task.task]]
+            await check_keepouts(self._site, new)
         wanted = {task.placement: task.task for task in tasks if task.placement is not None}
         for name, queue in ((n, self._book.get(n)) for n in self._book.names()):
             for queued in queue.tasks:
@@ -214,10 +227,11 @@ class QueueOrders:
             )
         return await self._database.read(queues.whereabouts, [task.task for task in tasks])
 
-    def _check_places(self, tasks: Sequence[QueueTask]) -> None:
-        for task in tasks:
-            legs(task, self._site.settings.cones.offset)
-            check_places(self._site, [(task.x, task.y), *(task.path or ())])
+    def _driven(self, task: QueueTask) -> list[SetPath | SetPosEnd]:
+        """Return what drives a task; raises RefusedError where that cannot be."""
+        driven = legs(task, self._site.settings.cones.offset)
+        check_places(self._site, [(task.x, task.y), *(task.path or ())])
+        return driven
 
 
 def _collecting(cone: PlacementReport, turns: bool) -> QueueTask:

@@ -15,7 +15,6 @@ from ..errors import RefusedError
 from ..roads.along import edges_along
 from ..roads.centrelines import Floats
 from ..roads.closures import edges_of_closure
-from ..roads.keepouts import edges_through
 from ..roads.network import build_network
 from ..roads.routes import REACH, Router
 from ..sites.road_lines import road_lines
@@ -48,7 +47,7 @@ class SiteRoads:
             return cls(site, None, np.zeros(0, bool))
         network = build_network(road_lines(site.centrelines))
         router = Router(network)
-        closed = edges_through(network, [area.rings for area in site.keepouts])
+        closed = site.keepout_index.edges_through(network)
         router.close(closed.tolist())
         log.info(
             "paths follow the roads of site %s: %d edges, %d of them closed by keepouts, found by %s",

@@ -1,28 +1,57 @@
-"""Edges that lead through areas that nobody may drive into."""
+"""Areas that nobody may drive into: which edges, places and paths come into them."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
+from ..polyline import Track
 from .centrelines import Floats, Ints
 from .network import Network
 
 
-def edges_through(network: Network, areas: Sequence[Sequence[Floats]]) -> Ints:
-    """Return the edges that come into one of ``areas``, each an outer ring and its holes, (n, 2) each.
+class Entry(NamedTuple):
+    """The number of what comes into an area, and that of the area."""
+
+    track: int
+    area: int
+
+
+class KeepoutIndex:
+    """Finds what comes into one of ``areas``, each an outer ring and its holes, (n, 2) each.
+
+    What runs along the rim of an area, or stands on it, does not come into it.
 
     :raises ImportError: where shapely is not installed.
     """
-    import numpy as np
-    import shapely
 
-    if not len(network) or not areas:
-        return np.empty(0, np.int64)
-    index = np.repeat(np.arange(len(network)), network.edges.counts())
-    lines = shapely.linestrings(network.edges.xy, indices=index)
-    polygons = [shapely.make_valid(shapely.Polygon(outer, holes)) for outer, *holes in areas]
-    tree = shapely.STRtree(polygons)
-    # What runs along the rim neither crosses an area nor is within it.
-    found = [tree.query(lines, predicate=predicate)[0] for predicate in ("crosses", "within")]
-    through: Ints = np.unique(np.concatenate(found)).astype(np.int64)
-    return through
+    def __init__(self, areas: Sequence[Sequence[Floats]]) -> None:
+        import shapely
+
+        self._tree = shapely.STRtree(
+            [shapely.make_valid(shapely.Polygon(outer, holes)) for outer, *holes in areas]
+        )
+
+    def first_entry(self, tracks: Sequence[Track]) -> Entry | None:
+        """Return the first of ``tracks`` that comes into an area, None where none does."""
+        import shapely
+
+        found = self._entries([shapely.LineString(t) if len(t) > 1 else shapely.Point(t[0]) for t in tracks])
+        return min((Entry(*pair) for pair in found.T.tolist()), default=None)
+
+    def edges_through(self, network: Network) -> Ints:
+        """Return the edges of ``network`` that come into an area, each once."""
+        import numpy as np
+        import shapely
+
+        index = np.repeat(np.arange(len(network)), network.edges.counts())
+        through: Ints = np.unique(self._entries(shapely.linestrings(network.edges.xy, indices=index))[0])
+        return through.astype(np.int64)
+
+    def _entries(self, geometries: Sequence[object]) -> Ints:
+        """Return the numbers of what comes into areas, and those of the areas, (2, n)."""
+        import numpy as np
+
+        found = [self._tree.query(geometries, predicate=predicate) for predicate in ("crosses", "within")]
+        entries: Ints = np.concatenate(found, axis=1)
+        return entries

@@ -30,7 +30,7 @@ class CommandSettings:
     """``expire_after_s``: seconds after which a command that no robot fetched is given up.
 
     Ended commands and tasks, collected cones and cleared emergency stops are deleted after ``keep_days``.
-    ``override_role``: the least role that may send a robot where the desk's checks say that it should not go.
+    ``override_role``: the least role that may send a robot where desk or gateway say that it should not go.
     """
 
     expire_after_s: float = _number(300.0, above=True)

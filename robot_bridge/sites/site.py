@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 
+from ..roads.keepouts import KeepoutIndex
 from ..roads.surfaces.index import SurfaceIndex
 from ..roads.surfaces.surface import Surface
 from ..robotmap.builder import Window
@@ -73,6 +74,11 @@ class Site:
     def surface_index(self) -> SurfaceIndex:
         """What tells the road surface at a place; made when it is asked for first."""
         return SurfaceIndex(self.surfaces)
+
+    @cached_property
+    def keepout_index(self) -> KeepoutIndex:
+        """What tells which places and ways come into keepouts; made when it is asked for first."""
+        return KeepoutIndex([area.rings for area in self.keepouts])
 
     @cached_property
     def _index(self) -> OutlineIndex:

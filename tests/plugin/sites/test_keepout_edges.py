@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from fleet_supervisor.plugin.sites.keepout_edges import edges_through
-from fleet_supervisor.robot_bridge.roads import keepouts
 from fleet_supervisor.robot_bridge.roads.centrelines import centrelines
+from fleet_supervisor.robot_bridge.roads.keepouts import KeepoutIndex
 from fleet_supervisor.robot_bridge.roads.network import build_network
 
 pytestmark = pytest.mark.usefixtures("qgis_app")
@@ -46,5 +46,5 @@ def test_the_same_roads_are_found_as_by_shapely():
     network = network_of(lines)
     areas = [[box(*dice.uniform(0, 90, 2), *dice.uniform(3, 20, 2))] for _ in range(12)]
     found = edges_through(network, areas)
-    assert found == keepouts.edges_through(network, areas).tolist()
+    assert found == KeepoutIndex(areas).edges_through(network).tolist()
     assert len(found) > 10

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from bridge_programs import wait_until
 from bridge_wires import RefusedError
 from either_wire import WIRES
 
@@ -33,8 +34,16 @@ def target(command: str, **more) -> dict:
     return {"command": command, "robot": "r1", "op": "SetPosEnd", "params": {"x": 30.0, "y": 8.0}, **more}
 
 
-def audited(desk, action: str) -> list[dict]:
-    return [one for one in desk.ask("get_audit", {"limit": 100})["entries"] if one["action"] == action]
+def audited(desk, action: str, about: str, count: int = 1) -> list[dict]:
+    """Return the ``count`` entries of ``action`` whose detail holds ``about``, newest first."""
+
+    def found() -> list[dict]:
+        entries = desk.ask("get_audit", {"limit": 100})["entries"]
+        return [one for one in entries if one["action"] == action and about in one["detail"]]
+
+    # The log is written after the answer.
+    wait_until(lambda: len(found()) >= count, 15, f"{count} entries of {action} about {about}")
+    return found()
 
 
 def test_an_override_takes_a_supervisor_and_stands_in_the_log_and_the_audit(desks, robot):
@@ -44,7 +53,8 @@ def test_an_override_takes_a_supervisor_and_stands_in_the_log_and_the_audit(desk
     assert caught.value.code == FORBIDDEN
     done = desks["supervisor"].ask("send", target("override-two", override=WHY, reason="for the test"))
     assert done["steps"][0]["reason"] == f"override: {WHY}; for the test"
-    newest, refused = audited(desks["supervisor"], "send")[:2]
+    (newest,) = audited(desks["supervisor"], "send", "override-two")
+    (refused,) = audited(desks["supervisor"], "send", "override-one")
     assert (newest["who"], newest["done"]) == ("Supervisor", True)
     assert newest["detail"].startswith(f"{WHY}; ")
     assert (refused["who"], refused["done"]) == ("Operator", False)
@@ -54,7 +64,7 @@ def test_an_override_takes_a_supervisor_and_stands_in_the_log_and_the_audit(desk
 def test_a_long_command_does_not_push_its_override_out_of_the_audit(desks, robot):
     path = {"op": "SetPath", "params": {"points": [[20.0 + 0.001 * k, 8.0] for k in range(2000)]}}
     desks["supervisor"].ask("send", target("override-three", override=WHY) | path)
-    assert audited(desks["supervisor"], "send")[0]["detail"].startswith(f"{WHY}; ")
+    assert audited(desks["supervisor"], "send", "override-three")[0]["detail"].startswith(f"{WHY}; ")
 
 
 def test_tasks_of_a_queue_take_an_override_likewise(desks, robot):
@@ -62,6 +72,49 @@ def test_tasks_of_a_queue_take_an_override_likewise(desks, robot):
     with pytest.raises(RefusedError, match="add_tasks: Operator is operator, and an override takes"):
         desks["operator"].ask("add_tasks", {**asked, "override": WHY})
     assert desks["supervisor"].ask("add_tasks", {**asked, "override": WHY})["revision"] == 1
+
+
+INTO = {"x": 66.0, "y": 32.0}
+"""A place in the sample site's water basin."""
+BASIN = r"\(66\.00, 32\.00\) lies in the keepout 'Water basin'"
+
+
+def test_a_target_in_a_keepout_is_refused_until_one_who_may_overrides_it(desks, robot):
+    with pytest.raises(RefusedError, match=BASIN):
+        desks["operator"].ask("send", target("keepout-one", params=INTO))
+    with pytest.raises(RefusedError, match="an override takes supervisor"):
+        desks["operator"].ask("send", target("keepout-one", params=INTO, override=WHY))
+    sent = desks["supervisor"].ask("send", target("keepout-one", params=INTO, override=WHY))
+    assert sent["state"] == "queued"
+    done, forbidden, refused = audited(desks["supervisor"], "send", "keepout-one", 3)
+    assert [one["done"] for one in (done, forbidden, refused)] == [True, False, False]
+    assert "lies in the keepout 'Water basin'" in refused["detail"]
+
+
+@pytest.mark.parametrize("method", ["set_queue", "add_tasks", "take_over"])
+def test_so_is_a_task_of_a_queue(bridge, desks, method):
+    name, other = f"{method}-1", f"{method}-2"
+    robots = [bridge.robot(name), bridge.robot(other)]
+    for robot in robots:
+        robot.plug_in(1)
+    task = {"task": f"task-{method}", **INTO}
+    asked = {"robot": name, "revision": 0, "tasks": [task]}
+    if method == "take_over":
+        # A queue whose robot waits, with a task that is handed over with a path through the basin.
+        desks["operator"].ask("pause_queue", {"robot": name})
+        task = {**task, "x": 66.0, "y": 40.0}
+        desks["operator"].ask("add_tasks", {**asked, "revision": 1, "tasks": [task]})
+        through = {"task": task["task"], "path": [[66.0, 20.0], [66.0, 40.0]]}
+        asked = {
+            "robot": name,
+            "revision": 2,
+            "shares": [{"robot": other, "revision": 0, "tasks": [through]}],
+        }
+    with pytest.raises(RefusedError, match="the keepout 'Water basin'"):
+        desks["operator"].ask(method, asked)
+    with pytest.raises(RefusedError, match=f"{method}: Operator is operator, and an override takes"):
+        desks["operator"].ask(method, {**asked, "override": WHY})
+    desks["supervisor"].ask(method, {**asked, "override": WHY})
 
 
 @pytest.mark.parametrize("text", ["", "  ", "two\nlines", "x" * 1001])
@@ -85,7 +138,7 @@ def test_a_robot_is_sent_the_map_when_an_operator_asks(desks, bridge, wire):
     first = robot.hear("SetMap")
     assert desks["operator"].ask("send_map", {"robot": robot.name}) == {}
     assert robot.hear("SetMap") == first
-    assert audited(desks["supervisor"], "send_map")[0]["subject"] == robot.name
+    assert audited(desks["supervisor"], "send_map", robot.name)[0]["subject"] == robot.name
     robot.close()
 
 

@@ -14,7 +14,7 @@ from robot_bridge.roads.centrelines import BOTH, FORWARD, centrelines
 from robot_bridge.roads.engines.choice import ENGINES, engines_for
 from robot_bridge.roads.engines.engine import Graph
 from robot_bridge.roads.errors import MissingEngineError, NoRouteError, OffNetworkError
-from robot_bridge.roads.keepouts import edges_through
+from robot_bridge.roads.keepouts import Entry, KeepoutIndex
 from robot_bridge.roads.network import Network, build_network
 from robot_bridge.roads.routes import Restrictions, Router
 
@@ -168,7 +168,35 @@ def test_an_engine_that_is_none_is_refused() -> None:
 def test_edges_through_an_area_are_found_and_those_along_it_are_not() -> None:
     area = np.array([(4.0, -1.0), (6.0, -1.0), (6.0, 1.0), (4.0, 1.0), (4.0, -1.0)])
     beside = np.array([(10.0, 2.0), (12.0, 2.0), (12.0, 4.0), (10.0, 4.0), (10.0, 2.0)])
-    assert edges_through(square(), [[area], [beside]]).tolist() == [0]
+    assert KeepoutIndex([[area], [beside]]).edges_through(square()).tolist() == [0]
+
+
+@pytest.mark.parametrize(
+    ("track", "enters"),
+    [
+        ([(5.0, 5.0)], True),
+        ([(0.0, 5.0)], False),
+        ([(20.0, 5.0)], False),
+        ([(5.0, 2.5)], False),
+        ([(-5.0, 5.0), (15.0, 5.0)], True),
+        ([(-5.0, 5.0), (1.0, 5.0)], True),
+        ([(4.0, 1.0), (6.0, 1.0)], True),
+        ([(-5.0, 0.0), (15.0, 0.0)], False),
+        ([(4.0, 2.5), (6.0, 2.5)], False),
+        ([(1.0, 1.0), (1.0, 1.0)], True),
+    ],
+)
+def test_what_comes_into_a_keepout_is_told_from_what_is_on_its_rim_or_in_its_hole(track, enters) -> None:
+    outer = np.array([(0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (0.0, 10.0), (0.0, 0.0)])
+    hole = np.array([(3.0, 2.0), (7.0, 2.0), (7.0, 3.0), (3.0, 3.0), (3.0, 2.0)])
+    elsewhere = outer + 100.0
+    index = KeepoutIndex([[elsewhere], [outer, hole]])
+    assert index.first_entry([[(50.0, 50.0)], track]) == (Entry(1, 1) if enters else None)
+
+
+def test_without_keepouts_nothing_comes_into_one() -> None:
+    assert KeepoutIndex([]).first_entry([[(0.0, 0.0)]]) is None
+    assert KeepoutIndex([]).edges_through(square()).tolist() == []
 
 
 @settings(max_examples=40, deadline=None)
