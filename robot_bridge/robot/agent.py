@@ -38,6 +38,8 @@ RANGE = 10_000.0
 """metres that the simulated battery lasts."""
 STEER_EVERY = 0.05
 """seconds; a robot steers as often, however late the program is in letting time pass."""
+MOST_DONE = 10_000
+"""Messages that are remembered: many more than a gateway ever has on their way to one robot."""
 GREET_AGAIN = 1.0
 """seconds after which a robot that was refused says Ready once more."""
 
@@ -77,7 +79,8 @@ class Agent:
         self._body = Body(settings.pose, settings.limits)
         self._driver: Driver | None = None
         self._sightings = Sightings(settings.things, settings.image, say)
-        self._done: set[int] = set()
+        self._done: dict[int, None] = {}
+        """The ids of the newest messages that were done, in that order."""
         self._database: str | None = None
         self._admitted = False
         self._greet_in = math.inf
@@ -112,7 +115,7 @@ class Agent:
             return OpAck(id=id)
         refusal = self._do(answer)
         if id is not None:
-            self._done.add(id)
+            self._note_done(id)
         return OpAck(id=id, ok=refusal is None, reason=refusal)
 
     def concerns(self, answer: Answer) -> bool:
@@ -173,6 +176,11 @@ class Agent:
         if database != self._database:
             self._done.clear()
             self._database = database
+
+    def _note_done(self, id: int) -> None:
+        self._done[id] = None
+        if len(self._done) > MOST_DONE:
+            del self._done[next(iter(self._done))]
 
     def _do(self, answer: Answer) -> str | None:
         """Do what a message asks; return why not, or None."""

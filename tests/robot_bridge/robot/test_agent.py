@@ -25,7 +25,7 @@ from robot_bridge.messages import (
     Start,
     Stopped,
 )
-from robot_bridge.robot.agent import Agent, AgentSettings
+from robot_bridge.robot.agent import MOST_DONE, Agent, AgentSettings
 from robot_bridge.robot.body import BodyLimits
 from robot_bridge.robot.sightings import Thing
 from robot_bridge.robotmap.binary import encode
@@ -216,6 +216,16 @@ def test_in_the_same_database_a_new_start_makes_nothing_be_done_twice(robot):
     robot.agent.receive(SetPosEnd(0.0, 0.0), 1)
     robot.live(8)
     assert robot.distance > 2.9
+
+
+def test_of_all_that_was_done_only_the_newest_is_remembered(robot):
+    """A robot that runs for months must not hold every id that it ever heard."""
+    for id in range(1, MOST_DONE + 100):
+        robot.agent.receive(Abort(), id)
+    assert len(robot.agent._done) == MOST_DONE
+    robot.agent.receive(SetPosEnd(3.0, 0.0), id)
+    robot.live(1)
+    assert robot.distance == 0.0, "the newest is known to be done"
 
 
 # --- beginnings, paths, and what it sees ------------------------------------------------------------------
