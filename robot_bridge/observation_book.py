@@ -8,7 +8,7 @@ import json
 from collections.abc import Callable, Sequence
 from typing import Any, Protocol
 
-from .errors import RefusedError
+from .errors import RefusedError, UncertainError
 from .images import check_size, media_type_of
 from .messages import (
     GetObservations,
@@ -62,6 +62,10 @@ class ObservationBook:
         self._lock = asyncio.Lock()
         self._undrawn = False
         """whether something may have been accepted, or rejected, that the maps do not show yet."""
+        self._unsure: set[tuple[str, str]] = set()
+        """robots and sources of what may have been stored, and ``changed`` was not called."""
+        self._untold: set[int] = set()
+        """what may have been reviewed, and ``changed`` was not called."""
 
     async def restore(self) -> None:
         """Draw on the maps what operators accepted before."""
@@ -69,10 +73,16 @@ class ObservationBook:
         self._undrawn = False
 
     async def catch_up(self) -> None:
-        """Draw what could not be drawn when it was reviewed; raises StoreError."""
+        """Draw and tell what could not be drawn or told when it was stored or reviewed; raises StoreError."""
         if self._undrawn:
             async with self._lock:
                 await self.restore()
+        for robot, source in list(self._unsure):
+            self._tell(await self._database.run(observations.find_told, robot, source))
+            self._unsure.discard((robot, source))
+        for id in list(self._untold):
+            self._tell(await self._database.run(observations.find, id))
+            self._untold.discard(id)
 
     async def add(self, robot: Robot, link: str, told: Observed, id: int | None) -> ObservationReport:
         """Store what a robot told by its message ``id``; what it told before is there already.
@@ -86,9 +96,15 @@ class ObservationBook:
             self.check_size(len(told.image))
         new = _new(robot.name, told, _occasion(robot, link, told, id), self._clock())
         most_pending = self._site.settings.observations.most_pending
-        report, is_new = await self._database.run(observations.add, new, most_pending)
-        if is_new:
-            self._changed(report)
+        told_before = new.robot, new.source
+        try:
+            report, is_new = await self._database.run(observations.add, new, most_pending)
+        except UncertainError:
+            self._unsure.add(told_before)
+            raise
+        if is_new or told_before in self._unsure:
+            self._tell(report)
+        self._unsure.discard(told_before)
         return report
 
     def check_size(self, size: int) -> None:
@@ -122,13 +138,19 @@ class ObservationBook:
             values = {name: getattr(review, name) for name in ("semantics", "height", "radius", "reason")}
             is_drawn = report.op == SetObject.__name__
             self._undrawn |= is_drawn
+            self._untold.add(report.observation)
             reviewed = await self._database.run(
                 observations.review, report.observation, state, operator, self._clock(), values
             )
             if is_drawn and ACCEPTED in (report.state, reviewed.state):
                 await self.restore()
-        self._changed(reviewed)
+        self._tell(reviewed)
+        self._untold.discard(reviewed.observation)
         return reviewed
+
+    def _tell(self, report: ObservationReport | None) -> None:
+        if report is not None:
+            self._changed(report)
 
 
 def _new(robot: str, told: Observed, occasion: str, now: float) -> NewObservation:

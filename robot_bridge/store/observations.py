@@ -40,15 +40,21 @@ def add(connection: Connection, told: NewObservation, most_pending: int) -> tupl
 
     :raises RefusedError: when ``most_pending`` of the robot's wait already.
     """
-    query = select(table.c.id).where(table.c.robot == told.robot, table.c.source == told.source)
-    known = connection.scalar(query)
+    known = find_told(connection, told.robot, told.source)
     if known is None:
         _check_room(connection, told.robot, most_pending)
         values = {**told._asdict(), "details": json.dumps(told.details), "state": "pending"}
         key = connection.execute(insert(table).values(values)).inserted_primary_key
         assert key is not None
         return _one(connection, int(key[0])), True
-    return _one(connection, int(known)), False
+    return known, False
+
+
+def find_told(connection: Connection, robot: str, source: str) -> ObservationReport | None:
+    """Return what a robot told under ``source``, None where that is not stored."""
+    told = table.c.robot == robot, table.c.source == source
+    found = connection.execute(select(*_REPORTED).where(*told)).mappings().one_or_none()
+    return None if found is None else _report(found)
 
 
 def find(connection: Connection, id: int) -> ObservationReport | None:

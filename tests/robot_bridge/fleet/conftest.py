@@ -209,7 +209,7 @@ class RoadYard(Yard):
     async def wait_at_the_crossing(self):
         """Let r1 stand where it waits for r2, the first part of its way driven; return how it waits."""
         await self.drive("one", [(16.0, 8.0), (44.0, 22.0), (90.0, 22.0)])
-        await self.drive("two", [(13.0, 22.0), (60.0, 22.0), (60.0, 40.0)], robot="r2")
+        await self.drive("two", [(13.0, 22.0), (56.0, 22.0), (56.0, 40.0)], robot="r2")
         await self.fleet.traffic.resolve(ResolveConflict("r1", "r2", "waiting"), "Ada")
         (hold,) = (await self.fleet.traffic.conflicts()).waiting
         await self.take()

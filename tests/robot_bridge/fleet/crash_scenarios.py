@@ -42,7 +42,7 @@ LAP = [BEGIN, (44.0, 40.0), (44.0, 43.0), (41.0, 43.0), (41.0, 41.0)]
 """A lap that ends beside its beginning, so short that it is driven while no gateway is there."""
 OUT_OF_REACH = 15
 """seconds for which robots are out of reach: they come to the end of what they do, and are lost."""
-CROSSING = [(16.0, 8.0), (44.0, 22.0), (90.0, 22.0)], [(13.0, 22.0), (60.0, 22.0), (60.0, 40.0)]
+CROSSING = [(16.0, 8.0), (44.0, 22.0), (90.0, 22.0)], [(13.0, 22.0), (56.0, 22.0), (56.0, 40.0)]
 """The ways of r1 and r2, who meet where the road from the south joins the ring."""
 
 

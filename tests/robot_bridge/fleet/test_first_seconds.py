@@ -199,7 +199,7 @@ async def test_a_robot_that_waits_is_sent_on_although_it_was_stored_where_it_had
 
 async def test_nobody_gives_way_from_where_he_was(roads):
     await roads.drive("one", [(16.0, 8.0), (44.0, 22.0), (90.0, 22.0)])
-    await roads.drive("two", [(13.0, 22.0), (60.0, 22.0), (60.0, 40.0)], robot="r2")
+    await roads.drive("two", [(13.0, 22.0), (56.0, 22.0), (56.0, 40.0)], robot="r2")
     await roads.fleet.save()
     await roads.restart()
     with pytest.raises(RefusedError, match="it is not known where r1 is now"):

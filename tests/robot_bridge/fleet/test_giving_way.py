@@ -51,7 +51,7 @@ async def test_a_head_on_conflict_is_resolved_by_another_way(roads):
 async def test_a_robot_waits_for_another_at_a_crossing_and_is_sent_on(each):
     # They meet where the road from the south joins the ring at (44, 22).
     await each.drive("one", [(16.0, 8.0), (44.0, 22.0), (90.0, 22.0)])
-    await each.drive("two", [(13.0, 22.0), (60.0, 22.0), (60.0, 40.0)], robot="r2")
+    await each.drive("two", [(13.0, 22.0), (56.0, 22.0), (56.0, 40.0)], robot="r2")
     assert len((await each.fleet.traffic.conflicts()).conflicts) == 1
     resolved = await each.fleet.traffic.resolve(ResolveConflict("r1", "r2", "waiting"), "Ada")
     assert (resolved.robot, resolved.became) == ("r1", "waits")
@@ -93,7 +93,7 @@ async def test_a_robot_with_a_target_waits_in_the_same_way_and_keeps_its_task(ro
     await roads.fleet.finish([outcome], [], acks=False)
     await roads.take()
     metres = math.dist((16, 8), (44, 22)) + 1
-    await roads.drive("two", [(44.0 - metres, 22.0), (60.0, 22.0), (60.0, 40.0)], robot="r2")
+    await roads.drive("two", [(44.0 - metres, 22.0), (56.0, 22.0), (56.0, 40.0)], robot="r2")
     resolved = await roads.fleet.traffic.resolve(ResolveConflict("r1", "r2", "waiting"), "Ada")
     assert resolved.command == "command-cone"
     (hold,) = (await roads.fleet.traffic.conflicts()).waiting
@@ -111,7 +111,7 @@ async def test_a_robot_with_a_target_waits_in_the_same_way_and_keeps_its_task(ro
 
 async def test_a_robot_that_waits_and_is_told_otherwise_waits_no_longer(roads):
     await roads.drive("one", [(16.0, 8.0), (44.0, 22.0), (90.0, 22.0)])
-    await roads.drive("two", [(13.0, 22.0), (60.0, 22.0), (60.0, 40.0)], robot="r2")
+    await roads.drive("two", [(13.0, 22.0), (56.0, 22.0), (56.0, 40.0)], robot="r2")
     await roads.fleet.traffic.resolve(ResolveConflict("r1", "r2", "waiting"), "Ada")
     await roads.send("other", x=20.0, y=8.0)
     await roads.fleet.watch_roads()
@@ -150,7 +150,7 @@ async def test_a_robot_that_is_aborted_while_it_waits_is_sent_on_by_nobody(each)
 
 async def test_who_waits_is_stored_with_what_sends_it_there_or_nothing_is(roads, monkeypatch):
     await roads.drive("one", [(16.0, 8.0), (44.0, 22.0), (90.0, 22.0)])
-    await roads.drive("two", [(13.0, 22.0), (60.0, 22.0), (60.0, 40.0)], robot="r2")
+    await roads.drive("two", [(13.0, 22.0), (56.0, 22.0), (56.0, 40.0)], robot="r2")
 
     def full(_connection, _row):
         raise StoreError("the disk is full")

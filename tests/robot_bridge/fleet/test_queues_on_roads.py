@@ -33,7 +33,7 @@ async def set_off_with_a_queue(roads, **cone):
     assert await roads.take() == ["SetPath"]
     for x in (8.0, 12.0, 16.0):
         await roads.at(x, x / 2, v=1.0)
-    await roads.drive("two", [(13.0, 22.0), (60.0, 22.0), (60.0, 40.0)], robot="r2")
+    await roads.drive("two", [(13.0, 22.0), (56.0, 22.0), (56.0, 40.0)], robot="r2")
 
 
 async def queue_of(roads):

@@ -55,5 +55,5 @@ async def test_a_way_is_as_wide_as_the_robots(roads, own_site):
     broad = replace(wide, version=3, routes=replace(wide.routes, robot_width_m=50.0))
     own_site.take_over(replace(site, centrelines=tuple(lines), settings=broad))
     await roads.fleet.site_changed()
-    with pytest.raises(RefusedError, match="roads nearer that may not be used: narrower than 50 m"):
+    with pytest.raises(RefusedError, match="wide, narrower than 50 m"):
         roads.fleet.roads.path(*there)

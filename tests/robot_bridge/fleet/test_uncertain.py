@@ -93,13 +93,54 @@ async def test_a_robot_that_could_not_be_led_round_is_when_the_database_is_back(
 @DONE
 async def test_a_robot_waits_if_that_is_stored(roads, lose, done):
     await roads.drive("one", [(16.0, 8.0), (44.0, 22.0), (90.0, 22.0)])
-    await roads.drive("two", [(13.0, 22.0), (60.0, 22.0), (60.0, 40.0)], robot="r2")
+    await roads.drive("two", [(13.0, 22.0), (56.0, 22.0), (56.0, 40.0)], robot="r2")
     lose(roads, write_drafts, done)
     with pytest.raises(UncertainError):
         await roads.fleet.traffic.resolve(ResolveConflict("r1", "r2", "waiting"), "Ada")
     await roads.fleet.watch_roads()
     waiting = (await roads.fleet.traffic.conflicts()).waiting
     assert [one.robot for one in waiting] == (["r1"] if done else [])
+
+
+@DONE
+async def test_an_observation_is_told_to_operators_if_it_is_stored(roads, lose, done):
+    await roads.ready()
+    lose(roads, observations.add, done)
+    with pytest.raises(UncertainError):
+        await roads.fleet.receive("r1", "sql", SetObject(100.0, 80.0, "cone-7"), 7)
+    assert "observation" not in roads.news
+    await roads.fleet.save()
+    assert [roads.news[name]["object"] for name in roads.news if name == "observation"] == ["cone-7"] * done
+    # Each is told once.
+    roads.news.clear()
+    await roads.fleet.save()
+    assert "observation" not in roads.news
+
+
+async def test_an_observation_that_its_robot_tells_again_meanwhile_is_told_to_operators_once(roads, lose):
+    await roads.ready()
+    lose(roads, observations.add, True)
+    with pytest.raises(UncertainError):
+        await roads.fleet.receive("r1", "sql", SetObject(100.0, 80.0, "cone-7"), 7)
+    await roads.fleet.receive("r1", "sql", SetObject(100.0, 80.0, "cone-7"), 7)
+    assert roads.news.pop("observation")["object"] == "cone-7"
+    await roads.fleet.save()
+    assert "observation" not in roads.news
+
+
+@pytest.mark.parametrize(
+    ("work", "error"), [(observations.review, UncertainError), (observations.on_map, StoreError)]
+)
+async def test_a_review_is_told_to_operators_whatever_failed_after_it_was_stored(roads, lose, work, error):
+    await roads.ready()
+    await roads.fleet.receive("r1", "sql", SetObject(100.0, 80.0, "cone-7"), 7)
+    (seen,) = await roads.fleet.observations.newest(GetObservations())
+    roads.news.clear()
+    lose(roads, work, True, error)
+    with pytest.raises(error):
+        await roads.fleet.observations.review(ReviewObservation(seen.observation, True), "Ada")
+    await roads.fleet.save()
+    assert roads.news["observation"]["state"] == "accepted"
 
 
 @pytest.mark.parametrize("error", [UncertainError, StoreError])
