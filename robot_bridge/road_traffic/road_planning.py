@@ -164,10 +164,7 @@ class RoadPlanner:
         except OffNetworkError as error:
             if not all(roads.is_near(*place) for place in (start, goal)):
                 return str(error)
-            raise NoWayError(
-                f"{error} There are roads nearer that may not be used: narrower than {width:g} m, closed, or "
-                "of another surface."
-            ) from error
+            raise NoWayError(str(error)) from error
         except NoRouteError as error:
             raise NoWayError(str(error)) from error
 

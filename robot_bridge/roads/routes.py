@@ -118,8 +118,8 @@ class Router:
         """
         wanted = wanted or Restrictions()
         ready = self._ready_for(wanted)
-        begin = self._foothold("start", start, reach, ready.open)
-        end = self._foothold("goal", goal, reach, ready.open)
+        begin = self._foothold("start", start, reach, wanted)
+        end = self._foothold("goal", goal, reach, wanted)
         with self._without(avoid):
             stretches = self._stretches(begin, end, ready.engine, wanted)
         if stretches is None:
@@ -147,16 +147,27 @@ class Router:
         finally:
             self.open(shut)
 
-    def _foothold(self, what: str, place: Place, reach: float, allowed: NDArray[np.bool_]) -> Foothold:
+    def _foothold(self, what: str, place: Place, reach: float, wanted: Restrictions) -> Foothold:
         if not all(math.isfinite(value) for value in place):
             raise OffNetworkError(f"The {what} {_told(place)} is no place: give two numbers in metres.")
-        found = self._nearest.nearest(*place, reach, allowed)
+        found = self._nearest.nearest(*place, reach, self._ready_for(wanted).open)
         if found is None:
+            shut = self._nearest.nearest(*place, reach)
+            why = "" if shut is None else f" (the road {shut.away:.1f} m away {self._bar(shut.edge, wanted)})"
             raise OffNetworkError(
-                f"The {what} {_told(place)} is more than {reach:g} m from every road that may be used: "
+                f"The {what} {_told(place)} is more than {reach:g} m from every road that may be used{why}: "
                 "choose a place nearer to a road, or allow a greater distance."
             )
         return found
+
+    def _bar(self, edge: int, wanted: Restrictions) -> str:
+        """Return why ``edge`` may not be used."""
+        if self._closed[edge]:
+            return "is closed"
+        edges = self.network.edges
+        if edges.width[edge] < wanted.least_width:
+            return f"is {edges.width[edge]:g} m wide, narrower than {wanted.least_width:g} m"
+        return f"has another surface, {str(edges.surface[edge]) or 'none'}"
 
     def _costs(self, wanted: Restrictions) -> Floats:
         """Return what each edge costs, whatever is forbidden."""

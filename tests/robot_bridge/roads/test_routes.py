@@ -165,6 +165,24 @@ def test_an_engine_that_is_none_is_refused() -> None:
         engines_for(Graph(np.zeros((1, 2)), np.empty(0, int), np.empty(0, int)), "magic")
 
 
+@pytest.mark.parametrize(
+    ("roads", "wanted", "why"),
+    [
+        ({"closed": True}, {}, "is closed"),
+        ({"width": 2.0}, {"least_width": 2.5}, "is 2 m wide, narrower than 2.5 m"),
+        ({"surface": "sand"}, {"surfaces": frozenset({"asphalt"})}, "has another surface, sand"),
+        ({"surface": ""}, {"surfaces": frozenset({"asphalt"})}, "has another surface, none"),
+    ],
+)
+def test_it_is_said_why_the_road_that_is_near_may_not_be_used(roads, wanted, why) -> None:
+    line = [np.array([(0.0, 0.0), (10.0, 0.0)])]
+    router = Router(build_network(centrelines(line, **roads)))
+    with pytest.raises(OffNetworkError, match=rf"may be used \(the road 1\.0 m away {why}\): choose"):
+        router.route((5.0, 1.0), (9.0, 0.0), Restrictions(**wanted))
+    with pytest.raises(OffNetworkError, match="from every road that may be used: choose"):
+        router.route((5.0, 100.0), (9.0, 0.0), Restrictions(**wanted))
+
+
 def test_edges_through_an_area_are_found_and_those_along_it_are_not() -> None:
     area = np.array([(4.0, -1.0), (6.0, -1.0), (6.0, 1.0), (4.0, 1.0), (4.0, -1.0)])
     beside = np.array([(10.0, 2.0), (12.0, 2.0), (12.0, 4.0), (10.0, 4.0), (10.0, 2.0)])
