@@ -7,6 +7,7 @@ are shown as they come.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 from qgis.core import QgsApplication
@@ -45,6 +46,12 @@ def tr_count(number: int, one: str, many: str, /, **values: object) -> str:
     if translated == many.replace("%n", str(number)) and number == 1:
         translated = one
     return translated.format(**values) if values else translated
+
+
+def first_of(texts: Sequence[str], most: int = 3) -> list[str]:
+    """Return the first ``most`` of ``texts`` and how many more there are: hundreds fit into no sentence."""
+    more = len(texts) - most
+    return [*texts[:most], tr("and {more} more", more=more)] if more > 0 else list(texts)
 
 
 class Language:

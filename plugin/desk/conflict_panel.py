@@ -5,7 +5,7 @@ from __future__ import annotations
 from qgis.PyQt.QtWidgets import QHBoxLayout, QSizePolicy, QToolButton, QVBoxLayout, QWidget
 
 from ...robot_bridge.messages import ConflictReport, HoldReport
-from ..language import tr
+from ..language import first_of, tr
 from .colours import DOUBTFUL_STYLE
 from .desk import Desk
 from .road_board import time_of_day
@@ -44,7 +44,8 @@ class ConflictPanel(QWidget):
             label.setText(_in_words(conflict))
         more = len(roads.conflicts) - SHOWN
         told = [tr("and {more} more: see the layer Conflicts", more=more)] if more > 0 else []
-        self._rest.setText("\n".join(told + [_waiting(hold) for hold in roads.waiting]))
+        told += first_of([_waiting(hold) for hold in roads.waiting], SHOWN)
+        self._rest.setText("\n".join(told))
         self._rest.setVisible(bool(self._rest.text()))
         self.setVisible(bool(roads.conflicts or roads.waiting))
 

@@ -111,6 +111,9 @@ class Desk(QObject):
         self._timer = QTimer(self)
         self._timer.setInterval(PULL_EVERY_MS)
         self._timer.timeout.connect(self.pull)
+        self._after_pull = QTimer(self)
+        self._after_pull.setSingleShot(True)
+        self._after_pull.timeout.connect(self._pass_on)
 
     # --- the link ---
 
@@ -135,12 +138,16 @@ class Desk(QObject):
     def shut_down(self) -> None:
         """Stop the timer and wait for the connection's threads."""
         self._timer.stop()
+        self._after_pull.stop()
         self.checks.stop()
         self._check_layers.remove()
         self.connection.shut_down()
 
     def pull(self) -> None:
-        """Take in what arrived since the last call."""
+        """Take in what arrived since the last call.
+
+        ``pulled`` follows in a piece of its own: the window looks for the operator's events in between.
+        """
         news = self.connection.take()
         if news.link != self.link:
             self.link = news.link
@@ -151,6 +158,9 @@ class Desk(QObject):
             self._take_site(news.site, news.is_greeting)
         self._take_news(news)
         self.orders.watch()
+        self._after_pull.start(0)
+
+    def _pass_on(self) -> None:
         self.beat.pulls += 1
         self.pulled.emit()
 
@@ -323,7 +333,7 @@ class Desk(QObject):
                 "{in_words} was not sent, since only now this is known: {warnings} Ask for it again to send "
                 "it all the same.",
                 in_words=draft.in_words(),
-                warnings=" ".join(unseen),
+                warnings=in_brief(unseen),
             )
         )
 

@@ -117,7 +117,7 @@ def _in_words(draft: Draft) -> str:
         )
     if draft.fault:
         return f"{draft.in_words()}: {draft.fault}."
-    warnings = f" {' '.join(draft.findings.warnings)}" if draft.findings.warnings else ""
+    warnings = f" {in_brief(draft.findings.warnings)}" if draft.findings.warnings else ""
     if draft.kind == TARGETS:
         return tr(
             "{in_words}.{warnings} Add to queue lets them be placed one after the other.",

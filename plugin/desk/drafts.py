@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import chain
@@ -12,7 +13,7 @@ import numpy as np
 from qgis.PyQt.QtCore import QObject, pyqtSignal
 
 from ...robot_bridge.messages import SetPath, SetPosEnd, SetPosIni, to_json
-from ..language import tr
+from ..language import tr, tr_count
 
 Point = tuple[float, float]
 
@@ -144,7 +145,7 @@ class Draft:
                 turned=turned,
             )
         if self.kind == TARGETS:
-            return tr("{points} cones for {robot}", points=len(self.points), robot=self.robot)
+            return tr_count(len(self.points), "1 cone for {robot}", "%n cones for {robot}", robot=self.robot)
         told = tr("; along the roads {note}", note=self.note) if self.note else ""
         return tr(
             "Route for {robot}: {points} points, {length:.1f} m{told}",
@@ -227,7 +228,7 @@ class DraftBoard(QObject):
         self.changed.emit()
 
 
-def in_brief(texts: tuple[str, ...], most: int = 3) -> str:
+def in_brief(texts: Sequence[str], most: int = 3) -> str:
     """Return the first of ``texts`` and how many more there are: of a whole layer there may be hundreds."""
     more = len(texts) - most
     return " ".join([*texts[:most], *([tr("And {more} more.", more=more)] if more > 0 else [])])

@@ -8,7 +8,7 @@ from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtWidgets import QAction, QFrame, QGridLayout, QLabel, QToolButton, QWidget
 
 from ...robot_bridge.messages import EmergencyReport
-from ..language import tr
+from ..language import first_of, tr, tr_count
 from ..wire.status import Phase
 from .desk import Desk
 
@@ -97,10 +97,11 @@ def in_words(report: EmergencyReport | None, asked: bool, connected: bool) -> st
 
 def _counts(report: EmergencyReport) -> list[str]:
     lines = [
-        tr(
-            "{acknowledged} of {robots} robots acknowledged, {standing} seen to stand",
+        tr_count(
+            report.robots,
+            "{acknowledged} of 1 robot acknowledged, {standing} seen to stand",
+            "{acknowledged} of %n robots acknowledged, {standing} seen to stand",
             acknowledged=report.acknowledged,
-            robots=report.robots,
             standing=report.standing,
         )
     ]
@@ -116,5 +117,4 @@ def _counts(report: EmergencyReport) -> list[str]:
 
 
 def _names(names: list[str]) -> str:
-    more = len(names) - MOST_NAMES
-    return ", ".join(names[:MOST_NAMES]) + (tr(" and {more} more", more=more) if more > 0 else "")
+    return ", ".join(first_of(names, MOST_NAMES))

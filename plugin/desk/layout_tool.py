@@ -16,7 +16,7 @@ from ...robot_bridge.layouts.cone import Cone
 from ...robot_bridge.layouts.layout import Layout
 from ...robot_bridge.layouts.placing import placed
 from ..errors import FleetError
-from ..language import tr
+from ..language import tr_count
 from .cone_store import ConeStore
 from .placement import transformed
 
@@ -166,10 +166,11 @@ class LayoutTool(QgsMapTool):
         if findings:
             wrong = len({finding.cone for finding in findings})
             self._say(
-                tr(
-                    "{wrong} of {cones} cones should not stand there: {text} All are in the layer {layer}.",
+                tr_count(
+                    len(cones),
+                    "The cone should not stand there: {text} It is in the layer {layer}.",
+                    "{wrong} of %n cones should not stand there: {text} All are in the layer {layer}.",
                     wrong=wrong,
-                    cones=len(cones),
                     text=findings[0].text,
                     layer=layer.name(),
                 ),
@@ -177,9 +178,10 @@ class LayoutTool(QgsMapTool):
             )
         else:
             self._say(
-                tr(
-                    "{cones} cones are in the layer {layer}.",
-                    cones=len(cones),
+                tr_count(
+                    len(cones),
+                    "1 cone is in the layer {layer}.",
+                    "%n cones are in the layer {layer}.",
                     layer=layer.name(),
                 ),
                 False,

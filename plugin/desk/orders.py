@@ -10,7 +10,7 @@ from qgis.PyQt.QtCore import QObject, pyqtSignal
 
 from ...robot_bridge.messages import Abort, AbortAll, ClearEmergencyStop, EmergencyStop, Send, to_json
 from ..errors import NotSentError
-from ..language import tr
+from ..language import tr, tr_count
 from ..wire.outbox import Answer, Order
 from .drafts import TARGETS, Draft
 
@@ -139,7 +139,12 @@ class Orders(QObject):
             self.accepted.emit(tr("{words}: queued", words=pending.words))
         else:
             self.accepted.emit(
-                tr("{words}: sent to {commands} robots", words=pending.words, commands=len(commands))
+                tr_count(
+                    len(commands),
+                    "{words}: sent to 1 robot",
+                    "{words}: sent to %n robots",
+                    words=pending.words,
+                )
             )
 
     def watch(self) -> None:

@@ -9,7 +9,7 @@ from qgis.gui import QgisInterface, QgsCustomDropHandler
 from qgis.PyQt.QtCore import QMimeData, QTimer
 
 from ..errors import FleetError
-from ..language import tr
+from ..language import tr, tr_count
 from ..sites.published_layers import LoadedSite, load_site, loaded_already, site_folder
 from .notices import Notices
 
@@ -72,10 +72,10 @@ class SiteDrop(QgsCustomDropHandler):
 
 
 def _in_words(site: LoadedSite) -> str:
-    text = tr("{site}: {count} layers loaded.", site=site.name, count=len(site.layers))
+    text = tr_count(len(site.layers), "{site}: 1 layer loaded.", "{site}: %n layers loaded.", site=site.name)
     if site.without_role:
         text += tr(
-            " {layers} have no role: other layers of the project have it. Plugins > Fleet "
+            " Without a role, since other layers of the project have it: {layers}. Plugins > Fleet "
             "Supervisor > Layer roles changes that.",
             layers=", ".join(site.without_role),
         )

@@ -24,7 +24,7 @@ from qgis.core import (
 from qgis.gui import QgsMessageBar
 from qgis.utils import iface
 
-from ..language import tr, tr_page
+from ..language import tr, tr_count, tr_page
 from .errors import ParameterError, shown_by_processing
 from .fleet_algorithm import FleetAlgorithm, Parameters
 from .placed_cones import deviations, read_cones
@@ -112,7 +112,11 @@ class AsPlacedReport(FleetAlgorithm):
             cones, odd = read
             if odd:
                 feedback.pushWarning(
-                    tr("{odd} features have no planned or no placed position; they are left out.", odd=odd)
+                    tr_count(
+                        odd,
+                        "1 feature has no planned or no placed position; it is left out.",
+                        "%n features have no planned or no placed position; they are left out.",
+                    )
                 )
             tolerance = self.parameterAsDouble(parameters, TOLERANCE, context)
             figures = deviations(cones, tolerance)
@@ -130,10 +134,11 @@ class AsPlacedReport(FleetAlgorithm):
                 return {}
         self._written = file
         feedback.pushInfo(
-            tr(
-                "{within} of {count} cones are within {tolerance:g} m; the worst is {most:.3f} m off.",
+            tr_count(
+                figures.count,
+                "{within} of 1 cone is within {tolerance:g} m; it is {most:.3f} m off.",
+                "{within} of %n cones are within {tolerance:g} m; the worst is {most:.3f} m off.",
                 within=figures.within,
-                count=figures.count,
                 tolerance=tolerance,
                 most=figures.most,
             )

@@ -26,7 +26,7 @@ from ...robot_bridge.assignment.plan import Plan
 from ...robot_bridge.assignment.plan_json import to_json
 from ...robot_bridge.assignment.scheduling import BALANCED, OBJECTIVES
 from ...robot_bridge.assignment.solving import AUTOMATIC, METHODS, Wanted, assign
-from ..language import tr, tr_page
+from ..language import tr, tr_count, tr_page
 from .errors import ParameterError, shown_by_processing
 from .fleet_algorithm import FleetAlgorithm, Parameters, fields_of
 from .job_source import JobSource, job_parameters
@@ -203,10 +203,10 @@ def _report(plan: Plan, feedback: QgsProcessingFeedback) -> None:
         cones = sum(len(trip.targets) for trip in one.trips)
         feedback.pushInfo(
             tr(
-                "Robot {id}: {cones} cones on {trips} trips, {metres:.0f} m, done after {end_s:.0f} s",
+                "Robot {id}: {cones} on {trips}, {metres:.0f} m, done after {end_s:.0f} s",
                 id=one.robot.id,
-                cones=cones,
-                trips=len(one.trips),
+                cones=tr_count(cones, "1 cone", "%n cones"),
+                trips=tr_count(len(one.trips), "1 trip", "%n trips"),
                 metres=one.metres,
                 end_s=one.end_s,
             )

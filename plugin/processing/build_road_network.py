@@ -16,7 +16,7 @@ from qgis.core import (
 )
 
 from ...robot_bridge.roads.network import Network
-from ..language import tr, tr_page
+from ..language import tr, tr_count, tr_page
 from .errors import shown_by_processing
 from .fleet_algorithm import FleetAlgorithm, Parameters, fields_of
 from .road_source import (
@@ -121,12 +121,13 @@ class BuildRoadNetwork(FleetAlgorithm):
         parts = len(set(network.parts.tolist()))
         figures = (len(network), len(network.nodes), parts, len(repairs), len(reading.warnings))
         feedback.pushInfo(
-            tr(
-                "{edges} edges, {nodes} nodes, {parts} parts, {repairs} repairs",
-                edges=figures[0],
-                nodes=figures[1],
-                parts=parts,
-                repairs=len(repairs),
+            ", ".join(
+                (
+                    tr_count(len(network), "1 edge", "%n edges"),
+                    tr_count(len(network.nodes), "1 node", "%n nodes"),
+                    tr_count(parts, "1 part", "%n parts"),
+                    tr_count(len(repairs), "1 repair", "%n repairs"),
+                )
             )
         )
         return {**made, **dict(zip(NUMBERS, figures, strict=True))}

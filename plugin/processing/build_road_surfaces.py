@@ -23,7 +23,7 @@ from ...robot_bridge.roads.surfaces.generation import generate
 from ...robot_bridge.roads.surfaces.outlines import areas_of, edges_of
 from ...robot_bridge.roads.surfaces.surface import GENERATED, Surface
 from ...robot_bridge.sites.frame import SiteFrame
-from ..language import tr, tr_page
+from ..language import tr, tr_count, tr_page
 from ..sites.ground_reading import GroundReading, read_surfaces
 from ..sites.obstacle_source import obstacle_sources
 from ..sites.placing import SitePlacing
@@ -154,10 +154,12 @@ class BuildRoadSurfaces(FleetAlgorithm):
         drawn.items = [one for one in drawn.items if one.origin != GENERATED]
         if old:
             drawn.warnings.append(
-                tr(
-                    "{old} of the surfaces that are given as drawn say that they were generated (field "
+                tr_count(
+                    len(old),
+                    "1 of the surfaces that are given as drawn says that it was generated (field "
+                    "origin); it is left out and made anew",
+                    "%n of the surfaces that are given as drawn say that they were generated (field "
                     "origin); they are left out and made anew",
-                    old=len(old),
                 )
             )
         return drawn if drawn.complete else None

@@ -22,7 +22,7 @@ from qgis.core import (
 from ...robot_bridge.compass import heading_of
 from ...robot_bridge.layouts.checks import Finding
 from ...robot_bridge.layouts.cone import Cone
-from ..language import tr
+from ..language import tr, tr_count
 from .cone_ground import Ground
 from .errors import ParameterError
 from .fleet_algorithm import FleetAlgorithm, Parameters, fields_of
@@ -105,7 +105,7 @@ class ConeSetup:
                 made[name] = source
                 fill(sink, fields, rows[name], feedback)
         algorithm.remember(made)
-        feedback.pushInfo(tr("{cones} cones", cones=len(cones)))
+        feedback.pushInfo(tr_count(len(cones), "1 cone", "%n cones"))
         return {**made, CONE_COUNT: len(cones), FINDING_COUNT: len(findings)}
 
 

@@ -41,6 +41,7 @@ from .map_profile import profile_parameter
 from .map_shaping import shaping_parameters
 from .map_window import window_parameters, window_problem
 from .obstacle_outlines import obstacle_outlines
+from .obstacle_words import obstacles_in_words
 from .whole_file import write_whole
 
 NUMBERS = {
@@ -186,13 +187,7 @@ def _report_size(
             y_max=border.y_max,
         )
     )
-    feedback.pushInfo(
-        tr(
-            "{obstacles} obstacles, {segment_count} segments",
-            obstacles=len(robot_map.obstacles),
-            segment_count=robot_map.segment_count,
-        )
-    )
+    feedback.pushInfo(obstacles_in_words(len(robot_map.obstacles), robot_map.segment_count))
     feedback.pushInfo(
         tr(
             "{size} bytes of text, {ratio:.2f} bytes/m² (paper 1: about 3 bytes/m² as text)",

@@ -25,7 +25,7 @@ from qgis.core import (
 from ...robot_bridge.robotmap.errors import RobotMapError
 from ...robot_bridge.robotmap.index import OutlineIndex
 from ..errors import FleetError
-from ..language import tr, tr_page
+from ..language import tr, tr_count, tr_page
 from .errors import shown_by_processing
 from .export_plan import OBSTACLES
 from .export_robot_map import value_parameters
@@ -217,9 +217,9 @@ class _TileMaker:
             warnings += 1
         feedback.pushInfo(
             tr(
-                "{rows} tiles, {segments} segments, {size} bytes",
-                rows=len(self.rows),
-                segments=segments,
+                "{tiles}, {segments}, {size} bytes",
+                tiles=tr_count(len(self.rows), "1 tile", "%n tiles"),
+                segments=tr_count(segments, "1 segment", "%n segments"),
                 size=size,
             )
         )

@@ -27,7 +27,7 @@ from ...robot_bridge.roads.engines.engine import Graph
 from ...robot_bridge.roads.network import Network
 from ...robot_bridge.roads.route import Route
 from ...robot_bridge.roads.routes import REACH, Restrictions, Router
-from ..language import tr, tr_page
+from ..language import tr, tr_count, tr_page
 from .errors import shown_by_processing
 from .fleet_algorithm import FleetAlgorithm, Parameters, fields_of
 from .graph_engine import GraphEngine
@@ -244,11 +244,11 @@ def _stretches(route: Route, reading: RoadReading):
 def _report(route: Route, path: DensePath, feedback: QgsProcessingFeedback) -> None:
     feedback.pushInfo(
         tr(
-            "{metres:.1f} m, {seconds:.1f} s, {points} points, found by {engine}; start {off_start:.2f} m "
+            "{metres:.1f} m, {seconds:.1f} s, {points}, found by {engine}; start {off_start:.2f} m "
             "and goal {off_goal:.2f} m from the road",
             metres=route.metres,
             seconds=route.seconds,
-            points=len(path.points),
+            points=tr_count(len(path.points), "1 point", "%n points"),
             engine=route.engine,
             off_start=route.off_start,
             off_goal=route.off_goal,

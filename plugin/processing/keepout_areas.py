@@ -14,7 +14,7 @@ from qgis.core import (
 
 from ...robot_bridge.roads.routes import Router
 from ...robot_bridge.sites.frame import SiteFrame
-from ..language import tr
+from ..language import tr, tr_count
 from ..sites.ground_reading import read_areas
 from ..sites.keepout_edges import edges_through
 from ..sites.obstacle_source import obstacle_sources
@@ -65,6 +65,10 @@ class KeepoutAreas:
         if closed:
             router.close(closed)
             feedback.pushInfo(
-                tr("{closed} edges lead through areas to be avoided, and are closed", closed=len(closed))
+                tr_count(
+                    len(closed),
+                    "1 edge leads through areas to be avoided, and is closed",
+                    "%n edges lead through areas to be avoided, and are closed",
+                )
             )
         return reading.warnings

@@ -24,6 +24,7 @@ from ..language import tr, tr_page
 from .errors import shown_by_processing
 from .fleet_algorithm import FleetAlgorithm, Parameters, fields_of
 from .map_file import MAP, MapPlace, file_problem, map_parameters, map_place, read_map_file
+from .obstacle_words import obstacles_in_words
 from .sinks import fill, line, lines, polygon
 
 AREAS, LINES, SEGMENTS, BORDER = "AREAS", "LINES", "SEGMENTS", "BORDER"
@@ -133,13 +134,7 @@ class LoadRobotMap(FleetAlgorithm):
             if feedback.isCanceled():
                 return {}
         self.remember(made)
-        feedback.pushInfo(
-            tr(
-                "{obstacles} obstacles, {segment_count} segments",
-                obstacles=len(robot_map.obstacles),
-                segment_count=robot_map.segment_count,
-            )
-        )
+        feedback.pushInfo(obstacles_in_words(len(robot_map.obstacles), robot_map.segment_count))
         figures = (len(robot_map.obstacles), robot_map.segment_count, len(robot_map.warnings))
         return {**made, **dict(zip(NUMBERS, figures, strict=True))}
 

@@ -13,6 +13,7 @@ from ...robot_bridge.robotmap.window import Window
 from ..language import tr
 from ..sites.reading import Reading, read_outlines
 from .export_plan import ObstaclePlan
+from .obstacle_words import obstacles_in_words
 
 
 def obstacle_outlines(
@@ -48,11 +49,9 @@ def _reduced(
     # Fewer walls can be more obstacles: what is left of a ring is open chains.
     feedback.pushInfo(
         tr(
-            "{obstacles} obstacles with {segments} segments became {obstacles_left} with {segments_left}",
-            obstacles=before[0],
-            segments=before[1],
-            obstacles_left=after[0],
-            segments_left=after[1],
+            "{before} became {after}",
+            before=obstacles_in_words(*before),
+            after=obstacles_in_words(*after),
         )
     )
     return made

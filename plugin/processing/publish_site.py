@@ -23,7 +23,7 @@ from qgis.core import (
 
 from ...robot_bridge.sites.settings import Bounds, LivenessLimits, SiteSettings
 from ..errors import FleetError
-from ..language import tr
+from ..language import tr, tr_count
 from ..sites.content_reading import read_content
 from ..sites.ground_reading import DEFAULT_WIDTH_M
 from ..sites.publication import next_version, publish
@@ -139,15 +139,15 @@ class PublishSite(FleetAlgorithm):
         figures = (settings.version, *map(len, groups), len(content.warnings))
         feedback.pushInfo(
             tr(
-                "Site {id} version {version} is published in {folder}: {outlines} obstacle outlines, "
-                "{centrelines} centrelines, {surfaces} road surfaces, {keepouts} keepouts; bounds {bounds} m",
+                "Site {id} version {version} is published in {folder}: {outlines}, "
+                "{centrelines}, {surfaces}, {keepouts}; bounds {bounds} m",
                 id=settings.id,
                 version=settings.version,
                 folder=plan.folder,
-                outlines=figures[1],
-                centrelines=figures[2],
-                surfaces=figures[3],
-                keepouts=figures[4],
+                outlines=tr_count(figures[1], "1 obstacle outline", "%n obstacle outlines"),
+                centrelines=tr_count(figures[2], "1 centreline", "%n centrelines"),
+                surfaces=tr_count(figures[3], "1 road surface", "%n road surfaces"),
+                keepouts=tr_count(figures[4], "1 keepout", "%n keepouts"),
                 bounds=", ".join(f"{edge:.10g}" for edge in settings.bounds),
             )
         )

@@ -26,7 +26,7 @@ from qgis.core import (
 )
 from qgis.PyQt.QtCore import Qt
 
-from ..language import tr
+from ..language import tr, tr_count
 from .histogram_svg import HEIGHT, WIDTH, histogram
 from .placed_cones import Deviations, PlacedCone, values_of
 from .report_items import MARGIN, TEXT_WIDTH, add_text, corner, put, text_format
@@ -140,10 +140,11 @@ def _feet(layout: QgsPrintLayout, report: Report) -> None:
 def _told(report: Report) -> str:
     figures = report.figures
     lines = [
-        tr(
-            "{within} of {count} cones ({share:.0f} %) stand within {tolerance:g} cm of their plan.",
+        tr_count(
+            figures.count,
+            "{within} of 1 cone ({share:.0f} %) stands within {tolerance:g} cm of its plan.",
+            "{within} of %n cones ({share:.0f} %) stand within {tolerance:g} cm of their plan.",
             within=figures.within,
-            count=figures.count,
             share=100.0 * figures.within / figures.count,
             tolerance=report.tolerance * 100,
         ),

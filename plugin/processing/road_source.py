@@ -28,7 +28,7 @@ from ...robot_bridge.roads.findings import Finding
 from ...robot_bridge.roads.network import Network, build_network
 from ...robot_bridge.roads.repairs import repaired_network
 from ...robot_bridge.sites.frame import SiteFrame
-from ..language import tr
+from ..language import tr, tr_count
 from ..sites.ground_reading import DEFAULT_WIDTH_M, lines_of
 from ..sites.layer_rules import LayerRules
 from ..sites.placing import LayerPlacing, PlacingError, SitePlacing
@@ -197,10 +197,11 @@ class RoadSource:
         unknown = sum(one.width is None for one in known)
         if unknown:
             warnings.append(
-                tr(
-                    "Layer {name}: the width of {unknown} roads is not known; {width:g} m is used",
+                tr_count(
+                    unknown,
+                    "Layer {name}: the width of 1 road is not known; {width:g} m is used",
+                    "Layer {name}: the width of %n roads is not known; {width:g} m is used",
                     name=name,
-                    unknown=unknown,
                     width=width,
                 )
             )

@@ -27,7 +27,7 @@ from qgis.core import (
 )
 
 from ...robot_bridge.roads.surfaces.surface import Surface
-from ..language import tr, tr_page
+from ..language import tr, tr_count, tr_page
 from ..sites.roles import ROAD_SURFACE, layers_with_role
 from ..sites.surface_map import SurfaceMap, read_surface_map, surface_sources
 from .errors import ParameterError, shown_by_processing
@@ -119,7 +119,14 @@ class SurfaceAtPoint(FleetAlgorithm):
             on, off, odd = _written(points, surfaces, sink, fields, feedback)
         if feedback.isCanceled():
             return {}
-        feedback.pushInfo(tr("{on} points are on a surface, {off} on none.", on=on, off=off))
+        feedback.pushInfo(
+            tr_count(
+                on,
+                "1 point is on a surface, {off} on none.",
+                "%n points are on a surface, {off} on none.",
+                off=off,
+            )
+        )
         numbers = on, off, len(surfaces.warnings) + odd
         return {OUTPUT: made, **dict(zip(NUMBERS, numbers, strict=True))}
 

@@ -28,7 +28,7 @@ from qgis.core import (
     QgsWkbTypes,
 )
 
-from ..language import tr, tr_page
+from ..language import tr, tr_count, tr_page
 from ..sites.site_crs import is_mercator
 from .drives import Drive, Positions, drives
 from .errors import shown_by_processing
@@ -126,7 +126,11 @@ class Trajectories(FleetAlgorithm):
             positions, odd = read
             if odd:
                 feedback.pushWarning(
-                    tr("{odd} features have no place, robot or time; they are left out.", odd=odd)
+                    tr_count(
+                        odd,
+                        "1 feature has no place, robot or time; it is left out.",
+                        "%n features have no place, robot or time; they are left out.",
+                    )
                 )
             metres = Metres(source.sourceCrs(), context.transformContext())
             made = self._write(parameters, context, feedback, source, positions, metres)
@@ -136,9 +140,9 @@ class Trajectories(FleetAlgorithm):
         self.remember({OUTPUT: layer})
         feedback.pushInfo(
             tr(
-                "{lines} lines of {positions} positions, {length:.1f} m in all.",
-                lines=lines,
-                positions=len(positions),
+                "{lines} of {positions}, {length:.1f} m in all.",
+                lines=tr_count(lines, "1 line", "%n lines"),
+                positions=tr_count(len(positions), "1 position", "%n positions"),
                 length=length,
             )
         )

@@ -17,7 +17,7 @@ from qgis.PyQt.QtGui import QImage
 
 from ...robot_bridge.sites.frame import SiteFrame
 from ..errors import FleetError
-from ..language import tr
+from ..language import tr_count
 from ..sites.obstacle_source import ObstacleSource, obstacle_sources
 from ..sites.placing import SitePlacing
 from ..sites.project_site import frame_in_project
@@ -98,10 +98,7 @@ class LivePreview(QObject):
         sources = {_key(row): source for row in missing if (source := self._source(row)) is not None}
         known = {_key(row): self._known[_key(row)] for row in wanted if _key(row) in self._known}
         self.summed.emit(
-            tr(
-                "Reading {sources} layers …",
-                sources=len(sources),
-            )
+            tr_count(len(sources), "Reading 1 layer …", "Reading %n layers …")
             if sources
             else summary(list(known.values()))
         )

@@ -10,15 +10,16 @@ from qgis.core import QgsFeedback
 
 from ...robot_bridge.robotmap.model import ShapeType
 from ..errors import FleetError
-from ..language import tr
+from ..language import tr, tr_count
 from ..sites.ground_reading import read_areas, read_centrelines
 from ..sites.obstacle_source import ObstacleSource
 from ..sites.placing import SitePlacing
 from ..sites.reading import read_outlines
-from ..sites.roles import OBSTACLE_ROLES, ROAD_CENTRELINE
+from ..sites.roles import KEEPOUT, OBSTACLE, OBSTACLE_ROLES, ROAD_CENTRELINE, ROAD_SURFACE
 
 ESTIMATED_HEIGHT_M = 3.0
 ESTIMATED_WIDTH_M = 3.5
+_KINDS = (OBSTACLE, ROAD_CENTRELINE, ROAD_SURFACE, KEEPOUT)
 
 
 @dataclass(frozen=True)
@@ -37,15 +38,11 @@ class Measure:
 
     def __str__(self) -> str:
         if self.refused:
-            return "refused"
+            return tr("refused")
         if not self.role:
             return ""
-        thing = _counted(self.count, _THINGS.get(self.role, "obstacle"))
-        warned = f", {_counted(len(self.warnings), 'warning')}" if self.warnings else ""
-        return f"{thing}, {_counted(len(self.segments), 'segment')}{warned}"
-
-
-_THINGS = {"road_centreline": "road", "road_surface": "surface", "keepout": "keepout"}
+        told = [_things(self.role, self.count), _segments(len(self.segments))]
+        return ", ".join(told + ([_warnings(len(self.warnings))] if self.warnings else []))
 
 
 def measure(source: ObstacleSource, site: SitePlacing, feedback: QgsFeedback) -> Measure | None:
@@ -72,18 +69,36 @@ def measure(source: ObstacleSource, site: SitePlacing, feedback: QgsFeedback) ->
 
 def summary(measures: Sequence[Measure]) -> str:
     """Return what all layers come to together, in one line."""
-    counted = dict.fromkeys(("obstacle", *_THINGS.values()), 0)
+    counted = dict.fromkeys(_KINDS, 0)
     for one in measures:
         if one.role:
-            counted[_THINGS.get(one.role, "obstacle")] += one.count
+            counted[one.role if one.role in counted else OBSTACLE] += one.count
     segments = sum(len(one.segments) for one in measures if one.role in OBSTACLE_ROLES)
-    warned = sum(len(one.warnings) for one in measures)
-    things = [_counted(number, thing) for thing, number in counted.items()]
-    things[0] += tr(" of {counted}", counted=_counted(segments, "segment"))
+    told = [_things(kind, number) for kind, number in counted.items()]
+    told[0] = tr("{obstacles} of {segments}", obstacles=told[0], segments=_segments(segments))
     refused = sum(bool(one.refused) for one in measures)
     if refused:
-        things.append(tr("{counted} refused", counted=_counted(refused, "layer")))
-    return ", ".join([*things, _counted(warned, "warning")])
+        told.append(tr_count(refused, "1 layer refused", "%n layers refused"))
+    return ", ".join([*told, _warnings(sum(len(one.warnings) for one in measures))])
+
+
+def _things(role: str, number: int) -> str:
+    """Return how many things a layer of ``role`` has; ramps, stairs and furniture are obstacles."""
+    if role == ROAD_CENTRELINE:
+        return tr_count(number, "1 road", "%n roads")
+    if role == ROAD_SURFACE:
+        return tr_count(number, "1 surface", "%n surfaces")
+    if role == KEEPOUT:
+        return tr_count(number, "1 keepout", "%n keepouts")
+    return tr_count(number, "1 obstacle", "%n obstacles")
+
+
+def _segments(number: int) -> str:
+    return tr_count(number, "1 segment", "%n segments")
+
+
+def _warnings(number: int) -> str:
+    return tr_count(number, "1 warning", "%n warnings")
 
 
 def _chain(points: np.ndarray) -> np.ndarray:
@@ -96,7 +111,3 @@ def _risers(points: np.ndarray) -> np.ndarray:
 
 def _joined(lines: Sequence[np.ndarray]) -> np.ndarray:
     return np.concatenate(lines) if lines else np.empty((0, 4))
-
-
-def _counted(number: int, thing: str) -> str:
-    return f"{number} {thing}{'' if number == 1 else 's'}"

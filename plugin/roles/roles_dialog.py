@@ -25,7 +25,7 @@ from qgis.PyQt.QtWidgets import (
 from ..desk.column_heads import fit_heads
 from ..errors import FleetError
 from ..file_dialogs import file_to_read
-from ..language import tr
+from ..language import tr, tr_count
 from ..sites.profile_file import SUFFIXES, read_profile, shipped_profiles
 from ..sites.roles import keep_setup, setup_of
 from .delegates import ExpressionDelegate, RoleDelegate
@@ -115,11 +115,12 @@ class RolesDialog(QDialog):
         if known:
             self._bar.pushInfo(
                 "",
-                tr(
-                    "{name}: {known} of {setups} layers set up.",
+                tr_count(
+                    len(setups),
+                    "{name}: {known} of 1 layer set up.",
+                    "{name}: {known} of %n layers set up.",
                     name=profile.name,
                     known=len(known),
-                    setups=len(setups),
                 ),
             )
         else:

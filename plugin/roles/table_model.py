@@ -12,7 +12,7 @@ from qgis.PyQt.QtWidgets import QWidget
 
 from ...robot_bridge.robotmap.templates import NAMED
 from ..desk.colours import DOUBTFUL, WRONG, for_letters
-from ..language import tr
+from ..language import first_of, tr
 from ..sites.roles import (
     FURNITURE,
     KEEPOUT,
@@ -91,6 +91,8 @@ ROLE_NAMES = {
 }
 
 _GREY = QColor("#8a949e")
+LISTED = 20
+"""Warnings of a layer in its tool tip."""
 
 
 def role_name(role: str) -> str:
@@ -205,9 +207,7 @@ class RoleTableModel(QAbstractTableModel):
         found = self._results.get(row.layer_id)
         if found is None:
             return ""
-        shown = [found.refused] if found.refused else list(found.warnings[:20])
-        more = len(found.warnings) - 20
-        return "\n".join([*shown, tr("and {more} more", more=more)] if more > 0 else shown)
+        return found.refused or "\n".join(first_of(found.warnings, LISTED))
 
     def _colour(self, row: RoleRow, column: int) -> Any:
         found = self._results.get(row.layer_id)

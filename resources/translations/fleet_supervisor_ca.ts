@@ -611,11 +611,6 @@
         </message>
         <message>
             <location filename="../../plugin/desk/alarms/alarm_bar.py" />
-            <source>; and {number} more</source>
-            <translation>; i {number} més</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/alarms/alarm_bar.py" />
             <source>Acknowledge all</source>
             <translation>Reconeix-les totes</translation>
         </message>
@@ -699,6 +694,14 @@
             <source>over</source>
             <translation>acabada</translation>
         </message>
+        <message numerus="yes">
+            <location filename="../../plugin/desk/alarms/log_dialog.py" />
+            <source>%n lines written to {path}</source>
+            <translation>
+                <numerusform>%n línia escrita a {path}</numerusform>
+                <numerusform>%n línies escrites a {path}</numerusform>
+            </translation>
+        </message>
         <message>
             <location filename="../../plugin/desk/alarms/log_dialog.py" />
             <source>By</source>
@@ -744,15 +747,13 @@
             <source>What</source>
             <translation>Què</translation>
         </message>
-        <message>
-            <location filename="../../plugin/desk/alarms/log_dialog.py" />
-            <source>{count} lines written to {path}</source>
-            <translation>{count} línies escrites a {path}</translation>
-        </message>
-        <message>
+        <message numerus="yes">
             <location filename="../../plugin/desk/alarms/message_log.py" />
-            <source>and {number} more alarms: see the log of alarms in the Fleet panel</source>
-            <translation>i {number} alarmes més: vegeu el registre d'alarmes al tauler de la flota</translation>
+            <source>and %n more alarms: see the log of alarms in the Fleet panel</source>
+            <translation>
+                <numerusform>i %n alarma més: vegeu el registre d'alarmes al tauler de la flota</numerusform>
+                <numerusform>i %n alarmes més: vegeu el registre d'alarmes al tauler de la flota</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/desk/alarms/road_ground.py" />
@@ -1094,6 +1095,22 @@
             <source>Details</source>
             <translation>Detalls</translation>
         </message>
+        <message numerus="yes">
+            <location filename="../../plugin/desk/command_log/log_panel.py" />
+            <source>%n commands</source>
+            <translation>
+                <numerusform>%n ordre</numerusform>
+                <numerusform>%n ordres</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/desk/command_log/log_panel.py" />
+            <source>%n steps</source>
+            <translation>
+                <numerusform>%n pas</numerusform>
+                <numerusform>%n passos</numerusform>
+            </translation>
+        </message>
         <message>
             <location filename="../../plugin/desk/command_log/log_panel.py" />
             <source>All commands</source>
@@ -1171,8 +1188,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/command_log/log_panel.py" />
-            <source>{commands} commands with {steps} steps written to {path}</source>
-            <translation>{commands} ordres amb {steps} passos escrites a {path}</translation>
+            <source>{commands} and {steps} written to {path}</source>
+            <translation>s'han escrit {commands} i {steps} a {path}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/command_log/log_panel.py" />
@@ -1763,6 +1780,14 @@
             <source>({x:.2f}, {y:.2f}) m</source>
             <translation>({x:.2f}, {y:.2f}) m</translation>
         </message>
+        <message numerus="yes">
+            <location filename="../../plugin/desk/drafts.py" />
+            <source>%n cones for {robot}</source>
+            <translation>
+                <numerusform>%n con per a {robot}</numerusform>
+                <numerusform>%n cons per a {robot}</numerusform>
+            </translation>
+        </message>
         <message>
             <location filename="../../plugin/desk/drafts.py" />
             <source>, theta {degrees:.0f}°</source>
@@ -1805,18 +1830,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/drafts.py" />
-            <source>{points} cones for {robot}</source>
-            <translation>{points} cons per a {robot}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/drafts.py" />
             <source>{x:.2f}, {y:.2f} m</source>
             <translation>{x:.2f}, {y:.2f} m</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/emergency_banner.py" />
-            <source> and {more} more</source>
-            <translation> i {more} més</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/emergency_banner.py" />
@@ -1853,10 +1868,13 @@
             <source>The link to the gateway is down: this is what it said last.</source>
             <translation>L'enllaç amb la passarel·la està tallat: això és l'últim que va dir.</translation>
         </message>
-        <message>
+        <message numerus="yes">
             <location filename="../../plugin/desk/emergency_banner.py" />
-            <source>{acknowledged} of {robots} robots acknowledged, {standing} seen to stand</source>
-            <translation>{acknowledged} de {robots} robots ho han confirmat, {standing} es veuen aturats</translation>
+            <source>{acknowledged} of %n robots acknowledged, {standing} seen to stand</source>
+            <translation>
+                <numerusform>{acknowledged} de %n robot ho ha confirmat, {standing} es veu aturat</numerusform>
+                <numerusform>{acknowledged} de %n robots ho han confirmat, {standing} es veuen aturats</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/desk/inquiries.py" />
@@ -1903,15 +1921,21 @@
             <source>Standard: {value}</source>
             <translation>Norma: {value}</translation>
         </message>
-        <message>
+        <message numerus="yes">
             <location filename="../../plugin/desk/layout_tool.py" />
-            <source>{cones} cones are in the layer {layer}.</source>
-            <translation>{cones} cons són a la capa {layer}.</translation>
+            <source>%n cones are in the layer {layer}.</source>
+            <translation>
+                <numerusform>%n con és a la capa {layer}.</numerusform>
+                <numerusform>%n cons són a la capa {layer}.</numerusform>
+            </translation>
         </message>
-        <message>
+        <message numerus="yes">
             <location filename="../../plugin/desk/layout_tool.py" />
-            <source>{wrong} of {cones} cones should not stand there: {text} All are in the layer {layer}.</source>
-            <translation>{wrong} de {cones} cons no haurien de ser allà: {text} Tots són a la capa {layer}.</translation>
+            <source>{wrong} of %n cones should not stand there: {text} All are in the layer {layer}.</source>
+            <translation>
+                <numerusform>{wrong} de %n con no hauria de ser allà: {text} És a la capa {layer}.</numerusform>
+                <numerusform>{wrong} de %n cons no haurien de ser allà: {text} Tots són a la capa {layer}.</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/desk/live/hover_card.py" />
@@ -2328,10 +2352,13 @@
             <source>{words}: queued</source>
             <translation>{words}: en cua</translation>
         </message>
-        <message>
+        <message numerus="yes">
             <location filename="../../plugin/desk/orders.py" />
-            <source>{words}: sent to {commands} robots</source>
-            <translation>{words}: enviat a {commands} robots</translation>
+            <source>{words}: sent to %n robots</source>
+            <translation>
+                <numerusform>{words}: enviat a %n robot</numerusform>
+                <numerusform>{words}: enviat a %n robots</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/desk/orders.py" />
@@ -2353,10 +2380,13 @@
             <source>not a finite place</source>
             <translation>no és un lloc finit</translation>
         </message>
-        <message>
+        <message numerus="yes">
             <location filename="../../plugin/desk/plans/as_placed.py" />
-            <source> of {expected}</source>
-            <translation> de {expected}</translation>
+            <source>%n cones placed</source>
+            <translation>
+                <numerusform>%n con col·locat</numerusform>
+                <numerusform>%n cons col·locats</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/as_placed.py" />
@@ -2373,10 +2403,18 @@
             <source>off by {mean:.3f} m on average, at most {largest:.3f} m</source>
             <translation>desviació mitjana de {mean:.3f} m, com a màxim {largest:.3f} m</translation>
         </message>
+        <message numerus="yes">
+            <location filename="../../plugin/desk/plans/as_placed.py" />
+            <source>{cones} of %n cones placed</source>
+            <translation>
+                <numerusform>{cones} de %n con col·locat</numerusform>
+                <numerusform>{cones} de %n cons col·locats</numerusform>
+            </translation>
+        </message>
         <message>
             <location filename="../../plugin/desk/plans/as_placed.py" />
-            <source>{cones}{of} cones placed{gone}; {off}</source>
-            <translation>{cones}{of} cons col·locats{gone}; {off}</translation>
+            <source>{placed}{gone}; {off}</source>
+            <translation>{placed}{gone}; {off}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/as_placed_page.py" />
@@ -2555,8 +2593,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driven_plan.py" />
-            <source>Cone {cones} was given up since this plan was made: plan what is left again.</source>
-            <translation>S'ha renunciat al con {cones} des que es va fer aquest pla: torneu a planificar el que queda.</translation>
+            <source>Given up since this plan was made: {cones}. Plan what is left again.</source>
+            <translation>Abandonats des que es va fer aquest pla: {cones}. Torneu a planificar el que queda.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driven_plan.py" />
@@ -2638,10 +2676,13 @@
             <source>Confirm new plan</source>
             <translation>Confirma el pla nou</translation>
         </message>
-        <message>
+        <message numerus="yes">
             <location filename="../../plugin/desk/plans/driving_bar.py" />
-            <source>Done: {done} of {cones} cones</source>
-            <translation>Fet: {done} de {cones} cons</translation>
+            <source>Done: {done} of %n cones</source>
+            <translation>
+                <numerusform>Fet: {done} de %n con</numerusform>
+                <numerusform>Fet: {done} de %n cons</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driving_bar.py" />
@@ -2693,20 +2734,18 @@
             <source>Send…</source>
             <translation>Envia…</translation>
         </message>
-        <message>
+        <message numerus="yes">
             <location filename="../../plugin/desk/plans/driving_bar.py" />
-            <source>Under way: {done} of {cones} cones</source>
-            <translation>En curs: {done} de {cones} cons</translation>
+            <source>Under way: {done} of %n cones</source>
+            <translation>
+                <numerusform>En curs: {done} de %n con</numerusform>
+                <numerusform>En curs: {done} de %n cons</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driving_bar.py" />
             <source>When a robot is lost or a cone fails, plan what is left and send it by itself</source>
             <translation>Quan es perd un robot o falla un con, planifica el que queda i ho envia sol</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/driving_bar.py" />
-            <source>and {more} more</source>
-            <translation>i {more} més</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driving_bar.py" />
@@ -2798,6 +2837,22 @@
             <source>Cones as placed</source>
             <translation>Cons tal com s'han col·locat</translation>
         </message>
+        <message numerus="yes">
+            <location filename="../../plugin/desk/plans/plan_rows.py" />
+            <source>%n cones</source>
+            <translation>
+                <numerusform>%n con</numerusform>
+                <numerusform>%n cons</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/desk/plans/plan_rows.py" />
+            <source>%n robots</source>
+            <translation>
+                <numerusform>%n robot</numerusform>
+                <numerusform>%n robots</numerusform>
+            </translation>
+        </message>
         <message>
             <location filename="../../plugin/desk/plans/plan_rows.py" />
             <source>FAILED</source>
@@ -2830,8 +2885,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/plan_rows.py" />
-            <source>{cones} cones, {robots} robots, {metres:.0f} m, done after {span} ({method}, along {travel})</source>
-            <translation>{cones} cons, {robots} robots, {metres:.0f} m, fet en {span} ({method}, per {travel})</translation>
+            <source>{cones}, {robots}, {metres:.0f} m, done after {span} ({method}, along {travel})</source>
+            <translation>{cones}, {robots}, {metres:.0f} m, fet en {span} ({method}, per {travel})</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/plan_rows.py" />
@@ -2890,15 +2945,13 @@
             <source>store </source>
             <translation>magatzem </translation>
         </message>
-        <message>
+        <message numerus="yes">
             <location filename="../../plugin/desk/plans/plan_tree.py" />
-            <source>{cones} cones</source>
-            <translation>{cones} cons</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/plan_tree.py" />
-            <source>{done} of {cones} cones</source>
-            <translation>{done} de {cones} cons</translation>
+            <source>{done} of %n cones</source>
+            <translation>
+                <numerusform>{done} de %n con</numerusform>
+                <numerusform>{done} de %n cons</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/plan_ways.py" />
@@ -2990,6 +3043,14 @@
             <source>{why} Not done therefore: {left}.</source>
             <translation>{why} Per això no s'ha fet: {left}.</translation>
         </message>
+        <message numerus="yes">
+            <location filename="../../plugin/desk/plans/sending_check.py" />
+            <source>%n tasks that wait in the queue of {id} are replaced</source>
+            <translation>
+                <numerusform>se substitueix %n tasca que espera a la cua de {id}</numerusform>
+                <numerusform>se substitueixen %n tasques que esperen a la cua de {id}</numerusform>
+            </translation>
+        </message>
         <message>
             <location filename="../../plugin/desk/plans/sending_check.py" />
             <source>Mind:</source>
@@ -3034,16 +3095,6 @@
             <location filename="../../plugin/desk/plans/sending_check.py" />
             <source>{id} is {state}: it gets its queue when it is heard of again</source>
             <translation>{id} és {state}: rep la cua quan se'n torni a saber</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/sending_check.py" />
-            <source>{robot}: {cones} cones</source>
-            <translation>{robot}: {cones} cons</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/sending_check.py" />
-            <source>{waiting} tasks that wait in the queue of {id} are replaced</source>
-            <translation>se substitueixen {waiting} tasques que esperen a la cua de {id}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/settings_form.py" />
@@ -3373,6 +3424,14 @@
             <source> · NOT ALL</source>
             <translation> · NO TOTES</translation>
         </message>
+        <message numerus="yes">
+            <location filename="../../plugin/desk/replay/replay_dock.py" />
+            <source>%n positions</source>
+            <translation>
+                <numerusform>%n posició</numerusform>
+                <numerusform>%n posicions</numerusform>
+            </translation>
+        </message>
         <message>
             <location filename="../../plugin/desk/replay/replay_dock.py" />
             <source>Choose a time and press Load.</source>
@@ -3390,8 +3449,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/replay/replay_dock.py" />
-            <source>Loading … {positions} positions, up to {moment}</source>
-            <translation>Carregant … {positions} posicions, fins a {moment}</translation>
+            <source>Loading … {positions}, up to {moment}</source>
+            <translation>Carregant … {positions}, fins a {moment}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/replay/replay_dock.py" />
@@ -3690,8 +3749,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/robots/detail_rows.py" />
-            <source>and {number} more</source>
-            <translation>i {number} més</translation>
+            <source>and {more} more</source>
+            <translation>i {more} més</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/robots/detail_rows.py" />
@@ -3998,18 +4057,21 @@
         </message>
         <message>
             <location filename="../../plugin/desk/site_drop.py" />
-            <source> {layers} have no role: other layers of the project have it. Plugins &gt; Fleet Supervisor &gt; Layer roles changes that.</source>
-            <translation> {layers} no tenen paper: el tenen altres capes del projecte. Connectors &gt; Fleet Supervisor &gt; Papers de les capes ho canvia.</translation>
+            <source> Without a role, since other layers of the project have it: {layers}. Plugins &gt; Fleet Supervisor &gt; Layer roles changes that.</source>
+            <translation> Sense paper, perquè el tenen altres capes del projecte: {layers}. Connectors &gt; Fleet Supervisor &gt; Papers de les capes ho canvia.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/site_drop.py" />
             <source>The site in {folder} is in the project already: {names}.</source>
             <translation>El recinte de {folder} ja és al projecte: {names}.</translation>
         </message>
-        <message>
+        <message numerus="yes">
             <location filename="../../plugin/desk/site_drop.py" />
-            <source>{site}: {count} layers loaded.</source>
-            <translation>{site}: {count} capes carregades.</translation>
+            <source>{site}: %n layers loaded.</source>
+            <translation>
+                <numerusform>{site}: %n capa carregada.</numerusform>
+                <numerusform>{site}: %n capes carregades.</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/desk/state_words.py" />
@@ -4880,6 +4942,14 @@
             <source>{state}, heard of {age:.0f} s ago</source>
             <translation>{state}, últim missatge fa {age:.0f} s</translation>
         </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>%n features have no planned or no placed position; they are left out.</source>
+            <translation>
+                <numerusform>%n entitat no té posició planificada o col·locada; queda fora.</numerusform>
+                <numerusform>%n entitats no tenen posició planificada o col·locada; queden fora.</numerusform>
+            </translation>
+        </message>
         <message>
             <location filename="../../plugin/processing/as_placed_report.py" />
             <source>95 % deviate at most [m]</source>
@@ -4975,15 +5045,21 @@
             <source>Writes a PDF of how placed cones stand against their plan: figures, histogram, map and table.</source>
             <translation>Escriu un PDF de com estan els cons col·locats respecte del pla: xifres, histograma, mapa i taula.</translation>
         </message>
-        <message>
+        <message numerus="yes">
             <location filename="../../plugin/processing/as_placed_report.py" />
-            <source>{odd} features have no planned or no placed position; they are left out.</source>
-            <translation>{odd} entitats no tenen posició planificada o col·locada; queden fora.</translation>
+            <source>{within} of %n cones are within {tolerance:g} m; the worst is {most:.3f} m off.</source>
+            <translation>
+                <numerusform>{within} de %n con és dins de {tolerance:g} m; es desvia {most:.3f} m.</numerusform>
+                <numerusform>{within} de %n cons són dins de {tolerance:g} m; el pitjor es desvia {most:.3f} m.</numerusform>
+            </translation>
         </message>
-        <message>
-            <location filename="../../plugin/processing/as_placed_report.py" />
-            <source>{within} of {count} cones are within {tolerance:g} m; the worst is {most:.3f} m off.</source>
-            <translation>{within} de {count} cons són dins de {tolerance:g} m; el pitjor es desvia {most:.3f} m.</translation>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/assign_cones.py" />
+            <source>%n trips</source>
+            <translation>
+                <numerusform>%n viatge</numerusform>
+                <numerusform>%n viatges</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/processing/assign_cones.py" />
@@ -5032,8 +5108,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/assign_cones.py" />
-            <source>Robot {id}: {cones} cones on {trips} trips, {metres:.0f} m, done after {end_s:.0f} s</source>
-            <translation>Robot {id}: {cones} cons en {trips} viatges, {metres:.0f} m, acaba al cap de {end_s:.0f} s</translation>
+            <source>Robot {id}: {cones} on {trips}, {metres:.0f} m, done after {end_s:.0f} s</source>
+            <translation>Robot {id}: {cones} en {trips}, {metres:.0f} m, acaba al cap de {end_s:.0f} s</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/assign_cones.py" />
@@ -5059,6 +5135,38 @@
             <location filename="../../plugin/processing/assign_cones.py" />
             <source>What the ways follow</source>
             <translation>Què segueixen els recorreguts</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/build_road_network.py" />
+            <source>%n edges</source>
+            <translation>
+                <numerusform>%n aresta</numerusform>
+                <numerusform>%n arestes</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/build_road_network.py" />
+            <source>%n nodes</source>
+            <translation>
+                <numerusform>%n node</numerusform>
+                <numerusform>%n nodes</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/build_road_network.py" />
+            <source>%n parts</source>
+            <translation>
+                <numerusform>%n part</numerusform>
+                <numerusform>%n parts</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/build_road_network.py" />
+            <source>%n repairs</source>
+            <translation>
+                <numerusform>%n reparació</numerusform>
+                <numerusform>%n reparacions</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/processing/build_road_network.py" />
@@ -5100,10 +5208,13 @@
             <source>Splits road centrelines where they meet, passes over and under at bridges, and repairs on request.</source>
             <translation>Divideix els eixos de via on es troben, passa per sobre i per sota als ponts, i repara si es demana.</translation>
         </message>
-        <message>
-            <location filename="../../plugin/processing/build_road_network.py" />
-            <source>{edges} edges, {nodes} nodes, {parts} parts, {repairs} repairs</source>
-            <translation>{edges} arestes, {nodes} nodes, {parts} parts, {repairs} reparacions</translation>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/build_road_surfaces.py" />
+            <source>%n of the surfaces that are given as drawn say that they were generated (field origin); they are left out and made anew</source>
+            <translation>
+                <numerusform>%n de les superfícies donades com a dibuixades diu que es va generar (camp origin); s'omet i es torna a fer</numerusform>
+                <numerusform>%n de les superfícies donades com a dibuixades diuen que es van generar (camp origin); s'ometen i es tornen a fer</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/processing/build_road_surfaces.py" />
@@ -5164,11 +5275,6 @@
             <location filename="../../plugin/processing/build_road_surfaces.py" />
             <source>{label}: {area:.1f} m²</source>
             <translation>{label}: {area:.1f} m²</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/build_road_surfaces.py" />
-            <source>{old} of the surfaces that are given as drawn say that they were generated (field origin); they are left out and made anew</source>
-            <translation>{old} de les superfícies donades com a dibuixades diuen que es van generar (camp origin); s'ometen i es tornen a fer</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/check_road_network.py" />
@@ -5687,11 +5793,6 @@
         </message>
         <message>
             <location filename="../../plugin/processing/export_robot_map.py" />
-            <source>{obstacles} obstacles, {segment_count} segments</source>
-            <translation>{obstacles} obstacles, {segment_count} segments</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/export_robot_map.py" />
             <source>{size} bytes in binary, {ratio:.2f} bytes/m²</source>
             <translation>{size} bytes en binari, {ratio:.2f} bytes/m²</translation>
         </message>
@@ -5699,6 +5800,22 @@
             <location filename="../../plugin/processing/export_robot_map.py" />
             <source>{size} bytes of text, {ratio:.2f} bytes/m² (paper 1: about 3 bytes/m² as text)</source>
             <translation>{size} bytes de text, {ratio:.2f} bytes/m² (article 1: uns 3 bytes/m² com a text)</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/export_robot_map_tiles.py" />
+            <source>%n segments</source>
+            <translation>
+                <numerusform>%n segment</numerusform>
+                <numerusform>%n segments</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/export_robot_map_tiles.py" />
+            <source>%n tiles</source>
+            <translation>
+                <numerusform>%n tessel·la</numerusform>
+                <numerusform>%n tessel·les</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/processing/export_robot_map_tiles.py" />
@@ -5787,8 +5904,16 @@
         </message>
         <message>
             <location filename="../../plugin/processing/export_robot_map_tiles.py" />
-            <source>{rows} tiles, {segments} segments, {size} bytes</source>
-            <translation>{rows} tessel·les, {segments} segments, {size} bytes</translation>
+            <source>{tiles}, {segments}, {size} bytes</source>
+            <translation>{tiles}, {segments}, {size} bytes</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>%n points</source>
+            <translation>
+                <numerusform>%n punt</numerusform>
+                <numerusform>%n punts</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/processing/find_route.py" />
@@ -5887,8 +6012,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/find_route.py" />
-            <source>{metres:.1f} m, {seconds:.1f} s, {points} points, found by {engine}; start {off_start:.2f} m and goal {off_goal:.2f} m from the road</source>
-            <translation>{metres:.1f} m, {seconds:.1f} s, {points} punts, trobada per {engine}; inici a {off_start:.2f} m i final a {off_goal:.2f} m de la via</translation>
+            <source>{metres:.1f} m, {seconds:.1f} s, {points}, found by {engine}; start {off_start:.2f} m and goal {off_goal:.2f} m from the road</source>
+            <translation>{metres:.1f} m, {seconds:.1f} s, {points}, trobada per {engine}; inici a {off_start:.2f} m i final a {off_goal:.2f} m de la via</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/fleet_algorithm.py" />
@@ -6125,15 +6250,18 @@
             <source>Width of the robots [m]</source>
             <translation>Amplada dels robots [m]</translation>
         </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/keepout_areas.py" />
+            <source>%n edges lead through areas to be avoided, and are closed</source>
+            <translation>
+                <numerusform>%n aresta passa per zones que cal evitar, i es tanca</numerusform>
+                <numerusform>%n arestes passen per zones que cal evitar, i es tanquen</numerusform>
+            </translation>
+        </message>
         <message>
             <location filename="../../plugin/processing/keepout_areas.py" />
             <source>Areas that must not be driven through</source>
             <translation>Zones que no s'han de travessar</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/keepout_areas.py" />
-            <source>{closed} edges lead through areas to be avoided, and are closed</source>
-            <translation>{closed} arestes passen per zones que cal evitar, i es tanquen</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/load_robot_map.py" />
@@ -6477,8 +6605,16 @@
         </message>
         <message>
             <location filename="../../plugin/processing/obstacle_outlines.py" />
-            <source>{obstacles} obstacles with {segments} segments became {obstacles_left} with {segments_left}</source>
-            <translation>{obstacles} obstacles amb {segments} segments s'han convertit en {obstacles_left} amb {segments_left}</translation>
+            <source>{before} became {after}</source>
+            <translation>abans: {before}; després: {after}</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/obstacle_words.py" />
+            <source>%n obstacles</source>
+            <translation>
+                <numerusform>%n obstacle</numerusform>
+                <numerusform>%n obstacles</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/processing/placed_cones.py" />
@@ -6580,6 +6716,38 @@
             <source>{place} = {text} is no number: correct it there.</source>
             <translation>{place} = {text} no és un nombre: corregiu-lo allà.</translation>
         </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>%n centrelines</source>
+            <translation>
+                <numerusform>%n eix</numerusform>
+                <numerusform>%n eixos</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>%n keepouts</source>
+            <translation>
+                <numerusform>%n zona prohibida</numerusform>
+                <numerusform>%n zones prohibides</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>%n obstacle outlines</source>
+            <translation>
+                <numerusform>%n contorn d'obstacle</numerusform>
+                <numerusform>%n contorns d'obstacles</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>%n road surfaces</source>
+            <translation>
+                <numerusform>%n superfície de via</numerusform>
+                <numerusform>%n superfícies de via</numerusform>
+            </translation>
+        </message>
         <message>
             <location filename="../../plugin/processing/publish_site.py" />
             <source>A robot is lost without a message for [s]</source>
@@ -6667,8 +6835,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/publish_site.py" />
-            <source>Site {id} version {version} is published in {folder}: {outlines} obstacle outlines, {centrelines} centrelines, {surfaces} road surfaces, {keepouts} keepouts; bounds {bounds} m</source>
-            <translation>El recinte {id} versió {version} s'ha publicat a {folder}: {outlines} contorns d'obstacles, {centrelines} eixos, {surfaces} superfícies de via, {keepouts} zones prohibides; límits {bounds} m</translation>
+            <source>Site {id} version {version} is published in {folder}: {outlines}, {centrelines}, {surfaces}, {keepouts}; bounds {bounds} m</source>
+            <translation>El recinte {id} versió {version} s'ha publicat a {folder}: {outlines}, {centrelines}, {surfaces}, {keepouts}; límits {bounds} m</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/publish_site.py" />
@@ -6740,10 +6908,13 @@
             <source>{time} UTC</source>
             <translation>{time} UTC</translation>
         </message>
-        <message>
+        <message numerus="yes">
             <location filename="../../plugin/processing/report_layout.py" />
-            <source>{within} of {count} cones ({share:.0f} %) stand within {tolerance:g} cm of their plan.</source>
-            <translation>{within} de {count} cons ({share:.0f} %) són a menys de {tolerance:g} cm del pla.</translation>
+            <source>{within} of %n cones ({share:.0f} %) stand within {tolerance:g} cm of their plan.</source>
+            <translation>
+                <numerusform>{within} de %n con ({share:.0f} %) és a menys de {tolerance:g} cm del pla.</numerusform>
+                <numerusform>{within} de %n cons ({share:.0f} %) són a menys de {tolerance:g} cm del pla.</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/processing/report_layout.py" />
@@ -6805,10 +6976,13 @@
             <source>Layer {name}, feature {id}: {note}</source>
             <translation>Capa {name}, entitat {id}: {note}</translation>
         </message>
-        <message>
+        <message numerus="yes">
             <location filename="../../plugin/processing/road_source.py" />
-            <source>Layer {name}: the width of {unknown} roads is not known; {width:g} m is used</source>
-            <translation>Capa {name}: l'amplada de {unknown} vies no es coneix; s'hi posa {width:g} m</translation>
+            <source>Layer {name}: the width of %n roads is not known; {width:g} m is used</source>
+            <translation>
+                <numerusform>Capa {name}: l'amplada de %n via no es coneix; s'hi posa {width:g} m</numerusform>
+                <numerusform>Capa {name}: l'amplada de %n vies no es coneix; s'hi posa {width:g} m</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/processing/road_source.py" />
@@ -6880,6 +7054,14 @@
             <source>SITE_CRS {crs} is no CRS that QGIS knows: write a code such as EPSG:32633.</source>
             <translation>SITE_CRS {crs} no és un SRC que QGIS conegui: escriviu un codi com ara EPSG:32633.</translation>
         </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/surface_at_point.py" />
+            <source>%n points are on a surface, {off} on none.</source>
+            <translation>
+                <numerusform>%n punt és sobre una superfície, {off} sobre cap.</numerusform>
+                <numerusform>%n punts són sobre una superfície, {off} sobre cap.</numerusform>
+            </translation>
+        </message>
         <message>
             <location filename="../../plugin/processing/surface_at_point.py" />
             <source>&lt;p&gt;Copies points and adds &lt;b&gt;surface&lt;/b&gt;, the class of the road surface that each is on, its &lt;b&gt;surface_name&lt;/b&gt;, and &lt;b&gt;surface_origin&lt;/b&gt;: whether the surface was drawn or generated from centrelines. They are empty where there is no surface.&lt;/p&gt; &lt;p&gt;The surfaces are layers of areas with a field &lt;i&gt;surface&lt;/i&gt;, or the class that their role says; without any, the project's layers with the role road surface. Points and layers may be in any CRS.&lt;/p&gt; &lt;p&gt;A point on an edge is on the surface. Where surfaces lie on one another a drawn one counts before a generated one, then the smaller before the larger. The expression &lt;i&gt;road_surface(x, y)&lt;/i&gt; tells the same. docs/roads.md says more.&lt;/p&gt;</source>
@@ -6934,11 +7116,6 @@
             <location filename="../../plugin/processing/surface_at_point.py" />
             <source>Surface at point</source>
             <translation>Superfície al punt</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/surface_at_point.py" />
-            <source>{on} points are on a surface, {off} on none.</source>
-            <translation>{on} punts són sobre una superfície, {off} sobre cap.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/svg_picture.py" />
@@ -7005,6 +7182,22 @@
             <source>The {name} of a tile is {value} m: give at least 1 m, such as 100.</source>
             <translation>La mida ({name}) d'una tessel·la és {value} m: doneu almenys 1 m, com ara 100.</translation>
         </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/trajectories.py" />
+            <source>%n features have no place, robot or time; they are left out.</source>
+            <translation>
+                <numerusform>%n entitat no té lloc, robot o temps; queda fora.</numerusform>
+                <numerusform>%n entitats no tenen lloc, robot o temps; queden fora.</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/trajectories.py" />
+            <source>%n lines</source>
+            <translation>
+                <numerusform>%n línia</numerusform>
+                <numerusform>%n línies</numerusform>
+            </translation>
+        </message>
         <message>
             <location filename="../../plugin/processing/trajectories.py" />
             <source>&lt;p&gt;Makes of the positions that a gateway stored one line for each drive of each robot: a robot that was not heard of for longer than the gap begins a new line. Or, with &lt;b&gt;a line for each step&lt;/b&gt;, one for each pair of positions, for colours by speed and for QGIS's temporal controller.&lt;/p&gt; &lt;p&gt;The positions are the layer &lt;i&gt;positions&lt;/i&gt; of &lt;i&gt;robot-bridge trajectories export drives.gpkg --site site&lt;/i&gt;, or any points, in any CRS, with a field for the robot and one for the time (date and time, seconds since 1970, or ISO 8601; without an offset UTC).&lt;/p&gt; &lt;p&gt;Fields: &lt;b&gt;begin&lt;/b&gt; and &lt;b&gt;end&lt;/b&gt; (UTC), &lt;b&gt;duration_s&lt;/b&gt;, &lt;b&gt;length_m&lt;/b&gt;, &lt;b&gt;mean_speed&lt;/b&gt; and &lt;b&gt;top_speed&lt;/b&gt; in m/s (as the robot told it, else its fastest step), &lt;b&gt;count&lt;/b&gt; of positions. The measure M of each vertex is its time in seconds since 1970. Lengths are measured in the layer's CRS if that is in true metres, as robots drive them, else on its ellipsoid.&lt;/p&gt; &lt;p&gt;The layer's times are set: open QGIS's temporal controller to play them.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:trajectories -- INPUT="drives.gpkg|layername=positions" OUTPUT=lines.gpkg&lt;/pre&gt;</source>
@@ -7062,13 +7255,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/trajectories.py" />
-            <source>{lines} lines of {positions} positions, {length:.1f} m in all.</source>
-            <translation>{lines} línies de {positions} posicions, {length:.1f} m en total.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/trajectories.py" />
-            <source>{odd} features have no place, robot or time; they are left out.</source>
-            <translation>{odd} entitats no tenen lloc, robot o temps; queden fora.</translation>
+            <source>{lines} of {positions}, {length:.1f} m in all.</source>
+            <translation>{lines} de {positions}, {length:.1f} m en total.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/value_spelling.py" />
@@ -7120,20 +7308,55 @@
             <source>{what} cannot be written to {target}: {reason}. Choose a file in a folder that exists, may be written to, and has space.</source>
             <translation>{what} no es pot escriure a {target}: {reason}. Trieu un fitxer en una carpeta que existeixi, on es pugui escriure i que tingui espai.</translation>
         </message>
-        <message>
+        <message numerus="yes">
             <location filename="../../plugin/roles/live_preview.py" />
-            <source>Reading {sources} layers …</source>
-            <translation>S'estan llegint {sources} capes …</translation>
+            <source>Reading %n layers …</source>
+            <translation>
+                <numerusform>S'està llegint %n capa …</numerusform>
+                <numerusform>S'estan llegint %n capes …</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/roles/measure.py" />
+            <source>%n layers refused</source>
+            <translation>
+                <numerusform>%n capa rebutjada</numerusform>
+                <numerusform>%n capes rebutjades</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/roles/measure.py" />
+            <source>%n roads</source>
+            <translation>
+                <numerusform>%n via</numerusform>
+                <numerusform>%n vies</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/roles/measure.py" />
+            <source>%n surfaces</source>
+            <translation>
+                <numerusform>%n superfície</numerusform>
+                <numerusform>%n superfícies</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/roles/measure.py" />
+            <source>%n warnings</source>
+            <translation>
+                <numerusform>%n avís</numerusform>
+                <numerusform>%n avisos</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/roles/measure.py" />
-            <source> of {counted}</source>
-            <translation> de {counted}</translation>
+            <source>refused</source>
+            <translation>rebutjada</translation>
         </message>
         <message>
             <location filename="../../plugin/roles/measure.py" />
-            <source>{counted} refused</source>
-            <translation>{counted} rebutjades</translation>
+            <source>{obstacles} of {segments}</source>
+            <translation>{obstacles} de {segments}</translation>
         </message>
         <message>
             <location filename="../../plugin/roles/picture.py" />
@@ -7190,10 +7413,13 @@
             <source>{name} knows none of these layers by name and fields.</source>
             <translation>{name} no coneix cap d'aquestes capes pel nom i els camps.</translation>
         </message>
-        <message>
+        <message numerus="yes">
             <location filename="../../plugin/roles/roles_dialog.py" />
-            <source>{name}: {known} of {setups} layers set up.</source>
-            <translation>{name}: {known} de {setups} capes configurades.</translation>
+            <source>{name}: {known} of %n layers set up.</source>
+            <translation>
+                <numerusform>{name}: {known} de %n capa configurada.</numerusform>
+                <numerusform>{name}: {known} de %n capes configurades.</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/roles/table_model.py" />

@@ -611,11 +611,6 @@
         </message>
         <message>
             <location filename="../../plugin/desk/alarms/alarm_bar.py" />
-            <source>; and {number} more</source>
-            <translation>; y {number} más</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/alarms/alarm_bar.py" />
             <source>Acknowledge all</source>
             <translation>Reconocer todas</translation>
         </message>
@@ -699,6 +694,14 @@
             <source>over</source>
             <translation>terminada</translation>
         </message>
+        <message numerus="yes">
+            <location filename="../../plugin/desk/alarms/log_dialog.py" />
+            <source>%n lines written to {path}</source>
+            <translation>
+                <numerusform>%n línea escrita en {path}</numerusform>
+                <numerusform>%n líneas escritas en {path}</numerusform>
+            </translation>
+        </message>
         <message>
             <location filename="../../plugin/desk/alarms/log_dialog.py" />
             <source>By</source>
@@ -744,15 +747,13 @@
             <source>What</source>
             <translation>Qué</translation>
         </message>
-        <message>
-            <location filename="../../plugin/desk/alarms/log_dialog.py" />
-            <source>{count} lines written to {path}</source>
-            <translation>{count} líneas escritas en {path}</translation>
-        </message>
-        <message>
+        <message numerus="yes">
             <location filename="../../plugin/desk/alarms/message_log.py" />
-            <source>and {number} more alarms: see the log of alarms in the Fleet panel</source>
-            <translation>y {number} alarmas más: vea el registro de alarmas en el panel de la flota</translation>
+            <source>and %n more alarms: see the log of alarms in the Fleet panel</source>
+            <translation>
+                <numerusform>y %n alarma más: vea el registro de alarmas en el panel de la flota</numerusform>
+                <numerusform>y %n alarmas más: vea el registro de alarmas en el panel de la flota</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/desk/alarms/road_ground.py" />
@@ -1094,6 +1095,22 @@
             <source>Details</source>
             <translation>Detalles</translation>
         </message>
+        <message numerus="yes">
+            <location filename="../../plugin/desk/command_log/log_panel.py" />
+            <source>%n commands</source>
+            <translation>
+                <numerusform>%n orden</numerusform>
+                <numerusform>%n órdenes</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/desk/command_log/log_panel.py" />
+            <source>%n steps</source>
+            <translation>
+                <numerusform>%n paso</numerusform>
+                <numerusform>%n pasos</numerusform>
+            </translation>
+        </message>
         <message>
             <location filename="../../plugin/desk/command_log/log_panel.py" />
             <source>All commands</source>
@@ -1171,8 +1188,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/command_log/log_panel.py" />
-            <source>{commands} commands with {steps} steps written to {path}</source>
-            <translation>{commands} órdenes con {steps} pasos escritas en {path}</translation>
+            <source>{commands} and {steps} written to {path}</source>
+            <translation>se escribieron {commands} y {steps} en {path}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/command_log/log_panel.py" />
@@ -1763,6 +1780,14 @@
             <source>({x:.2f}, {y:.2f}) m</source>
             <translation>({x:.2f}, {y:.2f}) m</translation>
         </message>
+        <message numerus="yes">
+            <location filename="../../plugin/desk/drafts.py" />
+            <source>%n cones for {robot}</source>
+            <translation>
+                <numerusform>%n cono para {robot}</numerusform>
+                <numerusform>%n conos para {robot}</numerusform>
+            </translation>
+        </message>
         <message>
             <location filename="../../plugin/desk/drafts.py" />
             <source>, theta {degrees:.0f}°</source>
@@ -1805,18 +1830,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/drafts.py" />
-            <source>{points} cones for {robot}</source>
-            <translation>{points} conos para {robot}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/drafts.py" />
             <source>{x:.2f}, {y:.2f} m</source>
             <translation>{x:.2f}, {y:.2f} m</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/emergency_banner.py" />
-            <source> and {more} more</source>
-            <translation> y {more} más</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/emergency_banner.py" />
@@ -1853,10 +1868,13 @@
             <source>The link to the gateway is down: this is what it said last.</source>
             <translation>El enlace con la pasarela está caído: esto es lo último que dijo.</translation>
         </message>
-        <message>
+        <message numerus="yes">
             <location filename="../../plugin/desk/emergency_banner.py" />
-            <source>{acknowledged} of {robots} robots acknowledged, {standing} seen to stand</source>
-            <translation>{acknowledged} de {robots} robots lo confirmaron, {standing} se ven parados</translation>
+            <source>{acknowledged} of %n robots acknowledged, {standing} seen to stand</source>
+            <translation>
+                <numerusform>{acknowledged} de %n robot lo confirmó, {standing} se ve parado</numerusform>
+                <numerusform>{acknowledged} de %n robots lo confirmaron, {standing} se ven parados</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/desk/inquiries.py" />
@@ -1903,15 +1921,21 @@
             <source>Standard: {value}</source>
             <translation>Norma: {value}</translation>
         </message>
-        <message>
+        <message numerus="yes">
             <location filename="../../plugin/desk/layout_tool.py" />
-            <source>{cones} cones are in the layer {layer}.</source>
-            <translation>{cones} conos están en la capa {layer}.</translation>
+            <source>%n cones are in the layer {layer}.</source>
+            <translation>
+                <numerusform>%n cono está en la capa {layer}.</numerusform>
+                <numerusform>%n conos están en la capa {layer}.</numerusform>
+            </translation>
         </message>
-        <message>
+        <message numerus="yes">
             <location filename="../../plugin/desk/layout_tool.py" />
-            <source>{wrong} of {cones} cones should not stand there: {text} All are in the layer {layer}.</source>
-            <translation>{wrong} de {cones} conos no deberían estar ahí: {text} Todos están en la capa {layer}.</translation>
+            <source>{wrong} of %n cones should not stand there: {text} All are in the layer {layer}.</source>
+            <translation>
+                <numerusform>{wrong} de %n cono no debería estar ahí: {text} Está en la capa {layer}.</numerusform>
+                <numerusform>{wrong} de %n conos no deberían estar ahí: {text} Todos están en la capa {layer}.</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/desk/live/hover_card.py" />
@@ -2328,10 +2352,13 @@
             <source>{words}: queued</source>
             <translation>{words}: en cola</translation>
         </message>
-        <message>
+        <message numerus="yes">
             <location filename="../../plugin/desk/orders.py" />
-            <source>{words}: sent to {commands} robots</source>
-            <translation>{words}: enviado a {commands} robots</translation>
+            <source>{words}: sent to %n robots</source>
+            <translation>
+                <numerusform>{words}: enviado a %n robot</numerusform>
+                <numerusform>{words}: enviado a %n robots</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/desk/orders.py" />
@@ -2353,10 +2380,13 @@
             <source>not a finite place</source>
             <translation>no es un lugar finito</translation>
         </message>
-        <message>
+        <message numerus="yes">
             <location filename="../../plugin/desk/plans/as_placed.py" />
-            <source> of {expected}</source>
-            <translation> de {expected}</translation>
+            <source>%n cones placed</source>
+            <translation>
+                <numerusform>%n cono colocado</numerusform>
+                <numerusform>%n conos colocados</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/as_placed.py" />
@@ -2373,10 +2403,18 @@
             <source>off by {mean:.3f} m on average, at most {largest:.3f} m</source>
             <translation>desvío medio de {mean:.3f} m, como máximo {largest:.3f} m</translation>
         </message>
+        <message numerus="yes">
+            <location filename="../../plugin/desk/plans/as_placed.py" />
+            <source>{cones} of %n cones placed</source>
+            <translation>
+                <numerusform>{cones} de %n cono colocado</numerusform>
+                <numerusform>{cones} de %n conos colocados</numerusform>
+            </translation>
+        </message>
         <message>
             <location filename="../../plugin/desk/plans/as_placed.py" />
-            <source>{cones}{of} cones placed{gone}; {off}</source>
-            <translation>{cones}{of} conos colocados{gone}; {off}</translation>
+            <source>{placed}{gone}; {off}</source>
+            <translation>{placed}{gone}; {off}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/as_placed_page.py" />
@@ -2555,8 +2593,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driven_plan.py" />
-            <source>Cone {cones} was given up since this plan was made: plan what is left again.</source>
-            <translation>Se renunció al cono {cones} desde que se hizo este plan: planifique de nuevo lo que queda.</translation>
+            <source>Given up since this plan was made: {cones}. Plan what is left again.</source>
+            <translation>Abandonados desde que se hizo este plan: {cones}. Vuelva a planificar lo que queda.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driven_plan.py" />
@@ -2638,10 +2676,13 @@
             <source>Confirm new plan</source>
             <translation>Confirmar plan nuevo</translation>
         </message>
-        <message>
+        <message numerus="yes">
             <location filename="../../plugin/desk/plans/driving_bar.py" />
-            <source>Done: {done} of {cones} cones</source>
-            <translation>Hecho: {done} de {cones} conos</translation>
+            <source>Done: {done} of %n cones</source>
+            <translation>
+                <numerusform>Hecho: {done} de %n cono</numerusform>
+                <numerusform>Hecho: {done} de %n conos</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driving_bar.py" />
@@ -2693,20 +2734,18 @@
             <source>Send…</source>
             <translation>Enviar…</translation>
         </message>
-        <message>
+        <message numerus="yes">
             <location filename="../../plugin/desk/plans/driving_bar.py" />
-            <source>Under way: {done} of {cones} cones</source>
-            <translation>En curso: {done} de {cones} conos</translation>
+            <source>Under way: {done} of %n cones</source>
+            <translation>
+                <numerusform>En curso: {done} de %n cono</numerusform>
+                <numerusform>En curso: {done} de %n conos</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driving_bar.py" />
             <source>When a robot is lost or a cone fails, plan what is left and send it by itself</source>
             <translation>Cuando se pierde un robot o falla un cono, planifica lo que queda y lo envía solo</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/driving_bar.py" />
-            <source>and {more} more</source>
-            <translation>y {more} más</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driving_bar.py" />
@@ -2798,6 +2837,22 @@
             <source>Cones as placed</source>
             <translation>Conos tal como se colocaron</translation>
         </message>
+        <message numerus="yes">
+            <location filename="../../plugin/desk/plans/plan_rows.py" />
+            <source>%n cones</source>
+            <translation>
+                <numerusform>%n cono</numerusform>
+                <numerusform>%n conos</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/desk/plans/plan_rows.py" />
+            <source>%n robots</source>
+            <translation>
+                <numerusform>%n robot</numerusform>
+                <numerusform>%n robots</numerusform>
+            </translation>
+        </message>
         <message>
             <location filename="../../plugin/desk/plans/plan_rows.py" />
             <source>FAILED</source>
@@ -2830,8 +2885,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/plan_rows.py" />
-            <source>{cones} cones, {robots} robots, {metres:.0f} m, done after {span} ({method}, along {travel})</source>
-            <translation>{cones} conos, {robots} robots, {metres:.0f} m, hecho en {span} ({method}, por {travel})</translation>
+            <source>{cones}, {robots}, {metres:.0f} m, done after {span} ({method}, along {travel})</source>
+            <translation>{cones}, {robots}, {metres:.0f} m, hecho en {span} ({method}, por {travel})</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/plan_rows.py" />
@@ -2890,15 +2945,13 @@
             <source>store </source>
             <translation>almacén </translation>
         </message>
-        <message>
+        <message numerus="yes">
             <location filename="../../plugin/desk/plans/plan_tree.py" />
-            <source>{cones} cones</source>
-            <translation>{cones} conos</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/plan_tree.py" />
-            <source>{done} of {cones} cones</source>
-            <translation>{done} de {cones} conos</translation>
+            <source>{done} of %n cones</source>
+            <translation>
+                <numerusform>{done} de %n cono</numerusform>
+                <numerusform>{done} de %n conos</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/plan_ways.py" />
@@ -2990,6 +3043,14 @@
             <source>{why} Not done therefore: {left}.</source>
             <translation>{why} Por eso no se hizo: {left}.</translation>
         </message>
+        <message numerus="yes">
+            <location filename="../../plugin/desk/plans/sending_check.py" />
+            <source>%n tasks that wait in the queue of {id} are replaced</source>
+            <translation>
+                <numerusform>se sustituye %n tarea que espera en la cola de {id}</numerusform>
+                <numerusform>se sustituyen %n tareas que esperan en la cola de {id}</numerusform>
+            </translation>
+        </message>
         <message>
             <location filename="../../plugin/desk/plans/sending_check.py" />
             <source>Mind:</source>
@@ -3034,16 +3095,6 @@
             <location filename="../../plugin/desk/plans/sending_check.py" />
             <source>{id} is {state}: it gets its queue when it is heard of again</source>
             <translation>{id} está {state}: recibe su cola cuando se vuelva a saber de él</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/sending_check.py" />
-            <source>{robot}: {cones} cones</source>
-            <translation>{robot}: {cones} conos</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/sending_check.py" />
-            <source>{waiting} tasks that wait in the queue of {id} are replaced</source>
-            <translation>se sustituyen {waiting} tareas que esperan en la cola de {id}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/settings_form.py" />
@@ -3373,6 +3424,14 @@
             <source> · NOT ALL</source>
             <translation> · NO TODAS</translation>
         </message>
+        <message numerus="yes">
+            <location filename="../../plugin/desk/replay/replay_dock.py" />
+            <source>%n positions</source>
+            <translation>
+                <numerusform>%n posición</numerusform>
+                <numerusform>%n posiciones</numerusform>
+            </translation>
+        </message>
         <message>
             <location filename="../../plugin/desk/replay/replay_dock.py" />
             <source>Choose a time and press Load.</source>
@@ -3390,8 +3449,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/replay/replay_dock.py" />
-            <source>Loading … {positions} positions, up to {moment}</source>
-            <translation>Cargando … {positions} posiciones, hasta {moment}</translation>
+            <source>Loading … {positions}, up to {moment}</source>
+            <translation>Cargando … {positions}, hasta {moment}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/replay/replay_dock.py" />
@@ -3690,8 +3749,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/robots/detail_rows.py" />
-            <source>and {number} more</source>
-            <translation>y {number} más</translation>
+            <source>and {more} more</source>
+            <translation>y {more} más</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/robots/detail_rows.py" />
@@ -3998,18 +4057,21 @@
         </message>
         <message>
             <location filename="../../plugin/desk/site_drop.py" />
-            <source> {layers} have no role: other layers of the project have it. Plugins &gt; Fleet Supervisor &gt; Layer roles changes that.</source>
-            <translation> {layers} no tienen papel: lo tienen otras capas del proyecto. Complementos &gt; Fleet Supervisor &gt; Papeles de las capas lo cambia.</translation>
+            <source> Without a role, since other layers of the project have it: {layers}. Plugins &gt; Fleet Supervisor &gt; Layer roles changes that.</source>
+            <translation> Sin papel, porque lo tienen otras capas del proyecto: {layers}. Complementos &gt; Fleet Supervisor &gt; Papeles de las capas lo cambia.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/site_drop.py" />
             <source>The site in {folder} is in the project already: {names}.</source>
             <translation>El recinto de {folder} ya está en el proyecto: {names}.</translation>
         </message>
-        <message>
+        <message numerus="yes">
             <location filename="../../plugin/desk/site_drop.py" />
-            <source>{site}: {count} layers loaded.</source>
-            <translation>{site}: {count} capas cargadas.</translation>
+            <source>{site}: %n layers loaded.</source>
+            <translation>
+                <numerusform>{site}: %n capa cargada.</numerusform>
+                <numerusform>{site}: %n capas cargadas.</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/desk/state_words.py" />
@@ -4880,6 +4942,14 @@
             <source>{state}, heard of {age:.0f} s ago</source>
             <translation>{state}, último mensaje hace {age:.0f} s</translation>
         </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>%n features have no planned or no placed position; they are left out.</source>
+            <translation>
+                <numerusform>%n objeto espacial no tiene posición planificada o colocada; queda fuera.</numerusform>
+                <numerusform>%n objetos espaciales no tienen posición planificada o colocada; quedan fuera.</numerusform>
+            </translation>
+        </message>
         <message>
             <location filename="../../plugin/processing/as_placed_report.py" />
             <source>95 % deviate at most [m]</source>
@@ -4975,15 +5045,21 @@
             <source>Writes a PDF of how placed cones stand against their plan: figures, histogram, map and table.</source>
             <translation>Escribe un PDF de cómo están los conos colocados respecto al plan: cifras, histograma, mapa y tabla.</translation>
         </message>
-        <message>
+        <message numerus="yes">
             <location filename="../../plugin/processing/as_placed_report.py" />
-            <source>{odd} features have no planned or no placed position; they are left out.</source>
-            <translation>{odd} objetos espaciales no tienen posición planificada o colocada; quedan fuera.</translation>
+            <source>{within} of %n cones are within {tolerance:g} m; the worst is {most:.3f} m off.</source>
+            <translation>
+                <numerusform>{within} de %n cono está dentro de {tolerance:g} m; se desvía {most:.3f} m.</numerusform>
+                <numerusform>{within} de %n conos están dentro de {tolerance:g} m; el peor se desvía {most:.3f} m.</numerusform>
+            </translation>
         </message>
-        <message>
-            <location filename="../../plugin/processing/as_placed_report.py" />
-            <source>{within} of {count} cones are within {tolerance:g} m; the worst is {most:.3f} m off.</source>
-            <translation>{within} de {count} conos están dentro de {tolerance:g} m; el peor se desvía {most:.3f} m.</translation>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/assign_cones.py" />
+            <source>%n trips</source>
+            <translation>
+                <numerusform>%n viaje</numerusform>
+                <numerusform>%n viajes</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/processing/assign_cones.py" />
@@ -5032,8 +5108,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/assign_cones.py" />
-            <source>Robot {id}: {cones} cones on {trips} trips, {metres:.0f} m, done after {end_s:.0f} s</source>
-            <translation>Robot {id}: {cones} conos en {trips} viajes, {metres:.0f} m, termina al cabo de {end_s:.0f} s</translation>
+            <source>Robot {id}: {cones} on {trips}, {metres:.0f} m, done after {end_s:.0f} s</source>
+            <translation>Robot {id}: {cones} en {trips}, {metres:.0f} m, termina al cabo de {end_s:.0f} s</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/assign_cones.py" />
@@ -5059,6 +5135,38 @@
             <location filename="../../plugin/processing/assign_cones.py" />
             <source>What the ways follow</source>
             <translation>Qué siguen los recorridos</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/build_road_network.py" />
+            <source>%n edges</source>
+            <translation>
+                <numerusform>%n arista</numerusform>
+                <numerusform>%n aristas</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/build_road_network.py" />
+            <source>%n nodes</source>
+            <translation>
+                <numerusform>%n nodo</numerusform>
+                <numerusform>%n nodos</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/build_road_network.py" />
+            <source>%n parts</source>
+            <translation>
+                <numerusform>%n parte</numerusform>
+                <numerusform>%n partes</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/build_road_network.py" />
+            <source>%n repairs</source>
+            <translation>
+                <numerusform>%n reparación</numerusform>
+                <numerusform>%n reparaciones</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/processing/build_road_network.py" />
@@ -5100,10 +5208,13 @@
             <source>Splits road centrelines where they meet, passes over and under at bridges, and repairs on request.</source>
             <translation>Divide los ejes de vía donde se encuentran, pasa por encima y por debajo en los puentes, y repara si se pide.</translation>
         </message>
-        <message>
-            <location filename="../../plugin/processing/build_road_network.py" />
-            <source>{edges} edges, {nodes} nodes, {parts} parts, {repairs} repairs</source>
-            <translation>{edges} aristas, {nodes} nodos, {parts} partes, {repairs} reparaciones</translation>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/build_road_surfaces.py" />
+            <source>%n of the surfaces that are given as drawn say that they were generated (field origin); they are left out and made anew</source>
+            <translation>
+                <numerusform>%n de las superficies dadas como dibujadas dice que se generó (campo origin); se omite y se vuelve a hacer</numerusform>
+                <numerusform>%n de las superficies dadas como dibujadas dicen que se generaron (campo origin); se omiten y se vuelven a hacer</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/processing/build_road_surfaces.py" />
@@ -5164,11 +5275,6 @@
             <location filename="../../plugin/processing/build_road_surfaces.py" />
             <source>{label}: {area:.1f} m²</source>
             <translation>{label}: {area:.1f} m²</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/build_road_surfaces.py" />
-            <source>{old} of the surfaces that are given as drawn say that they were generated (field origin); they are left out and made anew</source>
-            <translation>{old} de las superficies dadas como dibujadas dicen que se generaron (campo origin); se omiten y se vuelven a hacer</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/check_road_network.py" />
@@ -5687,11 +5793,6 @@
         </message>
         <message>
             <location filename="../../plugin/processing/export_robot_map.py" />
-            <source>{obstacles} obstacles, {segment_count} segments</source>
-            <translation>{obstacles} obstáculos, {segment_count} segmentos</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/export_robot_map.py" />
             <source>{size} bytes in binary, {ratio:.2f} bytes/m²</source>
             <translation>{size} bytes en binario, {ratio:.2f} bytes/m²</translation>
         </message>
@@ -5699,6 +5800,22 @@
             <location filename="../../plugin/processing/export_robot_map.py" />
             <source>{size} bytes of text, {ratio:.2f} bytes/m² (paper 1: about 3 bytes/m² as text)</source>
             <translation>{size} bytes de texto, {ratio:.2f} bytes/m² (artículo 1: unos 3 bytes/m² como texto)</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/export_robot_map_tiles.py" />
+            <source>%n segments</source>
+            <translation>
+                <numerusform>%n segmento</numerusform>
+                <numerusform>%n segmentos</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/export_robot_map_tiles.py" />
+            <source>%n tiles</source>
+            <translation>
+                <numerusform>%n tesela</numerusform>
+                <numerusform>%n teselas</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/processing/export_robot_map_tiles.py" />
@@ -5787,8 +5904,16 @@
         </message>
         <message>
             <location filename="../../plugin/processing/export_robot_map_tiles.py" />
-            <source>{rows} tiles, {segments} segments, {size} bytes</source>
-            <translation>{rows} teselas, {segments} segmentos, {size} bytes</translation>
+            <source>{tiles}, {segments}, {size} bytes</source>
+            <translation>{tiles}, {segments}, {size} bytes</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>%n points</source>
+            <translation>
+                <numerusform>%n punto</numerusform>
+                <numerusform>%n puntos</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/processing/find_route.py" />
@@ -5887,8 +6012,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/find_route.py" />
-            <source>{metres:.1f} m, {seconds:.1f} s, {points} points, found by {engine}; start {off_start:.2f} m and goal {off_goal:.2f} m from the road</source>
-            <translation>{metres:.1f} m, {seconds:.1f} s, {points} puntos, encontrada por {engine}; inicio a {off_start:.2f} m y final a {off_goal:.2f} m de la vía</translation>
+            <source>{metres:.1f} m, {seconds:.1f} s, {points}, found by {engine}; start {off_start:.2f} m and goal {off_goal:.2f} m from the road</source>
+            <translation>{metres:.1f} m, {seconds:.1f} s, {points}, encontrada por {engine}; inicio a {off_start:.2f} m y final a {off_goal:.2f} m de la vía</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/fleet_algorithm.py" />
@@ -6125,15 +6250,18 @@
             <source>Width of the robots [m]</source>
             <translation>Anchura de los robots [m]</translation>
         </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/keepout_areas.py" />
+            <source>%n edges lead through areas to be avoided, and are closed</source>
+            <translation>
+                <numerusform>%n arista pasa por zonas que hay que evitar, y se cierra</numerusform>
+                <numerusform>%n aristas pasan por zonas que hay que evitar, y se cierran</numerusform>
+            </translation>
+        </message>
         <message>
             <location filename="../../plugin/processing/keepout_areas.py" />
             <source>Areas that must not be driven through</source>
             <translation>Zonas que no se deben atravesar</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/keepout_areas.py" />
-            <source>{closed} edges lead through areas to be avoided, and are closed</source>
-            <translation>{closed} aristas pasan por zonas que hay que evitar, y se cierran</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/load_robot_map.py" />
@@ -6477,8 +6605,16 @@
         </message>
         <message>
             <location filename="../../plugin/processing/obstacle_outlines.py" />
-            <source>{obstacles} obstacles with {segments} segments became {obstacles_left} with {segments_left}</source>
-            <translation>{obstacles} obstáculos con {segments} segmentos se convirtieron en {obstacles_left} con {segments_left}</translation>
+            <source>{before} became {after}</source>
+            <translation>antes: {before}; después: {after}</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/obstacle_words.py" />
+            <source>%n obstacles</source>
+            <translation>
+                <numerusform>%n obstáculo</numerusform>
+                <numerusform>%n obstáculos</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/processing/placed_cones.py" />
@@ -6580,6 +6716,38 @@
             <source>{place} = {text} is no number: correct it there.</source>
             <translation>{place} = {text} no es un número: corríjalo allí.</translation>
         </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>%n centrelines</source>
+            <translation>
+                <numerusform>%n eje</numerusform>
+                <numerusform>%n ejes</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>%n keepouts</source>
+            <translation>
+                <numerusform>%n zona prohibida</numerusform>
+                <numerusform>%n zonas prohibidas</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>%n obstacle outlines</source>
+            <translation>
+                <numerusform>%n contorno de obstáculo</numerusform>
+                <numerusform>%n contornos de obstáculos</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>%n road surfaces</source>
+            <translation>
+                <numerusform>%n superficie de vía</numerusform>
+                <numerusform>%n superficies de vía</numerusform>
+            </translation>
+        </message>
         <message>
             <location filename="../../plugin/processing/publish_site.py" />
             <source>A robot is lost without a message for [s]</source>
@@ -6667,8 +6835,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/publish_site.py" />
-            <source>Site {id} version {version} is published in {folder}: {outlines} obstacle outlines, {centrelines} centrelines, {surfaces} road surfaces, {keepouts} keepouts; bounds {bounds} m</source>
-            <translation>El recinto {id} versión {version} se publicó en {folder}: {outlines} contornos de obstáculos, {centrelines} ejes, {surfaces} superficies de vía, {keepouts} zonas prohibidas; límites {bounds} m</translation>
+            <source>Site {id} version {version} is published in {folder}: {outlines}, {centrelines}, {surfaces}, {keepouts}; bounds {bounds} m</source>
+            <translation>El recinto {id} versión {version} se publicó en {folder}: {outlines}, {centrelines}, {surfaces}, {keepouts}; límites {bounds} m</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/publish_site.py" />
@@ -6740,10 +6908,13 @@
             <source>{time} UTC</source>
             <translation>{time} UTC</translation>
         </message>
-        <message>
+        <message numerus="yes">
             <location filename="../../plugin/processing/report_layout.py" />
-            <source>{within} of {count} cones ({share:.0f} %) stand within {tolerance:g} cm of their plan.</source>
-            <translation>{within} de {count} conos ({share:.0f} %) están a menos de {tolerance:g} cm del plan.</translation>
+            <source>{within} of %n cones ({share:.0f} %) stand within {tolerance:g} cm of their plan.</source>
+            <translation>
+                <numerusform>{within} de %n cono ({share:.0f} %) está a menos de {tolerance:g} cm del plan.</numerusform>
+                <numerusform>{within} de %n conos ({share:.0f} %) están a menos de {tolerance:g} cm del plan.</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/processing/report_layout.py" />
@@ -6805,10 +6976,13 @@
             <source>Layer {name}, feature {id}: {note}</source>
             <translation>Capa {name}, objeto espacial {id}: {note}</translation>
         </message>
-        <message>
+        <message numerus="yes">
             <location filename="../../plugin/processing/road_source.py" />
-            <source>Layer {name}: the width of {unknown} roads is not known; {width:g} m is used</source>
-            <translation>Capa {name}: la anchura de {unknown} vías no se conoce; se usa {width:g} m</translation>
+            <source>Layer {name}: the width of %n roads is not known; {width:g} m is used</source>
+            <translation>
+                <numerusform>Capa {name}: la anchura de %n vía no se conoce; se usa {width:g} m</numerusform>
+                <numerusform>Capa {name}: la anchura de %n vías no se conoce; se usa {width:g} m</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/processing/road_source.py" />
@@ -6880,6 +7054,14 @@
             <source>SITE_CRS {crs} is no CRS that QGIS knows: write a code such as EPSG:32633.</source>
             <translation>SITE_CRS {crs} no es un SRC que QGIS conozca: escriba un código como EPSG:32633.</translation>
         </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/surface_at_point.py" />
+            <source>%n points are on a surface, {off} on none.</source>
+            <translation>
+                <numerusform>%n punto está sobre una superficie, {off} sobre ninguna.</numerusform>
+                <numerusform>%n puntos están sobre una superficie, {off} sobre ninguna.</numerusform>
+            </translation>
+        </message>
         <message>
             <location filename="../../plugin/processing/surface_at_point.py" />
             <source>&lt;p&gt;Copies points and adds &lt;b&gt;surface&lt;/b&gt;, the class of the road surface that each is on, its &lt;b&gt;surface_name&lt;/b&gt;, and &lt;b&gt;surface_origin&lt;/b&gt;: whether the surface was drawn or generated from centrelines. They are empty where there is no surface.&lt;/p&gt; &lt;p&gt;The surfaces are layers of areas with a field &lt;i&gt;surface&lt;/i&gt;, or the class that their role says; without any, the project's layers with the role road surface. Points and layers may be in any CRS.&lt;/p&gt; &lt;p&gt;A point on an edge is on the surface. Where surfaces lie on one another a drawn one counts before a generated one, then the smaller before the larger. The expression &lt;i&gt;road_surface(x, y)&lt;/i&gt; tells the same. docs/roads.md says more.&lt;/p&gt;</source>
@@ -6934,11 +7116,6 @@
             <location filename="../../plugin/processing/surface_at_point.py" />
             <source>Surface at point</source>
             <translation>Superficie en el punto</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/surface_at_point.py" />
-            <source>{on} points are on a surface, {off} on none.</source>
-            <translation>{on} puntos están sobre una superficie, {off} sobre ninguna.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/svg_picture.py" />
@@ -7005,6 +7182,22 @@
             <source>The {name} of a tile is {value} m: give at least 1 m, such as 100.</source>
             <translation>El tamaño ({name}) de una tesela es {value} m: dé al menos 1 m, como 100.</translation>
         </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/trajectories.py" />
+            <source>%n features have no place, robot or time; they are left out.</source>
+            <translation>
+                <numerusform>%n objeto espacial no tiene lugar, robot o tiempo; queda fuera.</numerusform>
+                <numerusform>%n objetos espaciales no tienen lugar, robot o tiempo; quedan fuera.</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/trajectories.py" />
+            <source>%n lines</source>
+            <translation>
+                <numerusform>%n línea</numerusform>
+                <numerusform>%n líneas</numerusform>
+            </translation>
+        </message>
         <message>
             <location filename="../../plugin/processing/trajectories.py" />
             <source>&lt;p&gt;Makes of the positions that a gateway stored one line for each drive of each robot: a robot that was not heard of for longer than the gap begins a new line. Or, with &lt;b&gt;a line for each step&lt;/b&gt;, one for each pair of positions, for colours by speed and for QGIS's temporal controller.&lt;/p&gt; &lt;p&gt;The positions are the layer &lt;i&gt;positions&lt;/i&gt; of &lt;i&gt;robot-bridge trajectories export drives.gpkg --site site&lt;/i&gt;, or any points, in any CRS, with a field for the robot and one for the time (date and time, seconds since 1970, or ISO 8601; without an offset UTC).&lt;/p&gt; &lt;p&gt;Fields: &lt;b&gt;begin&lt;/b&gt; and &lt;b&gt;end&lt;/b&gt; (UTC), &lt;b&gt;duration_s&lt;/b&gt;, &lt;b&gt;length_m&lt;/b&gt;, &lt;b&gt;mean_speed&lt;/b&gt; and &lt;b&gt;top_speed&lt;/b&gt; in m/s (as the robot told it, else its fastest step), &lt;b&gt;count&lt;/b&gt; of positions. The measure M of each vertex is its time in seconds since 1970. Lengths are measured in the layer's CRS if that is in true metres, as robots drive them, else on its ellipsoid.&lt;/p&gt; &lt;p&gt;The layer's times are set: open QGIS's temporal controller to play them.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:trajectories -- INPUT="drives.gpkg|layername=positions" OUTPUT=lines.gpkg&lt;/pre&gt;</source>
@@ -7062,13 +7255,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/trajectories.py" />
-            <source>{lines} lines of {positions} positions, {length:.1f} m in all.</source>
-            <translation>{lines} líneas de {positions} posiciones, {length:.1f} m en total.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/trajectories.py" />
-            <source>{odd} features have no place, robot or time; they are left out.</source>
-            <translation>{odd} objetos espaciales no tienen lugar, robot o tiempo; quedan fuera.</translation>
+            <source>{lines} of {positions}, {length:.1f} m in all.</source>
+            <translation>{lines} de {positions}, {length:.1f} m en total.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/value_spelling.py" />
@@ -7120,20 +7308,55 @@
             <source>{what} cannot be written to {target}: {reason}. Choose a file in a folder that exists, may be written to, and has space.</source>
             <translation>{what} no se puede escribir en {target}: {reason}. Elija un archivo en una carpeta que exista, donde se pueda escribir y que tenga espacio.</translation>
         </message>
-        <message>
+        <message numerus="yes">
             <location filename="../../plugin/roles/live_preview.py" />
-            <source>Reading {sources} layers …</source>
-            <translation>Leyendo {sources} capas …</translation>
+            <source>Reading %n layers …</source>
+            <translation>
+                <numerusform>Leyendo %n capa …</numerusform>
+                <numerusform>Leyendo %n capas …</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/roles/measure.py" />
+            <source>%n layers refused</source>
+            <translation>
+                <numerusform>%n capa rechazada</numerusform>
+                <numerusform>%n capas rechazadas</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/roles/measure.py" />
+            <source>%n roads</source>
+            <translation>
+                <numerusform>%n vía</numerusform>
+                <numerusform>%n vías</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/roles/measure.py" />
+            <source>%n surfaces</source>
+            <translation>
+                <numerusform>%n superficie</numerusform>
+                <numerusform>%n superficies</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/roles/measure.py" />
+            <source>%n warnings</source>
+            <translation>
+                <numerusform>%n aviso</numerusform>
+                <numerusform>%n avisos</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/roles/measure.py" />
-            <source> of {counted}</source>
-            <translation> de {counted}</translation>
+            <source>refused</source>
+            <translation>rechazada</translation>
         </message>
         <message>
             <location filename="../../plugin/roles/measure.py" />
-            <source>{counted} refused</source>
-            <translation>{counted} rechazadas</translation>
+            <source>{obstacles} of {segments}</source>
+            <translation>{obstacles} de {segments}</translation>
         </message>
         <message>
             <location filename="../../plugin/roles/picture.py" />
@@ -7190,10 +7413,13 @@
             <source>{name} knows none of these layers by name and fields.</source>
             <translation>{name} no conoce ninguna de estas capas por nombre y campos.</translation>
         </message>
-        <message>
+        <message numerus="yes">
             <location filename="../../plugin/roles/roles_dialog.py" />
-            <source>{name}: {known} of {setups} layers set up.</source>
-            <translation>{name}: {known} de {setups} capas configuradas.</translation>
+            <source>{name}: {known} of %n layers set up.</source>
+            <translation>
+                <numerusform>{name}: {known} de %n capa configurada.</numerusform>
+                <numerusform>{name}: {known} de %n capas configuradas.</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/roles/table_model.py" />

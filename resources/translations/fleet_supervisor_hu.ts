@@ -609,11 +609,6 @@
         </message>
         <message>
             <location filename="../../plugin/desk/alarms/alarm_bar.py" />
-            <source>; and {number} more</source>
-            <translation>; és még {number}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/alarms/alarm_bar.py" />
             <source>Acknowledge all</source>
             <translation>Mind nyugtázása</translation>
         </message>
@@ -697,6 +692,13 @@
             <source>over</source>
             <translation>vége</translation>
         </message>
+        <message numerus="yes">
+            <location filename="../../plugin/desk/alarms/log_dialog.py" />
+            <source>%n lines written to {path}</source>
+            <translation>
+                <numerusform>%n sor kiírva ide: {path}</numerusform>
+            </translation>
+        </message>
         <message>
             <location filename="../../plugin/desk/alarms/log_dialog.py" />
             <source>By</source>
@@ -742,15 +744,12 @@
             <source>What</source>
             <translation>Mi</translation>
         </message>
-        <message>
-            <location filename="../../plugin/desk/alarms/log_dialog.py" />
-            <source>{count} lines written to {path}</source>
-            <translation>{count} sor kiírva ide: {path}</translation>
-        </message>
-        <message>
+        <message numerus="yes">
             <location filename="../../plugin/desk/alarms/message_log.py" />
-            <source>and {number} more alarms: see the log of alarms in the Fleet panel</source>
-            <translation>és még {number} riasztás: lásd a riasztások naplóját a flottapanelen</translation>
+            <source>and %n more alarms: see the log of alarms in the Fleet panel</source>
+            <translation>
+                <numerusform>és még %n riasztás: lásd a riasztások naplóját a flottapanelen</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/desk/alarms/road_ground.py" />
@@ -1092,6 +1091,20 @@
             <source>Details</source>
             <translation>Részletek</translation>
         </message>
+        <message numerus="yes">
+            <location filename="../../plugin/desk/command_log/log_panel.py" />
+            <source>%n commands</source>
+            <translation>
+                <numerusform>%n parancs</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/desk/command_log/log_panel.py" />
+            <source>%n steps</source>
+            <translation>
+                <numerusform>%n lépés</numerusform>
+            </translation>
+        </message>
         <message>
             <location filename="../../plugin/desk/command_log/log_panel.py" />
             <source>All commands</source>
@@ -1169,8 +1182,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/command_log/log_panel.py" />
-            <source>{commands} commands with {steps} steps written to {path}</source>
-            <translation>{commands} parancs {steps} lépéssel kiírva ide: {path}</translation>
+            <source>{commands} and {steps} written to {path}</source>
+            <translation>kiírva ide: {path} ({commands}, {steps})</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/command_log/log_panel.py" />
@@ -1761,6 +1774,13 @@
             <source>({x:.2f}, {y:.2f}) m</source>
             <translation>({x:.2f}, {y:.2f}) m</translation>
         </message>
+        <message numerus="yes">
+            <location filename="../../plugin/desk/drafts.py" />
+            <source>%n cones for {robot}</source>
+            <translation>
+                <numerusform>%n bója ennek: {robot}</numerusform>
+            </translation>
+        </message>
         <message>
             <location filename="../../plugin/desk/drafts.py" />
             <source>, theta {degrees:.0f}°</source>
@@ -1803,18 +1823,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/drafts.py" />
-            <source>{points} cones for {robot}</source>
-            <translation>{points} bója ennek: {robot}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/drafts.py" />
             <source>{x:.2f}, {y:.2f} m</source>
             <translation>{x:.2f}, {y:.2f} m</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/emergency_banner.py" />
-            <source> and {more} more</source>
-            <translation> és még {more}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/emergency_banner.py" />
@@ -1851,10 +1861,12 @@
             <source>The link to the gateway is down: this is what it said last.</source>
             <translation>Nincs kapcsolat az átjáróval: ez az, amit utoljára mondott.</translation>
         </message>
-        <message>
+        <message numerus="yes">
             <location filename="../../plugin/desk/emergency_banner.py" />
-            <source>{acknowledged} of {robots} robots acknowledged, {standing} seen to stand</source>
-            <translation>{robots} robotból {acknowledged} nyugtázta, {standing} láthatóan áll</translation>
+            <source>{acknowledged} of %n robots acknowledged, {standing} seen to stand</source>
+            <translation>
+                <numerusform>%n robotból {acknowledged} nyugtázta, {standing} láthatóan áll</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/desk/inquiries.py" />
@@ -1901,15 +1913,19 @@
             <source>Standard: {value}</source>
             <translation>Szabvány: {value}</translation>
         </message>
-        <message>
+        <message numerus="yes">
             <location filename="../../plugin/desk/layout_tool.py" />
-            <source>{cones} cones are in the layer {layer}.</source>
-            <translation>{cones} bója van a(z) {layer} rétegben.</translation>
+            <source>%n cones are in the layer {layer}.</source>
+            <translation>
+                <numerusform>%n bója van a(z) {layer} rétegben.</numerusform>
+            </translation>
         </message>
-        <message>
+        <message numerus="yes">
             <location filename="../../plugin/desk/layout_tool.py" />
-            <source>{wrong} of {cones} cones should not stand there: {text} All are in the layer {layer}.</source>
-            <translation>{cones} bójából {wrong} nem állhat ott: {text} Mind a(z) {layer} rétegben van.</translation>
+            <source>{wrong} of %n cones should not stand there: {text} All are in the layer {layer}.</source>
+            <translation>
+                <numerusform>%n bójából {wrong} nem állhat ott: {text} Mind a(z) {layer} rétegben van.</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/desk/live/hover_card.py" />
@@ -2326,10 +2342,12 @@
             <source>{words}: queued</source>
             <translation>{words}: sorba állítva</translation>
         </message>
-        <message>
+        <message numerus="yes">
             <location filename="../../plugin/desk/orders.py" />
-            <source>{words}: sent to {commands} robots</source>
-            <translation>{words}: elküldve {commands} robotnak</translation>
+            <source>{words}: sent to %n robots</source>
+            <translation>
+                <numerusform>{words}: elküldve %n robotnak</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/desk/orders.py" />
@@ -2351,10 +2369,12 @@
             <source>not a finite place</source>
             <translation>nem véges hely</translation>
         </message>
-        <message>
+        <message numerus="yes">
             <location filename="../../plugin/desk/plans/as_placed.py" />
-            <source> of {expected}</source>
-            <translation> / {expected}</translation>
+            <source>%n cones placed</source>
+            <translation>
+                <numerusform>%n bója kihelyezve</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/as_placed.py" />
@@ -2371,10 +2391,17 @@
             <source>off by {mean:.3f} m on average, at most {largest:.3f} m</source>
             <translation>átlagos eltérés {mean:.3f} m, legfeljebb {largest:.3f} m</translation>
         </message>
+        <message numerus="yes">
+            <location filename="../../plugin/desk/plans/as_placed.py" />
+            <source>{cones} of %n cones placed</source>
+            <translation>
+                <numerusform>%n bójából {cones} kihelyezve</numerusform>
+            </translation>
+        </message>
         <message>
             <location filename="../../plugin/desk/plans/as_placed.py" />
-            <source>{cones}{of} cones placed{gone}; {off}</source>
-            <translation>{cones}{of} bója kihelyezve{gone}; {off}</translation>
+            <source>{placed}{gone}; {off}</source>
+            <translation>{placed}{gone}; {off}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/as_placed_page.py" />
@@ -2553,8 +2580,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driven_plan.py" />
-            <source>Cone {cones} was given up since this plan was made: plan what is left again.</source>
-            <translation>A(z) {cones} bójáról lemondtak a terv készítése óta: tervezze meg újra a maradékot.</translation>
+            <source>Given up since this plan was made: {cones}. Plan what is left again.</source>
+            <translation>A terv elkészülte óta feladva: {cones}. Tervezze újra, ami hátravan.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driven_plan.py" />
@@ -2636,10 +2663,12 @@
             <source>Confirm new plan</source>
             <translation>Új terv megerősítése</translation>
         </message>
-        <message>
+        <message numerus="yes">
             <location filename="../../plugin/desk/plans/driving_bar.py" />
-            <source>Done: {done} of {cones} cones</source>
-            <translation>Kész: {cones} bójából {done}</translation>
+            <source>Done: {done} of %n cones</source>
+            <translation>
+                <numerusform>Kész: %n bójából {done}</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driving_bar.py" />
@@ -2691,20 +2720,17 @@
             <source>Send…</source>
             <translation>Küldés…</translation>
         </message>
-        <message>
+        <message numerus="yes">
             <location filename="../../plugin/desk/plans/driving_bar.py" />
-            <source>Under way: {done} of {cones} cones</source>
-            <translation>Folyamatban: {cones} bójából {done}</translation>
+            <source>Under way: {done} of %n cones</source>
+            <translation>
+                <numerusform>Folyamatban: %n bójából {done}</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driving_bar.py" />
             <source>When a robot is lost or a cone fails, plan what is left and send it by itself</source>
             <translation>Ha egy robot elveszik vagy egy bója nem sikerül, megtervezi a maradékot, és magától elküldi</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/driving_bar.py" />
-            <source>and {more} more</source>
-            <translation>és még {more}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driving_bar.py" />
@@ -2796,6 +2822,20 @@
             <source>Cones as placed</source>
             <translation>Kihelyezett bóják helye</translation>
         </message>
+        <message numerus="yes">
+            <location filename="../../plugin/desk/plans/plan_rows.py" />
+            <source>%n cones</source>
+            <translation>
+                <numerusform>%n bója</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/desk/plans/plan_rows.py" />
+            <source>%n robots</source>
+            <translation>
+                <numerusform>%n robot</numerusform>
+            </translation>
+        </message>
         <message>
             <location filename="../../plugin/desk/plans/plan_rows.py" />
             <source>FAILED</source>
@@ -2828,8 +2868,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/plan_rows.py" />
-            <source>{cones} cones, {robots} robots, {metres:.0f} m, done after {span} ({method}, along {travel})</source>
-            <translation>{cones} bója, {robots} robot, {metres:.0f} m, kész {span} után ({method}, {travel} mentén)</translation>
+            <source>{cones}, {robots}, {metres:.0f} m, done after {span} ({method}, along {travel})</source>
+            <translation>{cones}, {robots}, {metres:.0f} m, kész {span} után ({method}, {travel} mentén)</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/plan_rows.py" />
@@ -2888,15 +2928,12 @@
             <source>store </source>
             <translation>tároló: </translation>
         </message>
-        <message>
+        <message numerus="yes">
             <location filename="../../plugin/desk/plans/plan_tree.py" />
-            <source>{cones} cones</source>
-            <translation>{cones} bója</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/plan_tree.py" />
-            <source>{done} of {cones} cones</source>
-            <translation>{cones} bójából {done}</translation>
+            <source>{done} of %n cones</source>
+            <translation>
+                <numerusform>%n bójából {done}</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/plan_ways.py" />
@@ -2988,6 +3025,13 @@
             <source>{why} Not done therefore: {left}.</source>
             <translation>{why} Ezért nem történt meg: {left}.</translation>
         </message>
+        <message numerus="yes">
+            <location filename="../../plugin/desk/plans/sending_check.py" />
+            <source>%n tasks that wait in the queue of {id} are replaced</source>
+            <translation>
+                <numerusform>{id} várólistáján %n várakozó feladat lesz lecserélve</numerusform>
+            </translation>
+        </message>
         <message>
             <location filename="../../plugin/desk/plans/sending_check.py" />
             <source>Mind:</source>
@@ -3032,16 +3076,6 @@
             <location filename="../../plugin/desk/plans/sending_check.py" />
             <source>{id} is {state}: it gets its queue when it is heard of again</source>
             <translation>{id} állapota {state}: a várólistáját akkor kapja meg, ha újra hallani róla</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/sending_check.py" />
-            <source>{robot}: {cones} cones</source>
-            <translation>{robot}: {cones} bója</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/sending_check.py" />
-            <source>{waiting} tasks that wait in the queue of {id} are replaced</source>
-            <translation>{id} várólistáján {waiting} várakozó feladat lesz lecserélve</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/settings_form.py" />
@@ -3370,6 +3404,13 @@
             <source> · NOT ALL</source>
             <translation> · NEM MIND</translation>
         </message>
+        <message numerus="yes">
+            <location filename="../../plugin/desk/replay/replay_dock.py" />
+            <source>%n positions</source>
+            <translation>
+                <numerusform>%n helyzet</numerusform>
+            </translation>
+        </message>
         <message>
             <location filename="../../plugin/desk/replay/replay_dock.py" />
             <source>Choose a time and press Load.</source>
@@ -3387,8 +3428,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/replay/replay_dock.py" />
-            <source>Loading … {positions} positions, up to {moment}</source>
-            <translation>Betöltés … {positions} helyzet, eddig: {moment}</translation>
+            <source>Loading … {positions}, up to {moment}</source>
+            <translation>Betöltés … {positions}, eddig: {moment}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/replay/replay_dock.py" />
@@ -3687,8 +3728,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/robots/detail_rows.py" />
-            <source>and {number} more</source>
-            <translation>és még {number}</translation>
+            <source>and {more} more</source>
+            <translation>és még {more}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/robots/detail_rows.py" />
@@ -3994,18 +4035,20 @@
         </message>
         <message>
             <location filename="../../plugin/desk/site_drop.py" />
-            <source> {layers} have no role: other layers of the project have it. Plugins &gt; Fleet Supervisor &gt; Layer roles changes that.</source>
-            <translation> Ezeknek nincs szerepük: {layers}; a projekt más rétegeié. A Modulok &gt; Fleet Supervisor &gt; Rétegszerepek menüben módosítható.</translation>
+            <source> Without a role, since other layers of the project have it: {layers}. Plugins &gt; Fleet Supervisor &gt; Layer roles changes that.</source>
+            <translation> Szerep nélkül, mert a projekt más rétegeié: {layers}. A Modulok &gt; Fleet Supervisor &gt; Rétegszerepek menüben módosítható.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/site_drop.py" />
             <source>The site in {folder} is in the project already: {names}.</source>
             <translation>A(z) {folder} mappában lévő telephely már a projektben van: {names}.</translation>
         </message>
-        <message>
+        <message numerus="yes">
             <location filename="../../plugin/desk/site_drop.py" />
-            <source>{site}: {count} layers loaded.</source>
-            <translation>{site}: {count} réteg betöltve.</translation>
+            <source>{site}: %n layers loaded.</source>
+            <translation>
+                <numerusform>{site}: %n réteg betöltve.</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/desk/state_words.py" />
@@ -4876,6 +4919,13 @@
             <source>{state}, heard of {age:.0f} s ago</source>
             <translation>{state}, utolsó hír {age:.0f} s óta</translation>
         </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/as_placed_report.py" />
+            <source>%n features have no planned or no placed position; they are left out.</source>
+            <translation>
+                <numerusform>%n elemnek nincs tervezett vagy kihelyezett helyzete; kimarad.</numerusform>
+            </translation>
+        </message>
         <message>
             <location filename="../../plugin/processing/as_placed_report.py" />
             <source>95 % deviate at most [m]</source>
@@ -4971,15 +5021,19 @@
             <source>Writes a PDF of how placed cones stand against their plan: figures, histogram, map and table.</source>
             <translation>PDF-et ír arról, hogyan állnak a kihelyezett bóják a tervhez képest: számok, hisztogram, térkép és táblázat.</translation>
         </message>
-        <message>
+        <message numerus="yes">
             <location filename="../../plugin/processing/as_placed_report.py" />
-            <source>{odd} features have no planned or no placed position; they are left out.</source>
-            <translation>{odd} elemnek nincs tervezett vagy kihelyezett helyzete; ezek kimaradnak.</translation>
+            <source>{within} of %n cones are within {tolerance:g} m; the worst is {most:.3f} m off.</source>
+            <translation>
+                <numerusform>%n bójából {within} van {tolerance:g} m-en belül; a legrosszabb {most:.3f} m-rel tér el.</numerusform>
+            </translation>
         </message>
-        <message>
-            <location filename="../../plugin/processing/as_placed_report.py" />
-            <source>{within} of {count} cones are within {tolerance:g} m; the worst is {most:.3f} m off.</source>
-            <translation>{count} bójából {within} van {tolerance:g} m-en belül; a legrosszabb {most:.3f} m-rel tér el.</translation>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/assign_cones.py" />
+            <source>%n trips</source>
+            <translation>
+                <numerusform>%n kör</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/processing/assign_cones.py" />
@@ -5028,8 +5082,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/assign_cones.py" />
-            <source>Robot {id}: {cones} cones on {trips} trips, {metres:.0f} m, done after {end_s:.0f} s</source>
-            <translation>{id} robot: {cones} bója {trips} körben, {metres:.0f} m, {end_s:.0f} s múlva végez</translation>
+            <source>Robot {id}: {cones} on {trips}, {metres:.0f} m, done after {end_s:.0f} s</source>
+            <translation>{id} robot: {cones}, {trips}, {metres:.0f} m, {end_s:.0f} s múlva végez</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/assign_cones.py" />
@@ -5055,6 +5109,34 @@
             <location filename="../../plugin/processing/assign_cones.py" />
             <source>What the ways follow</source>
             <translation>Amit az utak követnek</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/build_road_network.py" />
+            <source>%n edges</source>
+            <translation>
+                <numerusform>%n él</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/build_road_network.py" />
+            <source>%n nodes</source>
+            <translation>
+                <numerusform>%n csomópont</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/build_road_network.py" />
+            <source>%n parts</source>
+            <translation>
+                <numerusform>%n rész</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/build_road_network.py" />
+            <source>%n repairs</source>
+            <translation>
+                <numerusform>%n javítás</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/processing/build_road_network.py" />
@@ -5096,10 +5178,12 @@
             <source>Splits road centrelines where they meet, passes over and under at bridges, and repairs on request.</source>
             <translation>Az úttengelyeket találkozásaiknál felosztja, hidaknál alattuk és felettük átvezeti, és kérésre kijavítja.</translation>
         </message>
-        <message>
-            <location filename="../../plugin/processing/build_road_network.py" />
-            <source>{edges} edges, {nodes} nodes, {parts} parts, {repairs} repairs</source>
-            <translation>{edges} él, {nodes} csomópont, {parts} rész, {repairs} javítás</translation>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/build_road_surfaces.py" />
+            <source>%n of the surfaces that are given as drawn say that they were generated (field origin); they are left out and made anew</source>
+            <translation>
+                <numerusform>%n rajzoltként megadott felület azt mondja magáról, hogy előállított (origin mező); kimarad, és újra elkészül</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/processing/build_road_surfaces.py" />
@@ -5160,11 +5244,6 @@
             <location filename="../../plugin/processing/build_road_surfaces.py" />
             <source>{label}: {area:.1f} m²</source>
             <translation>{label}: {area:.1f} m²</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/build_road_surfaces.py" />
-            <source>{old} of the surfaces that are given as drawn say that they were generated (field origin); they are left out and made anew</source>
-            <translation>{old} rajzoltként megadott felület azt mondja magáról, hogy előállított (origin mező); ezek kimaradnak és újra elkészülnek</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/check_road_network.py" />
@@ -5683,11 +5762,6 @@
         </message>
         <message>
             <location filename="../../plugin/processing/export_robot_map.py" />
-            <source>{obstacles} obstacles, {segment_count} segments</source>
-            <translation>{obstacles} akadály, {segment_count} szakasz</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/export_robot_map.py" />
             <source>{size} bytes in binary, {ratio:.2f} bytes/m²</source>
             <translation>{size} bájt binárisan, {ratio:.2f} bájt/m²</translation>
         </message>
@@ -5695,6 +5769,20 @@
             <location filename="../../plugin/processing/export_robot_map.py" />
             <source>{size} bytes of text, {ratio:.2f} bytes/m² (paper 1: about 3 bytes/m² as text)</source>
             <translation>{size} bájt szöveg, {ratio:.2f} bájt/m² (1. cikk: szövegként mintegy 3 bájt/m²)</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/export_robot_map_tiles.py" />
+            <source>%n segments</source>
+            <translation>
+                <numerusform>%n szakasz</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/export_robot_map_tiles.py" />
+            <source>%n tiles</source>
+            <translation>
+                <numerusform>%n csempe</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/processing/export_robot_map_tiles.py" />
@@ -5783,8 +5871,15 @@
         </message>
         <message>
             <location filename="../../plugin/processing/export_robot_map_tiles.py" />
-            <source>{rows} tiles, {segments} segments, {size} bytes</source>
-            <translation>{rows} csempe, {segments} szakasz, {size} bájt</translation>
+            <source>{tiles}, {segments}, {size} bytes</source>
+            <translation>{tiles}, {segments}, {size} bájt</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>%n points</source>
+            <translation>
+                <numerusform>%n pont</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/processing/find_route.py" />
@@ -5883,8 +5978,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/find_route.py" />
-            <source>{metres:.1f} m, {seconds:.1f} s, {points} points, found by {engine}; start {off_start:.2f} m and goal {off_goal:.2f} m from the road</source>
-            <translation>{metres:.1f} m, {seconds:.1f} s, {points} pont, megtalálta: {engine}; a kiindulás {off_start:.2f} m-re, a végpont {off_goal:.2f} m-re van az úttól</translation>
+            <source>{metres:.1f} m, {seconds:.1f} s, {points}, found by {engine}; start {off_start:.2f} m and goal {off_goal:.2f} m from the road</source>
+            <translation>{metres:.1f} m, {seconds:.1f} s, {points}, megtalálta: {engine}; a kiindulás {off_start:.2f} m-re, a végpont {off_goal:.2f} m-re van az úttól</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/fleet_algorithm.py" />
@@ -6121,15 +6216,17 @@
             <source>Width of the robots [m]</source>
             <translation>A robotok szélessége [m]</translation>
         </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/keepout_areas.py" />
+            <source>%n edges lead through areas to be avoided, and are closed</source>
+            <translation>
+                <numerusform>%n él elkerülendő területen vezet át, és le van zárva</numerusform>
+            </translation>
+        </message>
         <message>
             <location filename="../../plugin/processing/keepout_areas.py" />
             <source>Areas that must not be driven through</source>
             <translation>Területek, amelyeken nem szabad áthajtani</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/keepout_areas.py" />
-            <source>{closed} edges lead through areas to be avoided, and are closed</source>
-            <translation>{closed} él elkerülendő területen vezet át, ezek le vannak zárva</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/load_robot_map.py" />
@@ -6473,8 +6570,15 @@
         </message>
         <message>
             <location filename="../../plugin/processing/obstacle_outlines.py" />
-            <source>{obstacles} obstacles with {segments} segments became {obstacles_left} with {segments_left}</source>
-            <translation>{obstacles} akadályból {segments} szakasszal {obstacles_left} lett {segments_left} szakasszal</translation>
+            <source>{before} became {after}</source>
+            <translation>előtte: {before}; utána: {after}</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/obstacle_words.py" />
+            <source>%n obstacles</source>
+            <translation>
+                <numerusform>%n akadály</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/processing/placed_cones.py" />
@@ -6576,6 +6680,34 @@
             <source>{place} = {text} is no number: correct it there.</source>
             <translation>{place} = {text} nem szám: javítsa ki ott.</translation>
         </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>%n centrelines</source>
+            <translation>
+                <numerusform>%n úttengely</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>%n keepouts</source>
+            <translation>
+                <numerusform>%n tiltott terület</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>%n obstacle outlines</source>
+            <translation>
+                <numerusform>%n akadálykörvonal</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/publish_site.py" />
+            <source>%n road surfaces</source>
+            <translation>
+                <numerusform>%n útfelület</numerusform>
+            </translation>
+        </message>
         <message>
             <location filename="../../plugin/processing/publish_site.py" />
             <source>A robot is lost without a message for [s]</source>
@@ -6663,8 +6795,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/publish_site.py" />
-            <source>Site {id} version {version} is published in {folder}: {outlines} obstacle outlines, {centrelines} centrelines, {surfaces} road surfaces, {keepouts} keepouts; bounds {bounds} m</source>
-            <translation>A(z) {id} telephely {version}. verziója közzétéve itt: {folder}: {outlines} akadálykörvonal, {centrelines} úttengely, {surfaces} útfelület, {keepouts} tiltott terület; határok: {bounds} m</translation>
+            <source>Site {id} version {version} is published in {folder}: {outlines}, {centrelines}, {surfaces}, {keepouts}; bounds {bounds} m</source>
+            <translation>A(z) {id} telephely {version}. verziója közzétéve itt: {folder}: {outlines}, {centrelines}, {surfaces}, {keepouts}; határok: {bounds} m</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/publish_site.py" />
@@ -6736,10 +6868,12 @@
             <source>{time} UTC</source>
             <translation>{time} UTC</translation>
         </message>
-        <message>
+        <message numerus="yes">
             <location filename="../../plugin/processing/report_layout.py" />
-            <source>{within} of {count} cones ({share:.0f} %) stand within {tolerance:g} cm of their plan.</source>
-            <translation>{count} bójából {within} ({share:.0f} %) áll {tolerance:g} cm-en belül a tervhez képest.</translation>
+            <source>{within} of %n cones ({share:.0f} %) stand within {tolerance:g} cm of their plan.</source>
+            <translation>
+                <numerusform>%n bójából {within} ({share:.0f} %) áll {tolerance:g} cm-en belül a tervhez képest.</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/processing/report_layout.py" />
@@ -6801,10 +6935,12 @@
             <source>Layer {name}, feature {id}: {note}</source>
             <translation>{name} réteg, {id}. elem: {note}</translation>
         </message>
-        <message>
+        <message numerus="yes">
             <location filename="../../plugin/processing/road_source.py" />
-            <source>Layer {name}: the width of {unknown} roads is not known; {width:g} m is used</source>
-            <translation>{name} réteg: {unknown} út szélessége nem ismert; {width:g} m lesz használva</translation>
+            <source>Layer {name}: the width of %n roads is not known; {width:g} m is used</source>
+            <translation>
+                <numerusform>{name} réteg: %n út szélessége nem ismert; {width:g} m lesz használva</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/processing/road_source.py" />
@@ -6876,6 +7012,13 @@
             <source>SITE_CRS {crs} is no CRS that QGIS knows: write a code such as EPSG:32633.</source>
             <translation>SITE_CRS {crs} nem a QGIS által ismert vetület: írjon olyan kódot, mint EPSG:32633.</translation>
         </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/surface_at_point.py" />
+            <source>%n points are on a surface, {off} on none.</source>
+            <translation>
+                <numerusform>%n pont van felületen, {off} egyiken sem.</numerusform>
+            </translation>
+        </message>
         <message>
             <location filename="../../plugin/processing/surface_at_point.py" />
             <source>&lt;p&gt;Copies points and adds &lt;b&gt;surface&lt;/b&gt;, the class of the road surface that each is on, its &lt;b&gt;surface_name&lt;/b&gt;, and &lt;b&gt;surface_origin&lt;/b&gt;: whether the surface was drawn or generated from centrelines. They are empty where there is no surface.&lt;/p&gt; &lt;p&gt;The surfaces are layers of areas with a field &lt;i&gt;surface&lt;/i&gt;, or the class that their role says; without any, the project's layers with the role road surface. Points and layers may be in any CRS.&lt;/p&gt; &lt;p&gt;A point on an edge is on the surface. Where surfaces lie on one another a drawn one counts before a generated one, then the smaller before the larger. The expression &lt;i&gt;road_surface(x, y)&lt;/i&gt; tells the same. docs/roads.md says more.&lt;/p&gt;</source>
@@ -6930,11 +7073,6 @@
             <location filename="../../plugin/processing/surface_at_point.py" />
             <source>Surface at point</source>
             <translation>Felület a pontban</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/surface_at_point.py" />
-            <source>{on} points are on a surface, {off} on none.</source>
-            <translation>{on} pont van felületen, {off} egyiken sem.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/svg_picture.py" />
@@ -7001,6 +7139,20 @@
             <source>The {name} of a tile is {value} m: give at least 1 m, such as 100.</source>
             <translation>Egy csempe mérete ({name}) {value} m: adjon meg legalább 1 m-t, például 100-at.</translation>
         </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/trajectories.py" />
+            <source>%n features have no place, robot or time; they are left out.</source>
+            <translation>
+                <numerusform>%n elemnek nincs helye, robotja vagy ideje; kimarad.</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/trajectories.py" />
+            <source>%n lines</source>
+            <translation>
+                <numerusform>%n vonal</numerusform>
+            </translation>
+        </message>
         <message>
             <location filename="../../plugin/processing/trajectories.py" />
             <source>&lt;p&gt;Makes of the positions that a gateway stored one line for each drive of each robot: a robot that was not heard of for longer than the gap begins a new line. Or, with &lt;b&gt;a line for each step&lt;/b&gt;, one for each pair of positions, for colours by speed and for QGIS's temporal controller.&lt;/p&gt; &lt;p&gt;The positions are the layer &lt;i&gt;positions&lt;/i&gt; of &lt;i&gt;robot-bridge trajectories export drives.gpkg --site site&lt;/i&gt;, or any points, in any CRS, with a field for the robot and one for the time (date and time, seconds since 1970, or ISO 8601; without an offset UTC).&lt;/p&gt; &lt;p&gt;Fields: &lt;b&gt;begin&lt;/b&gt; and &lt;b&gt;end&lt;/b&gt; (UTC), &lt;b&gt;duration_s&lt;/b&gt;, &lt;b&gt;length_m&lt;/b&gt;, &lt;b&gt;mean_speed&lt;/b&gt; and &lt;b&gt;top_speed&lt;/b&gt; in m/s (as the robot told it, else its fastest step), &lt;b&gt;count&lt;/b&gt; of positions. The measure M of each vertex is its time in seconds since 1970. Lengths are measured in the layer's CRS if that is in true metres, as robots drive them, else on its ellipsoid.&lt;/p&gt; &lt;p&gt;The layer's times are set: open QGIS's temporal controller to play them.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:trajectories -- INPUT="drives.gpkg|layername=positions" OUTPUT=lines.gpkg&lt;/pre&gt;</source>
@@ -7058,13 +7210,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/trajectories.py" />
-            <source>{lines} lines of {positions} positions, {length:.1f} m in all.</source>
-            <translation>{lines} vonal {positions} helyzetből, összesen {length:.1f} m.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/trajectories.py" />
-            <source>{odd} features have no place, robot or time; they are left out.</source>
-            <translation>{odd} elemnek nincs helye, robotja vagy ideje; ezek kimaradnak.</translation>
+            <source>{lines} of {positions}, {length:.1f} m in all.</source>
+            <translation>{lines}, {positions}, összesen {length:.1f} m.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/value_spelling.py" />
@@ -7116,20 +7263,50 @@
             <source>{what} cannot be written to {target}: {reason}. Choose a file in a folder that exists, may be written to, and has space.</source>
             <translation>{what} nem írható ide: {target}: {reason}. Válasszon fájlt olyan mappában, amely létezik, írható, és van benne hely.</translation>
         </message>
-        <message>
+        <message numerus="yes">
             <location filename="../../plugin/roles/live_preview.py" />
-            <source>Reading {sources} layers …</source>
-            <translation>{sources} réteg olvasása …</translation>
+            <source>Reading %n layers …</source>
+            <translation>
+                <numerusform>%n réteg olvasása …</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/roles/measure.py" />
+            <source>%n layers refused</source>
+            <translation>
+                <numerusform>%n réteg elutasítva</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/roles/measure.py" />
+            <source>%n roads</source>
+            <translation>
+                <numerusform>%n út</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/roles/measure.py" />
+            <source>%n surfaces</source>
+            <translation>
+                <numerusform>%n felület</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/roles/measure.py" />
+            <source>%n warnings</source>
+            <translation>
+                <numerusform>%n figyelmeztetés</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/roles/measure.py" />
-            <source> of {counted}</source>
-            <translation>, összesen {counted}</translation>
+            <source>refused</source>
+            <translation>elutasítva</translation>
         </message>
         <message>
             <location filename="../../plugin/roles/measure.py" />
-            <source>{counted} refused</source>
-            <translation>{counted} elutasítva</translation>
+            <source>{obstacles} of {segments}</source>
+            <translation>{obstacles}, {segments}</translation>
         </message>
         <message>
             <location filename="../../plugin/roles/picture.py" />
@@ -7186,10 +7363,12 @@
             <source>{name} knows none of these layers by name and fields.</source>
             <translation>{name} egyiket sem ismeri ezek közül a rétegek közül név és mezők szerint.</translation>
         </message>
-        <message>
+        <message numerus="yes">
             <location filename="../../plugin/roles/roles_dialog.py" />
-            <source>{name}: {known} of {setups} layers set up.</source>
-            <translation>{name}: {setups} rétegből {known} beállítva.</translation>
+            <source>{name}: {known} of %n layers set up.</source>
+            <translation>
+                <numerusform>{name}: %n rétegből {known} beállítva.</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/roles/table_model.py" />

@@ -7,7 +7,7 @@ from qgis.gui import QgsMessageBar, QgsMessageBarItem
 from qgis.PyQt.QtCore import QObject, pyqtSignal
 from qgis.PyQt.QtWidgets import QToolButton
 
-from ...language import tr, tr_count
+from ...language import first_of, tr, tr_count
 from ..notices import NoticeLabel
 from .alarm import Alarm, AlarmChange
 from .colours import PRESSING
@@ -96,8 +96,7 @@ class AlarmBar(QObject):
 def in_words(new: list[Alarm]) -> str:
     """Return how many alarms nobody has seen, and what the most pressing ones are."""
     head = tr_count(len(new), "1 alarm", "%n alarms")
-    more = tr("; and {number} more", number=len(new) - NAMED) if len(new) > NAMED else ""
-    return f"{head}: {'; '.join(alarm.text for alarm in new[:NAMED])}{more}"
+    return f"{head}: {'; '.join(first_of([alarm.text for alarm in new], NAMED))}"
 
 
 def _button(name: str, text: str, pressed: object) -> QToolButton:

@@ -15,7 +15,7 @@ from qgis.PyQt.QtWidgets import (
 
 from ...errors import FleetError
 from ...file_dialogs import file_to_write
-from ...language import tr
+from ...language import tr, tr_count
 from ...settings.preferences import export_path
 from ..csv_files import iso_time, write_csv
 from ..row_model import TextModel
@@ -73,7 +73,9 @@ class AlarmLogDialog(QDialog):
         except FleetError as error:
             self._said.setText(str(error))
             return
-        self._said.setText(tr("{count} lines written to {path}", count=count, path=path))
+        self._said.setText(
+            tr_count(count, "1 line written to {path}", "%n lines written to {path}", path=path)
+        )
 
     def _ask_where(self) -> None:
         title = tr("Export the log of alarms")

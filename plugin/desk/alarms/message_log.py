@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 
 from qgis.core import Qgis, QgsMessageLog
 
-from ...language import tr
+from ...language import tr_count
 from ..notices import TITLE
 from .alarm import Alarm
 
@@ -50,7 +50,13 @@ class AlarmMessages:
 
 
 def _count(more: int) -> None:
-    _write(tr("and {number} more alarms: see the log of alarms in the Fleet panel", number=more))
+    _write(
+        tr_count(
+            more,
+            "and 1 more alarm: see the log of alarms in the Fleet panel",
+            "and %n more alarms: see the log of alarms in the Fleet panel",
+        )
+    )
 
 
 def _write(text: str) -> None:

@@ -18,9 +18,9 @@ from qgis.PyQt.QtWidgets import (
 from ....robot_bridge.messages import CommandReport, GetCommands
 from ...errors import FleetError
 from ...file_dialogs import file_to_write
-from ...language import tr
+from ...language import tr, tr_count
 from ...settings.preferences import export_path
-from ..command_book import MOST_COMMANDS, in_words, place_of
+from ..command_book import in_words, place_of
 from ..csv_files import write_csv
 from ..desk import Desk
 from ..small_views import shrink
@@ -50,6 +50,8 @@ class CommandLog(QWidget):
         self._model = LogModel(self)
         self._opened: str | None = None
         self._asked: set[str] = set()
+        self._listed: set[str] = set()
+        """The robots that can be chosen."""
         self.view = _tree(self._model)
         self._robots = _choices("fleet_log_robot", tr("Whose commands are listed"))
         self._robots.addItems([EVERY_ROBOT, SELECTED])
@@ -75,10 +77,8 @@ class CommandLog(QWidget):
         if len(reports) > OLDER // 2:
             self.refresh()
             return
-        added = self._model.merge(reports)
-        if len(self._model.shown) > MOST_COMMANDS:
-            self.refresh()
-        elif added:
+        if self._model.merge(reports):
+            self._model.keep(self._desk.book)
             self._let_go_of_old()
             self._open(self._model.index(0, 0))
         self._summary.setText(summary(self._desk.book))
@@ -108,9 +108,9 @@ class CommandLog(QWidget):
             return
         self._desk.remarked.emit(
             tr(
-                "{commands} commands with {steps} steps written to {path}",
-                commands=len(self._model.shown),
-                steps=count,
+                "{commands} and {steps} written to {path}",
+                commands=tr_count(len(self._model.shown), "1 command", "%n commands"),
+                steps=tr_count(count, "1 step", "%n steps"),
                 path=path,
             )
         )
@@ -151,14 +151,14 @@ class CommandLog(QWidget):
         rows.addWidget(self.view, 1)
 
     def _list_robots(self, robots: set[str]) -> None:
-        known = {self._robots.itemText(row) for row in range(2, self._robots.count())}
-        if robots <= known:
+        if robots <= self._listed:
             return
+        self._listed |= robots
         chosen = self._robots.currentText()
         self._robots.blockSignals(True)
         while self._robots.count() > 2:
             self._robots.removeItem(2)
-        self._robots.addItems(sorted(known | robots))
+        self._robots.addItems(sorted(self._listed))
         self._robots.setCurrentText(chosen)
         self._robots.blockSignals(False)
 
@@ -207,6 +207,7 @@ class CommandLog(QWidget):
 
     def _site_changed(self) -> None:
         if len(self._desk.book) == 0:
+            self._listed.clear()
             self._robots.blockSignals(True)
             while self._robots.count() > 2:
                 self._robots.removeItem(2)

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from datetime import datetime, timezone
 
 from ....robot_bridge.messages import PlacementReport
-from ...language import tr
+from ...language import tr, tr_count
 
 COLUMNS = (
     "cone", "layout", "planned_x", "planned_y", "x", "y", "deviation", "robot", "placed_at", "collected_at",
@@ -29,14 +29,18 @@ class Tally:
         """Return the figures, with how many cones the plan has if that is known."""
         if not self.cones:
             return tr("No cone was put down yet.")
-        of = tr(" of {expected}", expected=expected) if expected else ""
+        placed = (
+            tr_count(expected, "{cones} of 1 cone placed", "{cones} of %n cones placed", cones=self.cones)
+            if expected
+            else tr_count(self.cones, "1 cone placed", "%n cones placed")
+        )
         gone = tr(", {collected} collected again", collected=self.collected) if self.collected else ""
         off = tr(
             "off by {mean:.3f} m on average, at most {largest:.3f} m",
             mean=self.mean,
             largest=self.largest,
         )
-        return tr("{cones}{of} cones placed{gone}; {off}", cones=self.cones, of=of, gone=gone, off=off)
+        return tr("{placed}{gone}; {off}", placed=placed, gone=gone, off=off)
 
 
 def chosen(

@@ -12,7 +12,7 @@ from ....robot_bridge.assignment.replanning import replan
 from ....robot_bridge.assignment.solving import Wanted
 from ....robot_bridge.messages import MessageError, QueueTask
 from ...errors import FleetError
-from ...language import tr
+from ...language import first_of, tr
 from ..desk import Desk
 from .available_robots import has_place
 from .closure_look import ClosureLook
@@ -106,7 +106,8 @@ class DrivenPlan(QObject):
         for one in reports:
             robots.setdefault(one.reason or one.by or "", []).append(one.robot)
         return [
-            tr("Paused: {robots} ({why})", robots=", ".join(names), why=why) for why, names in robots.items()
+            tr("Paused: {robots} ({why})", robots=", ".join(first_of(names)), why=why)
+            for why, names in robots.items()
         ]
 
     @property
@@ -162,8 +163,8 @@ class DrivenPlan(QObject):
         if given_up:
             raise PlanningError(
                 tr(
-                    "Cone {cones} was given up since this plan was made: plan what is left again.",
-                    cones=", ".join(sorted(given_up)),
+                    "Given up since this plan was made: {cones}. Plan what is left again.",
+                    cones=", ".join(first_of(sorted(given_up))),
                 )
             )
         tasks = _tasks(offer, under_way(progress))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from qgis.PyQt.QtCore import pyqtSignal
 from qgis.PyQt.QtWidgets import QCheckBox, QGridLayout, QLabel, QWidget
 
-from ...language import tr
+from ...language import first_of, tr, tr_count
 from ..colours import WRONG_STYLE
 from ..push_button import push_button
 from .draft_plan import DraftPlan
@@ -105,8 +105,10 @@ class DrivingBar(QWidget):
         if driven.driven is not None and driven.progress is not None:
             done, all_of_them = len(driven.progress.done), len(driven.driven.plan.targets)
             if driven.progress.is_finished(driven.driven.plan):
-                return tr("Done: {done} of {cones} cones", done=done, cones=all_of_them)
-            under_way = tr("Under way: {done} of {cones} cones", done=done, cones=all_of_them)
+                return tr_count(all_of_them, "Done: {done} of 1 cone", "Done: {done} of %n cones", done=done)
+            under_way = tr_count(
+                all_of_them, "Under way: {done} of 1 cone", "Under way: {done} of %n cones", done=done
+            )
             return ". ".join([under_way, *driven.pauses_in_words()])
         if drafts.draft is not None:
             return tr("Not sent yet: {summary}", summary=summary(drafts.draft))
@@ -116,11 +118,9 @@ class DrivingBar(QWidget):
         driven = self._driven
         shown = driven.offer or driven.driven or self._drafts.draft
         near = shown.meetings if shown is not None and (driven.driven is None or driven.offer) else ()
-        parts = [meeting.in_words() for meeting in near[:3]]
-        if len(near) > 3:
-            parts.append(tr("and {more} more", more=len(near) - 3))
+        parts = first_of([meeting.in_words() for meeting in near])
         if shown is not None and (driven.driven is None or driven.offer):
-            parts = [*(one.in_words() for one in shown.closed[:3]), *parts]
+            parts = [*first_of([one.in_words() for one in shown.closed]), *parts]
         if driven.trouble and driven.offer is None:
             parts.insert(0, driven.trouble.in_words())
         return "; ".join(parts)

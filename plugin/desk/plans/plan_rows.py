@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from ....robot_bridge.assignment.editing import trips_of
 from ....robot_bridge.assignment.plan import Plan, Stop
 from ....robot_bridge.messages import TaskState
-from ...language import tr
+from ...language import first_of, tr, tr_count
 from .draft import Draft
 from .progress import Progress
 
@@ -74,9 +74,9 @@ def summary(draft: Draft) -> str:
     cones = sum(stop.is_target for _, stop in plan.all_stops())
     robots = sum(bool(one.stops) for one in plan.robots)
     text = tr(
-        "{cones} cones, {robots} robots, {metres:.0f} m, done after {span} ({method}, along {travel})",
-        cones=cones,
-        robots=robots,
+        "{cones}, {robots}, {metres:.0f} m, done after {span} ({method}, along {travel})",
+        cones=tr_count(cones, "1 cone", "%n cones"),
+        robots=tr_count(robots, "1 robot", "%n robots"),
         metres=plan.metres,
         span=_span(plan.end_s),
         method=plan.method,
@@ -87,7 +87,7 @@ def summary(draft: Draft) -> str:
         tr(
             "{text}. Left out: {names}",
             text=text,
-            names=", ".join(f"{one.target.id} ({one.reason})" for one in out),
+            names=", ".join(first_of([f"{one.target.id} ({one.reason})" for one in out])),
         )
         if out
         else text

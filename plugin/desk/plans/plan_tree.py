@@ -10,7 +10,7 @@ from qgis.PyQt.QtWidgets import QAbstractItemView, QMenu, QTreeWidget, QTreeWidg
 
 from ....robot_bridge.assignment.plan import Plan
 from ....robot_bridge.messages import TaskState
-from ...language import tr
+from ...language import tr, tr_count
 from ..colours import WRONG, for_letters
 from ..column_heads import fit_heads
 from .draft import Draft
@@ -176,9 +176,9 @@ def _robot_in_words(rows: Sequence[StopRow], lost: bool) -> str:
     cones = [row for row in rows if row.stop.is_target]
     done = sum(row.state is TaskState.DONE for row in cones)
     text = (
-        tr("{done} of {cones} cones", done=done, cones=len(cones))
+        tr_count(len(cones), "{done} of 1 cone", "{done} of %n cones", done=done)
         if done
-        else tr("{cones} cones", cones=len(cones))
+        else tr_count(len(cones), "1 cone", "%n cones")
     )
     return tr("LOST, {text}", text=text) if lost else text
 

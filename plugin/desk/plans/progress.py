@@ -9,7 +9,7 @@ from ....robot_bridge.assignment.job import Robot
 from ....robot_bridge.assignment.plan import Plan, Stop
 from ....robot_bridge.assignment.replanning import Situation
 from ....robot_bridge.messages import PlacementReport, QueueReport, RobotState, TaskReport, TaskState
-from ...language import tr
+from ...language import first_of, tr
 from .closed_ways import ClosedWay
 from .cone_source import ConeFacts
 from .task_rows import SentStop
@@ -123,13 +123,13 @@ class Trouble:
 
     def in_words(self) -> str:
         """Return what happened, for the operator."""
-        parts = [tr("{robot} is lost or offline", robot=robot) for robot in self.away]
-        parts += [
+        away = [tr("{robot} is lost or offline", robot=robot) for robot in self.away]
+        failed = [
             tr("cone {cone} failed{why}", cone=cone, why=f": {why}" if why else "")
             for cone, why in self.failed
         ]
-        parts += [one.in_words() for one in self.closed]
-        return "; ".join(parts)
+        closed = [one.in_words() for one in self.closed]
+        return "; ".join(text for texts in (away, failed, closed) for text in first_of(texts))
 
 
 def trouble_of(

@@ -21,7 +21,7 @@ from ....robot_bridge.messages import (
     TaskState,
 )
 from ...errors import NotSentError
-from ...language import tr
+from ...language import first_of, tr
 from ...wire.outbox import Answer
 from ..desk import Desk
 
@@ -99,9 +99,9 @@ class Sending(QObject):
         self._key = None
         left = [step.words for step in self._steps]
         if not done and left:
-            why = tr("{why} Not done therefore: {left}.", why=why, left=", ".join(left))
+            why = tr("{why} Not done therefore: {left}.", why=why, left=", ".join(first_of(left)))
         if not done and self.done:
-            why = tr("{why} Done before: {done}.", why=why, done=", ".join(self.done))
+            why = tr("{why} Done before: {done}.", why=why, done=", ".join(first_of(self.done)))
         self.ended.emit(done, why)
 
 

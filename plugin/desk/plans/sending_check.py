@@ -6,9 +6,9 @@ import math
 from collections.abc import Iterator
 
 from ....robot_bridge.assignment.job import Robot
-from ....robot_bridge.assignment.plan import Plan
+from ....robot_bridge.assignment.plan import Plan, RobotPlan
 from ....robot_bridge.messages import QueueReport, QueueState, RobotState, TaskState
-from ...language import tr
+from ...language import first_of, tr, tr_count
 from ..desk import Desk
 from ..state_words import ROBOT_STATES
 from .draft import Draft
@@ -17,20 +17,21 @@ from .plan_rows import summary
 MOVED = 1.0
 """Metres that a robot may have moved since the plan was made."""
 
+LISTED = 5
+"""Robots, doubts, closed ways and meetings that the question names: it has to fit on a screen."""
+
 
 def before_sending(desk: Desk, draft: Draft) -> str:
     """Return what sending will do, and what speaks against it."""
     driving = [one for one in draft.plan.robots if one.stops and not one.lost]
     lines = [summary(draft) + ".", ""]
-    lines += [
-        tr("{robot}: {cones} cones", robot=one.robot.id, cones=sum(stop.is_target for stop in one.stops))
-        for one in driving
-    ]
+    lines += first_of([f"{one.robot.id}: {_cones(one)}" for one in driving], LISTED)
     doubts = [doubt for one in driving for doubt in _doubts(desk, one.robot)]
-    doubts += [one.in_words() for one in draft.closed]
-    doubts += [meeting.in_words() for meeting in draft.meetings]
-    if doubts:
-        lines += ["", tr("Mind:"), *(f"• {doubt}" for doubt in doubts)]
+    closed = [one.in_words() for one in draft.closed]
+    meetings = [meeting.in_words() for meeting in draft.meetings]
+    minded = [text for texts in (doubts, closed, meetings) for text in first_of(texts, LISTED)]
+    if minded:
+        lines += ["", tr("Mind:"), *(f"• {text}" for text in minded)]
     return "\n".join([*lines, "", tr("The robots set off at once.")])
 
 
@@ -48,6 +49,10 @@ def after_sending(desk: Desk, plan: Plan) -> list[str]:
                 )
             )
     return texts
+
+
+def _cones(one: RobotPlan) -> str:
+    return tr_count(sum(stop.is_target for stop in one.stops), "1 cone", "%n cones")
 
 
 def _doubts(desk: Desk, robot: Robot) -> list[str]:
@@ -76,8 +81,11 @@ def _doubts_of_queue(queue: QueueReport) -> Iterator[str]:
     """Yield what becomes of the tasks that are in the robot's queue already."""
     waiting = sum(task.state is not TaskState.CURRENT for task in queue.tasks)
     if waiting:
-        yield tr(
-            "{waiting} tasks that wait in the queue of {id} are replaced", waiting=waiting, id=queue.robot
+        yield tr_count(
+            waiting,
+            "1 task that waits in the queue of {id} is replaced",
+            "%n tasks that wait in the queue of {id} are replaced",
+            id=queue.robot,
         )
     if waiting < len(queue.tasks):
         yield tr("{id} finishes first what it is doing", id=queue.robot)

@@ -6,7 +6,7 @@ from qgis.core import QgsApplication
 from qgis.PyQt.QtWidgets import QComboBox, QHBoxLayout, QLabel, QToolButton, QVBoxLayout, QWidget
 
 from ...errors import FleetError
-from ...language import tr
+from ...language import tr, tr_count
 from ..desk import Desk
 from ..dock_action import ActionDock
 from .clockwork import SPEEDS, Clockwork, in_words
@@ -114,8 +114,8 @@ class ReplayDock(ActionDock):
     def _progressed(self) -> None:
         self._say(
             tr(
-                "Loading … {positions} positions, up to {moment}",
-                positions=len(self.fetching.history),
+                "Loading … {positions}, up to {moment}",
+                positions=tr_count(len(self.fetching.history), "1 position", "%n positions"),
                 moment=in_words(self.fetching.reached),
             )
         )

@@ -74,7 +74,7 @@ def queue_rows(queue: QueueReport | None) -> list[Row]:
     for number, task in enumerate(queue.tasks[:MOST], 1):
         rows.append((f"{number}.", f"{task_in_words(task)}: {task_state(task)}"))
     if len(queue.tasks) > MOST:
-        rows.append(("…", tr("and {number} more", number=len(queue.tasks) - MOST)))
+        rows.append(("…", tr("and {more} more", more=len(queue.tasks) - MOST)))
     return rows
 
 

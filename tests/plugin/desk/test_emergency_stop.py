@@ -243,7 +243,7 @@ def test_what_is_not_stored_and_who_is_missing_is_said_in_words():
         "emergency stops.",
         "EMERGENCY STOP in force, by eve",
         "0 of 9 robots acknowledged, 0 seen to stand",
-        "No answer from r0, r1, r2, r3, r4, r5 and 3 more",
+        "No answer from r0, r1, r2, r3, r4, r5, and 3 more",
         "Not stored yet: the gateway cannot write its database, so robots on SQL are not told.",
         "The link to the gateway is down: this is what it said last.",
     ]

@@ -93,7 +93,7 @@ def test_roles_that_other_layers_have_are_left_to_them(plugin, iface, make_layer
     drop(iface, SITE)
     loaded = QgsProject.instance().mapLayersByName("Keepouts")[0]
     assert not loaded.customProperty("fleet/role")
-    assert any("Keepouts have no role" in text for text in iface.texts())
+    assert any("other layers of the project have it: Keepouts" in text for text in iface.texts())
 
 
 def drop_from_browser(iface, *items):

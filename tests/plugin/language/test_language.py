@@ -46,7 +46,7 @@ def test_a_removed_language_says_nothing_any_more(speak):
 
 def test_values_go_into_the_translation(speak):
     speak("es")
-    assert tr("{cones} cones", cones=3) == "3 conos"
+    assert tr("{robot} is lost or offline", robot="r1") == "r1 está perdido o sin conexión"
 
 
 def test_numbers_of_things_have_their_forms(speak):

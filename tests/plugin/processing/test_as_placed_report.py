@@ -244,7 +244,7 @@ def test_features_without_places_are_left_out_and_counted(run, make_layer, liste
     odd = (None, None, N, E, N, "c9", "r1", "slalom", None)
     told = run(INPUT=make_layer("placed", "Point", FIELDS, [*rows((0.1, 0)), odd], crs=UTM))
     assert (told["CONE_COUNT"], told["WARNING_COUNT"]) == (1, 1)
-    assert "1 features have no planned or no placed position" in listener.warnings[0]
+    assert "1 feature has no planned or no placed position" in listener.warnings[0]
 
 
 @pytest.fixture

@@ -67,7 +67,7 @@ def test_what_ends_below_the_plane_is_left_out_and_said(export, lines):
     kerb, wall = ("LineString(0 5, 50 5)", 0.3), ("LineString(0 8, 50 8)", 0.31)
     done = export(lines(kerb, wall), PLANE_LOW=0.3, PLANE_HIGH=1.0, **HERE)
     assert [obstacle.ext["src"] for obstacle in done.map.obstacles] == ["walls:2"]
-    assert "2 obstacles with 2 segments became 1 with 1" in done.log
+    assert "2 obstacles, 2 segments became 1 obstacle, 1 segment" in done.log
 
 
 @pytest.fixture
@@ -110,7 +110,7 @@ def test_the_wall_between_two_houses_is_dissolved_and_each_part_keeps_its_house(
     assert done.results["SEGMENT_COUNT"] == 6
     assert {(o.ext["src"], o.height[0]) for o in done.map.obstacles} == {("houses:1", 4.0), ("houses:2", 6.0)}
     assert {o.shape_type for o in done.map.obstacles} == {ShapeType.OPEN_POLYGON}
-    assert "2 obstacles with 8 segments became 2 with 6" in done.log
+    assert "2 obstacles, 8 segments became 2 obstacles, 6 segments" in done.log
 
 
 def test_lines_that_meet_are_chained(export, lines):
@@ -118,7 +118,7 @@ def test_lines_that_meet_are_chained(export, lines):
     (obstacle,) = done.map.obstacles
     assert obstacle.ext["src"] == "walls:1+1"
     assert segments(done.map) == [[0, 5, 9, 5], [9, 5, 9, 9]]
-    assert "2 obstacles with 2 segments became 1 with 2" in done.log
+    assert "2 obstacles, 2 segments became 1 obstacle, 2 segments" in done.log
 
 
 def test_a_known_and_an_estimated_height_are_not_chained_and_a_chain_of_estimates_says_so(export, lines):
@@ -142,7 +142,7 @@ def test_segments_shorter_than_the_shortest_are_left_out(export, lines):
 def test_fewer_walls_can_be_more_obstacles_and_the_log_says_so(export, make_layer):
     row = [(f"Polygon(({x} 0, {x + 9} 0, {x + 9} 9, {x} 9, {x} 0))", 4.0) for x in (0, 9, 18)]
     done = export(make_layer("houses", "Polygon", features=row), DISSOLVE=True, **HERE)
-    assert "3 obstacles with 12 segments became 4 with 8" in done.log
+    assert "3 obstacles, 12 segments became 4 obstacles, 8 segments" in done.log
 
 
 @pytest.fixture
@@ -280,7 +280,7 @@ def test_tiles_are_reduced_before_they_are_cut(provider, houses, listener, tmp_p
     made = [s for file in files for s in segments(decode(file.read_bytes()))]
     assert len(made) == 6 and not [s for s in made if s[0] == s[2] == 20]
     assert results["SEGMENT_COUNT"] == 6
-    assert "2 obstacles with 8 segments became 2 with 6" in listener.infos
+    assert "2 obstacles, 8 segments became 2 obstacles, 6 segments" in listener.infos
 
 
 @pytest.fixture(scope="module")
@@ -295,7 +295,7 @@ def export_campus(data, export_by_process):
 
 def shaped_as_said(done):
     """Return how many segments there were before and after, as the log says it and the outputs agree."""
-    counts = re.search(r"(\d+) obstacles with (\d+) segments became (\d+) with (\d+)", done.said).groups()
+    counts = re.search(r"(\d+) obstacles, (\d+) segments became (\d+) obstacles, (\d+) segments", done.said).groups()
     before, obstacles, after = (int(count) for count in counts[1:])
     assert (obstacles, after) == (done.result("OBSTACLE_COUNT"), done.result("SEGMENT_COUNT"))
     return before, after

@@ -11,7 +11,13 @@ from fleet_supervisor.robot_bridge.roads.centrelines import centrelines
 from fleet_supervisor.robot_bridge.roads.errors import NoRouteError
 from fleet_supervisor.robot_bridge.roads.network import build_network
 from fleet_supervisor.robot_bridge.roads.routes import Router
-from qgis.core import QgsProcessingContext, QgsProcessingException, QgsProject, QgsVectorLayer
+from qgis.core import (
+    QgsProcessingContext,
+    QgsProcessingException,
+    QgsProcessingFeatureSourceDefinition,
+    QgsProject,
+    QgsVectorLayer,
+)
 
 ALL = (
     "&field=width_m:double&field=surface:string&field=oneway:string&field=maxspeed:string&field=closed:string"
@@ -37,9 +43,9 @@ def run(provider, listener):
     """Run one of the algorithms and return its outputs."""
     import processing
 
-    project = QgsProject()
+    without_layers = QgsProject()
 
-    def do(name, layer, feedback=None, **parameters):
+    def do(name, layer, feedback=None, project=without_layers, **parameters):
         outputs = {
             "buildroadnetwork": ("EDGES", "NODES"),
             "checkroadnetwork": ("FINDINGS",),
@@ -101,6 +107,19 @@ def test_expressions_and_the_role_of_the_layer_win_over_fields(run, make_layer):
     )
     known = values(given["EDGES"], "width_m", "speed_ms", "direction", "closed", "level")
     assert known[0] == (3.0, 2.5, 1, 1, 2)
+
+
+def test_the_filter_and_the_width_of_the_layers_role_hold_of_its_selected_roads_too(run, make_layer):
+    layer = square(make_layer)
+    expressions = LayerExpressions(width="7", filter="\"surface\" = 'asphalt'")
+    keep_setup(layer, LayerSetup("road_centreline", expressions))
+    assert run("buildroadnetwork", layer)["EDGE_COUNT"] == 3
+    layer.selectByExpression("\"surface\" = 'slippery' or $id = 1")
+    project = QgsProject()
+    project.addMapLayer(layer)
+    selected = QgsProcessingFeatureSourceDefinition(layer.id(), selectedFeaturesOnly=True)
+    edges = run("buildroadnetwork", selected, project=project)["EDGES"]
+    assert values(edges, "surface", "width_m") == [("asphalt", 7.0)]
 
 
 def test_what_is_not_understood_is_named_and_has_a_default(run, make_layer, listener):
@@ -170,7 +189,7 @@ def test_areas_that_must_not_be_driven_through_are_driven_round(run, make_layer,
 
     assert metres() == pytest.approx(19.0)
     assert metres("POLYGON((8 4, 12 4, 12 6, 8 6, 8 4))") == pytest.approx(20.0)
-    assert "1 edges lead through areas to be avoided" in "".join(listener.infos)
+    assert "1 edge leads through areas to be avoided" in "".join(listener.infos)
     # Along the rim, and beside the road, nothing is driven through.
     assert metres("POLYGON((10 0, 20 0, 20 10, 10 10, 10 0))") == pytest.approx(19.0)
     assert metres("POLYGON((2 2, 8 2, 8 8, 2 8, 2 2))") == pytest.approx(19.0)

@@ -114,7 +114,7 @@ def test_roads_without_a_width_are_as_wide_as_is_said_and_named(run, make_layer,
     assert (finding["feature"], finding.geometry().asWkt()) == (2, "LineString (0 50, 100 50)")
     assert finding["text"] == "The width of this road is not known; 3 m is used."
     assert made["FINDING_COUNT"] == 1
-    assert "Layer roads: the width of 1 roads is not known; 3 m is used" in listener.warnings
+    assert "Layer roads: the width of 1 road is not known; 3 m is used" in listener.warnings
 
 
 def test_expressions_of_the_roads_and_their_role_are_heard(run, make_layer):

@@ -111,7 +111,7 @@ def test_a_new_plan_is_not_sent_when_a_cone_was_given_up_meanwhile(under_way, ga
     gateway.tell("queue", queue(under_way, "r2", ["waiting"] * 3, state="paused", at=99.0))
     wait(lambda: under_way._desk.queues.get("r2").at == 99.0, 5)
     press(under_way, "fleet_plan_confirm")
-    wait(lambda: any("was given up since this plan was made" in text for text in iface.texts()), 5)
+    wait(lambda: any("Given up since this plan was made: " in text for text in iface.texts()), 5)
     assert gateway.asked("take_over") == [] and under_way.driven.offer is not None
 
 

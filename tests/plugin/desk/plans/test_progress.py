@@ -6,6 +6,7 @@ import itertools
 from dataclasses import replace
 
 import pytest
+from fleet_supervisor.plugin.desk.plans.closed_ways import ClosedWay
 from fleet_supervisor.plugin.desk.plans.cone_source import ConeFacts
 from fleet_supervisor.plugin.desk.plans.draft import Draft
 from fleet_supervisor.plugin.desk.plans.plan_rows import rows_of
@@ -246,3 +247,25 @@ def test_of_a_cone_that_was_sent_again_the_newest_task_counts(driven):
         driven.progress.forget([task.task for task in tasks])
         assert driven.progress.state_of("c1") is not CURRENT, "what was forgotten counts no more"
     assert driven.progress.state_of("c1") is None
+
+
+def test_trouble_with_many_ways_cones_and_robots_names_the_first_and_counts_the_others():
+    trouble = Trouble(
+        tuple(f"r{k}" for k in range(10)),
+        tuple((f"c{k}", "stuck") for k in range(4)),
+        tuple(ClosedWay("r1", f"c{k}", "anna") for k in range(58)),
+    )
+    assert trouble.in_words().split("; ") == [
+        "r0 is lost or offline",
+        "r1 is lost or offline",
+        "r2 is lost or offline",
+        "and 7 more",
+        "cone c0 failed: stuck",
+        "cone c1 failed: stuck",
+        "cone c2 failed: stuck",
+        "and 1 more",
+        "the way of r1 to c0 leads along a road that anna closed",
+        "the way of r1 to c1 leads along a road that anna closed",
+        "the way of r1 to c2 leads along a road that anna closed",
+        "and 55 more",
+    ]
