@@ -24,6 +24,7 @@ from .access.reach import check_reach, is_loopback
 from .access.tls import ServerFiles, ServerTls
 from .access.tokens import TokenKind
 from .access.visitor import Visitor
+from .clock_at_start import clock_doubt
 from .clock_watch import ClockWatch
 from .desk_server import DeskSession
 from .emergency.journal import StopJournal, journal_file
@@ -48,6 +49,7 @@ from .status_pages import HEALTH, METRICS, StatusPages
 from .store import facts
 from .store.accounts.choice import has_accounts
 from .store.database import Database
+from .store.newest import newest_time
 from .store.sole_gateway import SoleGateway
 
 log = logging.getLogger(__name__)
@@ -99,7 +101,7 @@ class Gateway:
         fleet.database.observe = metrics.database.observe
         self._status = StatusPages(fleet, metrics)
         self._clock_watch = ClockWatch(time.time)
-        self._retention = Retention(fleet.database, lambda: fleet.site.settings, time.time)
+        self.retention = Retention(fleet.database, lambda: fleet.site.settings, time.time)
 
     async def serve(self, host: str, port: int) -> Server:
         """Listen for robots and operators; raises BridgeError when that cannot be done there."""
@@ -114,7 +116,7 @@ class Gateway:
             "liveness": lambda: every(AGE_INTERVAL, self._age, "liveness", tally),
             "queues": fleet.driving.run,
             "save": lambda: every(SAVE_INTERVAL, fleet.save, "save", tally),
-            "prune": lambda: every(PRUNE_INTERVAL, self._retention.prune, "prune", tally),
+            "prune": lambda: every(PRUNE_INTERVAL, self.retention.prune, "prune", tally),
             "roads": lambda: every(ROADS_INTERVAL, fleet.watch_roads, "roads", tally),
             "accounts": self._gate.watch,
             "audit log": self._gate.journal.run,
@@ -197,6 +199,8 @@ async def run(settings: GatewaySettings, signals: Signals, started: Callable[[st
         sole = SoleGateway(settings.database)
         await sole.take()
         stack.push_async_callback(sole.release)
+        # Before anything is stored by this clock.
+        doubt = clock_doubt(time.time(), await database.run(newest_time))
         folder = await _site_folder(settings, database)
         if folder != settings.site:
             stamp = await asyncio.to_thread(stamp_of, folder)
@@ -212,6 +216,10 @@ async def run(settings: GatewaySettings, signals: Signals, started: Callable[[st
         await fleet.start()
         stack.push_async_callback(_save_last, fleet, gate)
         gateway = Gateway(fleet, gate, tls)
+        if doubt is not None:
+            log.warning("%s", doubt.text)
+            if doubt.may_be_ahead:
+                gateway.retention.doubt_clock()
         server = await gateway.serve(settings.host, settings.port)
         gate.warn()
         stack.push_async_callback(say_farewell, server, fleet)

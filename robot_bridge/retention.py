@@ -25,8 +25,8 @@ PAUSE = 0.05
 """seconds between two deletions, in which robots and operators have the database."""
 LARGEST_STEP = 3600.0
 DOUBT = DAY
-"""seconds without deletions after the clock was set forward by more than :data:`LARGEST_STEP`: were it wrong,
-everything would be too old at once, and nothing brings back what is deleted."""
+"""seconds without deletions while the clock may be ahead: everything would be too old at once, and nothing
+brings back what is deleted."""
 
 
 class Kept(NamedTuple):
@@ -72,6 +72,10 @@ class Retention:
         self._clock_watch = ClockWatch(clock, steady)
         self._doubtful_until = steady()
 
+    def doubt_clock(self) -> None:
+        """Delete nothing for a day: the clock may be ahead."""
+        self._doubtful_until = self._steady() + DOUBT
+
     async def prune(self) -> None:
         """Delete what the settings do not keep any longer; raises StoreError."""
         if not self._trusts_clock():
@@ -83,7 +87,7 @@ class Retention:
     def _trusts_clock(self) -> bool:
         step = self._clock_watch.look()
         if step is not None and step.by > LARGEST_STEP:
-            self._doubtful_until = self._steady() + DOUBT
+            self.doubt_clock()
             log.warning(
                 "the clock of this computer was set forward by %.1f days; for a day nothing is deleted for "
                 "its age. If it is wrong, set it right before then, and before the gateway is started anew",

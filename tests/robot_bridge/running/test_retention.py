@@ -221,6 +221,19 @@ async def test_a_clock_that_was_set_far_ahead_deletes_nothing_for_a_day(database
     assert (await database.run(left))[audit.c.who] == set()
 
 
+async def test_a_clock_that_may_be_ahead_from_the_start_deletes_nothing_for_a_day(database, settings):
+    await database.run(fill)
+    clocks, count = Clocks(), await database.run(rows)
+    keeping = Retention(database, lambda: settings, lambda: clocks.now, lambda: clocks.steady)
+    keeping.doubt_clock()
+    clocks.pass_by(DAY - 60)
+    await keeping.prune()
+    assert await database.run(rows) == count
+    clocks.pass_by(120)
+    await keeping.prune()
+    assert await database.run(rows) != count
+
+
 async def test_a_clock_that_was_set_right_again_deletes_no_more_than_before(database, settings):
     await database.run(fill)
     clocks = Clocks()

@@ -24,6 +24,8 @@ from robot_bridge.store.address import read_address
 from robot_bridge.store.backups.backing_up import back_up
 from robot_bridge.store.database import run_once
 
+DAY = 86400.0
+
 
 def numbers(bridge):
     address = bridge.address.replace("ws://", "http://")
@@ -51,6 +53,31 @@ def test_a_task_that_fails_is_logged_counted_and_goes_on_when_it_can(bridge):
     wait_until(lambda: bridge.sql("select x from trajectories") == [(7.0,)])
     said = [line for line in bridge.output().splitlines() if "save: database" in line]
     assert len(said) == 1 and "no such table: trajectories" in said[0]
+
+
+def test_a_clock_that_goes_against_what_is_stored_is_told_when_the_gateway_starts(bridge):
+    robot = bridge.robot("r1")
+    robot.plug_in(1)
+    robot.tell("SendPos", {"x": 7.0, "y": 8.0, "theta": 0.0, "v": 0.0})
+    wait_until(lambda: bridge.sql("select x from trajectories") == [(7.0,)])
+    bridge.kill_gateway()
+    for shift, said in (
+        (86400.0, "the clock is behind now, or was ahead then"),
+        (-30 * 86400.0, "For a day"),
+    ):
+        assert said not in bridge.output()
+        shift_times(bridge, shift)
+        bridge.start_gateway()
+        assert said in bridge.output()
+        bridge.kill_gateway()
+        shift_times(bridge, -shift)
+    assert bridge.sql("select x from trajectories") == [(7.0,)]
+
+
+def shift_times(bridge, seconds):
+    """Move all times that a gateway looks at when it starts."""
+    for table, column in (("trajectories", "received_at"), ("robots", "received_at"), ("audit", "at")):
+        bridge.sql(f'update {table} set "{column}" = "{column}" + ?', seconds)
 
 
 def test_accounts_that_cannot_be_read_are_told_of_once(bridge):

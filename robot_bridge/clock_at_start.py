@@ -1,0 +1,54 @@
+"""What the times in the database say of this computer's clock when the gateway starts; no I/O.
+
+A clock that is wrong before the gateway runs is not seen to be set: see :mod:`.clock_watch` for that.
+"""
+
+from __future__ import annotations
+
+import time
+from typing import NamedTuple
+
+LEAST_BEHIND = 5.0
+"""seconds; less is what a clock is corrected by."""
+LONG_IDLE = 7 * 86400.0
+"""seconds without anything stored after which it may be the clock that is ahead."""
+RELEASED = 1_767_225_600.0
+"""2026-01-01 UTC: no computer with this version has an earlier time."""
+_SET_IT = "set it ('timedatectl' shows it, 'timedatectl set-ntp true' has the network set it)"
+
+
+class ClockDoubt(NamedTuple):
+    """Why the clock may be wrong, with what to do; ``may_be_ahead`` if it may make what is kept too old."""
+
+    text: str
+    may_be_ahead: bool = False
+
+
+def clock_doubt(now: float, newest: float | None) -> ClockDoubt | None:
+    """Return why the clock, which says ``now``, may be wrong; None where nothing speaks against it.
+
+    ``newest`` is the newest time in the database, None in an empty one; both are seconds since 1970.
+    """
+    if newest is not None and newest - now >= LEAST_BEHIND:
+        return ClockDoubt(
+            f"the clock of this computer says {_utc(now)}, and what was stored last is from {_utc(newest)}: "
+            f"the clock is behind now, or was ahead then. If it is behind, end the gateway, {_SET_IT}, and "
+            "start the gateway again: until then it stores times that are wrong"
+        )
+    if now < RELEASED:
+        return ClockDoubt(
+            f"the clock of this computer says {_utc(now)}, which is before this version was made: end the "
+            f"gateway, {_SET_IT}, and start the gateway again"
+        )
+    if newest is not None and now - newest >= LONG_IDLE:
+        return ClockDoubt(
+            f"the clock of this computer says {_utc(now)}, and what was stored last is from {_utc(newest)}. "
+            f"For a day nothing is deleted for its age; if the clock is ahead, end the gateway before then, "
+            f"{_SET_IT}, and start the gateway again",
+            may_be_ahead=True,
+        )
+    return None
+
+
+def _utc(at: float) -> str:
+    return time.strftime("%Y-%m-%d %H:%M:%S UTC", time.gmtime(at))
