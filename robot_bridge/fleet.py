@@ -45,6 +45,7 @@ from .messages import (
 )
 from .monitoring.tally import Tally
 from .observation_book import ObservationBook
+from .places import check_keepouts
 from .planning import Planner, StraightPlanner
 from .queueing.book import QueueBook
 from .queueing.driving import QueueDriving
@@ -99,6 +100,7 @@ class Fleet:
             self._consider,
         )
         self._book.seen = self.robots.pose
+        self._book.keep_out = lambda message: check_keepouts(site, [message])
         self._book.unseen = lambda robot: self.robots.is_unseen(robot, clock())
         self.ways = Ways(self.robots, self._book)
         self.roads = planner if isinstance(planner, RoadPlanner) else None

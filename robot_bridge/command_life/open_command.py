@@ -31,7 +31,8 @@ class Order:
     It is given up when the robot has not fetched it within ``expires_in`` seconds (None: by the site's
     settings). With ``aborts`` it is void unless that command is still the robot's task, with ``instead_of``
     unless that is and nobody has asked for its end; NOTHING stands for a robot that does nothing. ``task``
-    is the task of the robot's queue that it is for; an order beside the queue pauses that.
+    is the task of the robot's queue that it is for; an order beside the queue pauses that. One that is
+    ``fenced`` is refused where it leads into a keepout of the site.
     """
 
     command: str
@@ -43,6 +44,7 @@ class Order:
     aborts: str | None = None
     task: str | None = None
     instead_of: str | None = None
+    fenced: bool = False
 
 
 @dataclass

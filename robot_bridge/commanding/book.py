@@ -87,6 +87,8 @@ class CommandBook:
         """Tells where a robot was seen last."""
         self.unseen: Callable[[str], bool] = lambda _robot: False
         """Tells whether a robot may have come further since it was seen last."""
+        self.keep_out: Callable[[Command], Awaitable[None]] = _let_pass
+        """Raises RefusedError for a message that leads into a keepout; for orders that are fenced."""
         self._open = OpenCommands()
         self._locks: dict[str, asyncio.Lock] = {}
         self._doubtful = False
@@ -243,10 +245,10 @@ class CommandBook:
 
     async def _issue(self, orders: list[Order], also: Also | None) -> list[CommandReport]:
         async with self._holding(order.robot for order in orders):
-            for order in orders:
-                await self._consider(order.message)
+            # What takes long first: nothing may come between the checks and the transaction.
+            found = [await self._fenced(order) for order in orders]
             now = self._clock()
-            drafts = [self._draft(order, now) for order in orders]
+            drafts = [self._draft(order, fault, now) for order, fault in zip(orders, found, strict=True)]
             issued, ended = await self._run(write_drafts, drafts, also)
             for command in ended:
                 self._apply(command)
@@ -257,13 +259,22 @@ class CommandBook:
                     self._outbox_changed(command.report.robot)
             return [command.report for command in issued]
 
-    def _draft(self, order: Order, now: float) -> Draft:
-        refusal = None
+    async def _fenced(self, order: Order) -> RefusedError | None:
+        """Find out what takes long about an order; return why it must not be sent, None if it may be."""
+        await self._consider(order.message)
+        try:
+            if order.fenced:
+                await self.keep_out(order.message)
+        except RefusedError as error:
+            return error
+        return None
+
+    def _draft(self, order: Order, refusal: RefusedError | None, now: float) -> Draft:
         try:
             self._check(order.message)
             self._check_task(order)
         except RefusedError as error:
-            refusal = error
+            refusal = refusal or error
         mine = self._open.of(order.robot)
         command = dataclasses.replace(drafted(order, now), handed=self.seen(order.robot))
         return Draft(order, command, voided(order, mine, now), refusal, self.waits(order.robot))
@@ -461,3 +472,7 @@ class CommandBook:
             if known is None or (known.report, known.sa_id) != (found.report, found.sa_id):
                 self._apply(self._restored(found))
                 self._outbox_changed(found.report.robot)
+
+
+async def _let_pass(_message: Command) -> None:
+    """Refuse nothing."""

@@ -18,7 +18,7 @@ from ..messages import (
     check_robot_name,
     to_json,
 )
-from ..places import check_keepouts, check_places, places_of
+from ..places import check_places, places_of
 from ..robots import Robots
 from ..served_site import ServedSite
 from ..store import commands
@@ -43,11 +43,10 @@ class Orders:
     async def send(self, send: Send, operator: str) -> CommandReport:
         """Issue one command."""
         order = self._order(send.command, send.robot, send.op, send.params, operator)
-        if send.override is None:
-            await check_keepouts(self._site, [order.message])
         told = [f"override: {send.override}" if send.override else None, send.reason]
         reason = "; ".join(text for text in told if text) or None
-        order = replace(order, reason=reason, expires_in=send.expires_in)
+        fenced = send.override is None
+        order = replace(order, reason=reason, expires_in=send.expires_in, fenced=fenced)
         return (await self._book.issue([order]))[0]
 
     async def set_positions(self, positions: list[TargetPosition], operator: str) -> list[CommandReport]:
@@ -61,8 +60,8 @@ class Orders:
         orders = []
         for position in positions:
             target = {name: value for name, value in to_json(position).items() if name != "robot"}
-            orders.append(self._order(str(uuid.uuid4()), position.robot, "SetPosEnd", target, operator))
-        await check_keepouts(self._site, [order.message for order in orders])
+            order = self._order(str(uuid.uuid4()), position.robot, "SetPosEnd", target, operator)
+            orders.append(replace(order, fenced=True))
         return await self._book.issue(orders)
 
     async def abort(self, request: AbortTask, operator: str) -> CommandReport:

@@ -56,6 +56,12 @@ async def test_a_command_into_a_keepout_is_refused_unless_it_is_overridden(line,
     assert report.steps[0].reason == "override: it is drained"
 
 
+async def test_what_was_sent_before_is_answered_as_it_stands_whatever_is_a_keepout_by_now(line):
+    into = {"x": BASIN[0], "y": BASIN[1]}
+    sent = await line.yard.fleet.orders.send(send("SetPosEnd", override="it is drained", **into), "Ada")
+    assert await line.yard.fleet.orders.send(send("SetPosEnd", **into), "Ada") == sent
+
+
 async def test_a_path_around_a_keepout_and_a_robot_that_is_said_to_stand_in_one_are_no_matter(line):
     await line.yard.fleet.orders.send(send("SetPath", points=BESIDE), "Ada")
     begin = Send("command-b", "r1", "SetPosIni", {"x": BASIN[0], "y": BASIN[1]})
