@@ -159,14 +159,13 @@ def drafted(order: Order, now: float) -> OpenCommand:
 def voided(order: Order, mine: list[OpenCommand], now: float) -> list[OpenCommand]:
     """Return the ends of those commands of the robot, ``mine``, that ``order`` ends at once.
 
-    An Abort ends the task that the robot has not fetched; what it has taken on ends when it acknowledges the
-    Abort. That of an emergency stop overtakes what it has fetched and not taken on, so that ends at once too.
+    An Abort ends the task that the robot has not fetched. What it has fetched may be done by the time that the
+    Abort comes, so that ends when it acknowledges the Abort.
     """
     ended = []
     for command in mine:
         if isinstance(order.message, Abort) and command.is_motion:
-            overtaken = order.message.emergency and command.is_on_its_way
-            if command.report.state is not CommandState.QUEUED and not overtaken:
+            if command.report.state is not CommandState.QUEUED:
                 continue
             # Not "before the robot read it": a robot may have done that without the gateway knowing yet.
             reason = because("before the robot acknowledged it", order.reason)

@@ -83,7 +83,7 @@ async def test_every_robot_is_told_before_anything_else(two, control):
     assert control.rows() == [("stop-0001", "Ada", "child on the track", None)]
 
 
-async def test_what_robots_have_not_taken_on_is_aborted_at_once_and_what_they_drive_when_they_say_so(
+async def test_what_robots_have_not_fetched_is_aborted_at_once_and_everything_else_when_they_say_so(
     two, control
 ):
     await two.ready("r3")
@@ -98,14 +98,42 @@ async def test_what_robots_have_not_taken_on_is_aborted_at_once_and_what_they_dr
     states = await two.states()
     assert {id: states[id] for id in ("queued", "delivered", "driving")} == {
         "queued": "aborted",
-        "delivered": "aborted",
+        "delivered": "delivered",
         "driving": "acknowledged",
     }
     assert await two.reason("queued") == "before the robot acknowledged it: smoke"
-    assert await two.reason("delivered") == "before the robot acknowledged it: smoke"
-    await two.take("r3")
-    assert (await two.states())["driving"] == "aborted"
-    assert await two.reason("driving") == "the robot acknowledged the Abort: smoke"
+    for robot, id in (("r2", "delivered"), ("r3", "driving")):
+        await two.take(robot)
+        assert (await two.states())[id] == "aborted"
+        assert await two.reason(id) == "the robot acknowledged the Abort: smoke"
+
+
+@pytest.mark.parametrize("restarted", [False, True])
+async def test_a_target_that_was_reached_before_the_stop_came_is_reached_and_not_aborted(
+    two, control, restarted
+):
+    await two.send("cone", cone=True)
+    (row,) = await two.deliver("r1")
+    await control.stop()
+    if restarted:
+        await two.restart()
+        await two.ready()
+    # It is sent nothing of that any more, and had it already: it tells in order what it did.
+    assert "SetPosEnd" not in two.waiting("r1")
+    await two.ack(row.id)
+    await two.at(50.0, 40.0)
+    assert await two.steps("cone") == ["queued", "delivered", "acknowledged", "reached"]
+    await two.take("r1")
+    assert (await two.states())["cone"] == "reached"
+
+
+async def test_a_robot_that_started_anew_after_a_stop_has_given_up_what_it_was_sent(two, control):
+    await two.send("a")
+    await two.deliver("r1")
+    await control.stop()
+    await two.ready("r1", magic=2)
+    assert (await two.states())["a"] == "aborted"
+    assert "SetPosEnd" not in two.waiting("r1")
 
 
 async def test_nothing_that_drives_is_sent_while_it_is_in_force_and_an_abort_is(two, control):
