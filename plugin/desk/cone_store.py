@@ -18,7 +18,6 @@ from qgis.core import (
 
 from ...robot_bridge.layouts.checks import Finding, Shape, find
 from ...robot_bridge.layouts.cone import Cone
-from ...robot_bridge.sites.frame import SiteFrame
 from ..errors import PlacementError
 from ..language import tr
 from ..processing.cone_ground import read_obstacles
@@ -98,7 +97,7 @@ class ConeStore:
 
         :raises FleetError: when a layer has no known place in ``crs``.
         """
-        site = SitePlacing(crs, SiteFrame(crs.authid(), (0.0, 0.0)), self._project.transformContext())
+        site = SitePlacing.in_crs(crs, self._project.transformContext())
         context = QgsExpressionContext(QgsExpressionContextUtils.globalProjectLayerScopes(None))
         feedback = QgsProcessingFeedback(False)
 

@@ -25,6 +25,7 @@ from qgis.gui import QgsMessageBar
 from qgis.utils import iface
 
 from ..language import tr, tr_count, tr_page
+from ..sites.site_crs import check_site_crs
 from .errors import ParameterError, shown_by_processing
 from .fleet_algorithm import FleetAlgorithm, Parameters
 from .placed_cones import deviations, read_cones
@@ -163,6 +164,8 @@ class AsPlacedReport(FleetAlgorithm):
                     "EPSG:32633."
                 )
             )
+        # Deviations in degrees would be told as metres.
+        check_site_crs(crs)
         return crs
 
 

@@ -33,7 +33,7 @@ from .job_source import JobSource, job_parameters
 from .job_travel import TravelSource, travel_parameters
 from .plan_rows import FIGURES, PATH_FIELDS, TARGET_FIELDS, figures, path_rows, target_rows
 from .sinks import fill
-from .whole_file import write_whole
+from .whole_file import check_target, write_whole
 
 OBJECTIVE, METHOD, TIME_LIMIT = "OBJECTIVE", "METHOD", "TIME_LIMIT"
 TARGETS, PATHS, PLAN = "TARGETS", "PATHS", "PLAN"
@@ -119,11 +119,14 @@ class AssignCones(FleetAlgorithm):
     def _run(
         self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
     ) -> dict:
+        file = self._plan_file(parameters, context)
         jobs = JobSource(self, parameters, context)
         crs = self._travel.open(jobs, feedback)
         if crs is None:
             return {}
         job = jobs.read(crs)
+        if not job.targets:
+            feedback.pushWarning(tr("CONES holds no cone: there is nothing to plan."))
         feedback.setProgress(_READ)
         told = _Told(feedback)
         travel = self._travel.travel(job, crs, feedback, told.measuring)
@@ -137,7 +140,7 @@ class AssignCones(FleetAlgorithm):
                     faults="; ".join(faults[:5]),
                 )
             )
-        made = self._written(plan, crs, parameters, context, feedback)
+        made = self._written(plan, crs, file, parameters, context, feedback)
         if feedback.isCanceled():
             return {}
         _report(plan, feedback)
@@ -150,19 +153,30 @@ class AssignCones(FleetAlgorithm):
             self.parameterAsDouble(parameters, TIME_LIMIT, context),
         )
 
+    def _plan_file(self, parameters: Parameters, context: QgsProcessingContext) -> Path | None:
+        """Return the file of the plan, None where none is wanted.
+
+        :raises OutputError: when it cannot be written, before the time limit is spent on planning.
+        """
+        name = self.parameterAsFileOutput(parameters, PLAN, context)
+        if not name:
+            return None
+        check_target(Path(name), tr("The plan"))
+        return Path(name)
+
     def _written(
         self,
         plan: Plan,
         crs: QgsCoordinateReferenceSystem,
+        file: Path | None,
         parameters: Parameters,
         context: QgsProcessingContext,
         feedback: QgsProcessingFeedback,
     ) -> dict[str, str]:
         made = {}
-        file = self.parameterAsFileOutput(parameters, PLAN, context)
-        if file:
-            write_whole(Path(file), to_json(plan).encode("utf-8"), tr("The plan"))
-            made[PLAN] = file
+        if file is not None:
+            write_whole(file, to_json(plan).encode("utf-8"), tr("The plan"))
+            made[PLAN] = str(file)
         types = QgsWkbTypes.Type
         for name, kind, rows, fields in (
             (TARGETS, types.Point, target_rows(plan), self._fields[0]),

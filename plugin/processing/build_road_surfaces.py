@@ -22,7 +22,6 @@ from ...robot_bridge.roads.surfaces.generation import PRECEDENCE as USUAL_ORDER
 from ...robot_bridge.roads.surfaces.generation import generate
 from ...robot_bridge.roads.surfaces.outlines import areas_of, edges_of
 from ...robot_bridge.roads.surfaces.surface import GENERATED, Surface
-from ...robot_bridge.sites.frame import SiteFrame
 from ..language import tr, tr_count, tr_page
 from ..sites.ground_reading import GroundReading, read_surfaces
 from ..sites.obstacle_source import obstacle_sources
@@ -145,10 +144,8 @@ class BuildRoadSurfaces(FleetAlgorithm):
     def _read_drawn(
         self, reading: RoadReading, context: QgsProcessingContext, feedback: QgsProcessingFeedback
     ) -> GroundReading[Surface] | None:
-        frame = SiteFrame(reading.crs.authid(), (0.0, 0.0))
-        drawn = read_surfaces(
-            self._drawn, SitePlacing(reading.crs, frame, context.transformContext()), _Quiet(feedback)
-        )
+        site = SitePlacing.in_crs(reading.crs, context.transformContext())
+        drawn = read_surfaces(self._drawn, site, _Quiet(feedback))
         # What an earlier run generated is made anew.
         old = [one for one in drawn.items if one.origin == GENERATED]
         drawn.items = [one for one in drawn.items if one.origin != GENERATED]

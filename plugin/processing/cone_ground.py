@@ -22,7 +22,6 @@ from qgis.core import (
 
 from ...robot_bridge.layouts.checks import Finding, Shape, find
 from ...robot_bridge.layouts.cone import Cone
-from ...robot_bridge.sites.frame import SiteFrame
 from ..language import tr
 from ..sites.feature_filter import FeatureFilter
 from ..sites.ground_reading import read_areas
@@ -94,7 +93,7 @@ class Ground:
 
         :raises LayerReadingError: when a layer has no known place in ``crs``.
         """
-        site = SitePlacing(crs, SiteFrame(crs.authid(), (0.0, 0.0)), self._transforms)
+        site = SitePlacing.in_crs(crs, self._transforms)
         surfaces = self._read_surfaces(site, feedback)
         obstacles = read_obstacles(self._obstacles, site, feedback)
         if feedback.isCanceled():

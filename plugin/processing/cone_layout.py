@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import numpy as np
 from qgis.core import (
-    QgsCoordinateTransform,
-    QgsCsException,
     QgsFeature,
     QgsFeatureRequest,
-    QgsGeometry,
     QgsProcessing,
     QgsProcessingContext,
     QgsProcessingFeedback,
@@ -29,11 +25,13 @@ from ...robot_bridge.layouts.cone import Cone
 from ...robot_bridge.layouts.placing import along, placed
 from ..language import tr, tr_page
 from ..layout_words import TITLES, dimension_in_words, standard_in_words
-from ..sites.parts import parts_of
+from ..sites.ground_reading import lines_of
+from ..sites.placing import PlacingError, SitePlacing
 from .cone_ground import ground_parameters
 from .cone_layer import STYLES, ConeSetup, add_layers, site_crs_parameter
 from .errors import ParameterError, shown_by_processing
 from .fleet_algorithm import FleetAlgorithm, Parameters
+from .places import point_in
 
 LAYOUT, DIMENSIONS, PREFIX = "LAYOUT", "DIMENSIONS", "PREFIX"
 POINT, HEADING, LINE, LINE_ID, START, REVERSE = "POINT", "HEADING", "LINE", "LINE_ID", "START", "REVERSE"
@@ -130,11 +128,9 @@ class ConeLayout(FleetAlgorithm):
 
     def _placed(self, cones: list[Cone], parameters: Parameters, context: QgsProcessingContext) -> list[Cone]:
         if self._line is None:
-            point = self.parameterAsPoint(parameters, POINT, context, self._setup.crs)
+            point = point_in(self, parameters, POINT, context, self._setup.crs)
             theta = theta_of(self.parameterAsDouble(parameters, HEADING, context))
-            if not all(map(math.isfinite, (point.x(), point.y(), theta))):
-                raise ParameterError(tr("POINT or HEADING is not finite: give numbers."))
-            return placed(cones, point.x(), point.y(), theta)
+            return placed(cones, *point, theta)
         points = self._points(parameters, context)
         if self.parameterAsBool(parameters, REVERSE, context):
             points = points[::-1]
@@ -165,25 +161,30 @@ class ConeLayout(FleetAlgorithm):
 
     def _points(self, parameters: Parameters, context: QgsProcessingContext) -> np.ndarray:
         """Return the points of the one line, in the site CRS."""
-        feature = self._line_feature(parameters, context)
-        geometry = QgsGeometry(feature.geometry())
-        transform = QgsCoordinateTransform(
-            self._line.sourceCrs(), self._setup.crs, context.transformContext()
-        )
+        source, feature = self._line, self._line_feature(parameters, context)
+        site = SitePlacing.in_crs(self._setup.crs, context.transformContext())
+        placing = site.of_layer(source.sourceName(), source.sourceCrs())
+        geometry = feature.geometry()
         try:
-            geometry.transform(transform)
-        except QgsCsException as error:
+            lines = [] if geometry.isNull() else lines_of(placing.to_metres(geometry), [])
+        except PlacingError:
+            lines = []
+        if not lines:
             raise ParameterError(
-                tr("The line cannot be transformed into the site's CRS ({error}).", error=error)
-            ) from error
-        lines = parts_of(geometry).lines
-        if len(lines) != 1:
+                tr(
+                    "The feature {id} of {layer} has no line with a length and a place in the site's CRS: "
+                    "correct it, or choose another.",
+                    id=feature.id(),
+                    layer=source.sourceName(),
+                )
+            )
+        if len(lines) > 1:
             raise ParameterError(
                 tr(
                     "The feature {id} of {sourcename} has {lines} lines: split it, or choose one that has "
                     "one.",
                     id=feature.id(),
-                    sourcename=self._line.sourceName(),
+                    sourcename=source.sourceName(),
                     lines=len(lines),
                 )
             )

@@ -34,7 +34,8 @@ from .mask_areas import areas_of, speed_by
 from .navigation_files import FORMATS as MADE
 from .navigation_files import Files, NavigationExport
 from .navigation_help import HELP
-from .whole_file import OutputError, write_whole
+from .whole_file import OutputError
+from .whole_folder import WholeFolder
 
 FORMATS, NAME, OUTPUT = "FORMATS", "NAME", "OUTPUT"
 RESOLUTION, INSIDE, DRIVES_OVER = "RESOLUTION", "INSIDE", "DRIVES_OVER"
@@ -281,26 +282,20 @@ def _name(given: str, source: Path) -> str:
 
 
 def _write(made: Mapping[str, Files], folder: Path, source: Path, feedback: QgsProcessingFeedback) -> None:
-    """Write every file into the folder, none over the robot map."""
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise OutputError(
-            tr(
-                "The folder {folder} cannot be made: {reason}. Choose another OUTPUT.",
-                folder=folder,
-                reason=error.strerror or error,
-            )
-        ) from error
-    files = {folder / name: content for part in made.values() for name, content in part.items()}
-    for target in files:
+    """Write every file into the folder or none, and none over the robot map."""
+    files = {name: content for part in made.values() for name, content in part.items()}
+    for name in files:
+        target = folder / name
         if target.exists() and target.samefile(source):
             raise OutputError(
                 tr("{target} is the robot map itself: choose another NAME or OUTPUT.", target=target)
             )
-    for target, content in files.items():
-        write_whole(target, content)
-        feedback.pushInfo(tr("{target}: {content} bytes", target=target, content=len(content)))
+    with WholeFolder(folder, tr("The navigation map")) as whole:
+        for name, content in files.items():
+            whole.add(name, content)
+        whole.publish()
+    for name, content in files.items():
+        feedback.pushInfo(tr("{target}: {content} bytes", target=folder / name, content=len(content)))
 
 
 def _results(made: Mapping[str, Files], folder: Path, warnings: int) -> dict[str, Any]:

@@ -38,7 +38,6 @@ from .map_shaping import shaping_parameters
 from .map_window import EXTENT, PAPERS_SIDE_M, frame_parameters
 from .obstacle_outlines import obstacle_outlines
 from .sinks import fill, polygon
-from .tile_folder import TileFolder
 from .tile_plan import (
     FOLDER,
     INDEX,
@@ -53,6 +52,7 @@ from .tile_plan import (
 )
 from .tile_windows import Tile, area_of
 from .whole_file import replaced_whole
+from .whole_folder import WholeFolder
 
 _FIELDS = {
     "tile": "string",
@@ -157,7 +157,7 @@ class ExportRobotMapTiles(FleetAlgorithm):
     ):
         plan = self._plan
         steps = QgsProcessingMultiStepFeedback(2, feedback)
-        with shown_by_processing(feedback), TileFolder(plan.folder) as folder:
+        with shown_by_processing(feedback), WholeFolder(plan.folder, tr("The tiles")) as folder:
             if feedback.isCanceled():
                 return {}
             found = obstacle_outlines(plan, area_of(plan.tiles), steps)
@@ -197,7 +197,7 @@ class _TileMaker:
         self._notes: dict[str, None] = dict.fromkeys(warnings)
         self.rows: list = []
 
-    def make_all(self, index: OutlineIndex, folder: TileFolder, feedback: QgsProcessingFeedback) -> bool:
+    def make_all(self, index: OutlineIndex, folder: WholeFolder, feedback: QgsProcessingFeedback) -> bool:
         """Add every tile to ``folder``; return False when cancelled on the way."""
         for number, tile in enumerate(self._plan.tiles, 1):
             if feedback.isCanceled():
@@ -225,7 +225,7 @@ class _TileMaker:
         )
         return dict(zip(NUMBERS, (len(self.rows), obstacles, segments, size, warnings), strict=True))
 
-    def _make(self, tile: Tile, index: OutlineIndex, folder: TileFolder) -> None:
+    def _make(self, tile: Tile, index: OutlineIndex, folder: WholeFolder) -> None:
         robot_map = index.map_of(tile.window, self._plan.meta)
         self._notes.update(dict.fromkeys(robot_map.warnings))
         if self._skip_empty and not robot_map.obstacles:

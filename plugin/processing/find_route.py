@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -15,23 +16,23 @@ from qgis.core import (
     QgsProcessingParameterDefinition,
     QgsProcessingParameterEnum,
     QgsProcessingParameterFeatureSink,
-    QgsProcessingParameterNumber,
     QgsProcessingParameterPoint,
-    QgsProcessingParameterString,
     QgsWkbTypes,
 )
 
-from ...robot_bridge.roads.dense import DensePath, Driving, dense_path
+from ...robot_bridge.roads.dense import DensePath, dense_path
 from ...robot_bridge.roads.engines.choice import AUTOMATIC, ENGINES
 from ...robot_bridge.roads.engines.engine import Graph
 from ...robot_bridge.roads.network import Network
 from ...robot_bridge.roads.route import Route
-from ...robot_bridge.roads.routes import REACH, Restrictions, Router
+from ...robot_bridge.roads.routes import Router
 from ..language import tr, tr_count, tr_page
+from .driving_wishes import driving_wishes, length_parameters, surfaces_parameter
 from .errors import shown_by_processing
 from .fleet_algorithm import FleetAlgorithm, Parameters, fields_of
 from .graph_engine import GraphEngine
 from .keepout_areas import KeepoutAreas, keepout_parameter
+from .places import point_in
 from .road_source import (
     WARNING_COUNT,
     RoadReading,
@@ -42,19 +43,10 @@ from .road_source import (
 )
 from .sinks import fill, line
 
-START, GOAL, BY, SURFACES = "START", "GOAL", "BY", "SURFACES"
+START, GOAL, BY = "START", "GOAL", "BY"
 ENGINE, ROUTE, PATH = "ENGINE", "ROUTE", "PATH"
 SHORTEST, FASTEST = "shortest", "fastest"
 QGIS = "qgis"
-_REAL = QgsProcessingParameterNumber.Type.Double
-_DRIVING = Driving()
-_LENGTHS = {
-    "LEAST_WIDTH": (tr("Roads at least this wide [m]"), 0.0, 0.0),
-    "DISTANCE": (tr("Start and goal at most this far from a road [m]"), REACH, 0.0),
-    "SPACING": (tr("Points of the path at most this far apart [m]"), _DRIVING.spacing, 0.01),
-    "TURNING_RADIUS": (tr("Turning radius of the robot [m]"), _DRIVING.turning_radius, 0.0),
-    "ROBOT_WIDTH": (tr("Width of the robot [m]"), _DRIVING.robot_width, 0.0),
-}
 _ROUTE = {
     "order": "int8",
     "feature": "int8",
@@ -116,13 +108,8 @@ class FindRoute(FleetAlgorithm):
             QgsProcessingParameterPoint(START, tr("Start")),
             QgsProcessingParameterPoint(GOAL, tr("Goal")),
             ways,
-            QgsProcessingParameterString(
-                SURFACES, tr("Surfaces that may be used (default: all)"), optional=True
-            ),
-            *(
-                QgsProcessingParameterNumber(name, title, _REAL, value, minValue=least)
-                for name, (title, value, least) in _LENGTHS.items()
-            ),
+            surfaces_parameter(),
+            *length_parameters(),
             keepout_parameter(),
             repair_parameter(),
             tolerance,
@@ -149,12 +136,12 @@ class FindRoute(FleetAlgorithm):
     def processAlgorithm(
         self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
     ):
-        lengths = {name: self.parameterAsDouble(parameters, name, context) for name in _LENGTHS}
         with shown_by_processing(feedback):
-            driving = Driving(lengths["SPACING"], lengths["TURNING_RADIUS"], lengths["ROBOT_WIDTH"])
+            wishes = driving_wishes(self, parameters, context)
             reading = self._source.read(feedback)
             if reading is None:
                 return {}
+            reading.warnings += wishes.doubts(reading.roads)
             built = network_of_roads(self, parameters, context, reading, feedback)
             if built is None:
                 return {}
@@ -162,33 +149,18 @@ class FindRoute(FleetAlgorithm):
             router = _router(network, self.parameterAsEnumString(parameters, ENGINE, context))
             reading.warnings += self._keepouts.close(router, reading.crs, feedback)
             feedback.setProgress(80)
-            wanted = self._restrictions(parameters, context, lengths["LEAST_WIDTH"])
+            fastest = self.parameterAsEnumString(parameters, BY, context) == FASTEST
             route = router.route(
-                *(self._place(parameters, name, context, reading) for name in (START, GOAL)),
-                wanted,
-                lengths["DISTANCE"],
+                *(point_in(self, parameters, name, context, reading.crs) for name in (START, GOAL)),
+                replace(wishes.restrictions, fastest=fastest),
+                wishes.reach,
             )
-            path = dense_path(route.points, route.widths, driving)
+            path = dense_path(route.points, route.widths, wishes.driving)
             made = self._written(route, path, reading, parameters, context, feedback)
         self.remember(made)
         _report(route, path, feedback)
         figures = (route.metres, route.seconds, len(path.points), len(path.tight), len(reading.warnings))
         return {**made, **dict(zip(NUMBERS, figures, strict=True)), ENGINE_USED: route.engine}
-
-    def _restrictions(
-        self, parameters: Parameters, context: QgsProcessingContext, least_width: float
-    ) -> Restrictions:
-        names = self.parameterAsString(parameters, SURFACES, context).split(",")
-        surfaces = frozenset(name.strip() for name in names if name.strip())
-        fastest = self.parameterAsEnumString(parameters, BY, context) == FASTEST
-        return Restrictions(fastest, surfaces or None, least_width)
-
-    def _place(
-        self, parameters: Parameters, name: str, context: QgsProcessingContext, reading: RoadReading
-    ) -> tuple[float, float]:
-        # A point without a CRS of its own is taken to be in that of the roads.
-        point = self.parameterAsPoint(parameters, name, context, reading.crs)
-        return point.x(), point.y()
 
     def _written(
         self,

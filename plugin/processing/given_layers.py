@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from qgis.core import (
     QgsMapLayer,
+    QgsProcessingAlgorithm,
     QgsProcessingContext,
+    QgsProcessingFeatureSourceDefinition,
     QgsProcessingUtils,
     QgsProviderRegistry,
+    QgsVectorLayer,
     QgsWkbTypes,
 )
 
@@ -15,6 +18,16 @@ from .fleet_algorithm import Parameters
 
 SHOWN = 6
 """So many layers of a file are named."""
+
+
+def layer_in(
+    algorithm: QgsProcessingAlgorithm, parameters: Parameters, name: str, context: QgsProcessingContext
+) -> QgsVectorLayer | None:
+    """Return the layer that the parameter ``name`` takes its features from, None where that is none."""
+    value = parameters.get(name)
+    # What is given with "selected features only" is no layer to parameterAsVectorLayer.
+    chosen = value.source.staticValue() if isinstance(value, QgsProcessingFeatureSourceDefinition) else value
+    return algorithm.parameterAsVectorLayer({**parameters, name: chosen}, name, context)
 
 
 def layers_problem(parameters: Parameters, name: str, context: QgsProcessingContext) -> str:

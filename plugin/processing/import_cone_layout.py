@@ -24,7 +24,6 @@ from qgis.core import (
 from ...robot_bridge.layouts.cone import Cone
 from ...robot_bridge.layouts.placing import placed
 from ...robot_bridge.layouts.table import Columns, cones_of, read_csv
-from ...robot_bridge.sites.frame import SiteFrame
 from ..language import tr, tr_page
 from ..sites.placing import SitePlacing
 from ..sites.point_rows import point_rows
@@ -33,6 +32,7 @@ from .cone_ground import ground_parameters
 from .cone_layer import STYLES, ConeSetup, add_layers, site_crs_parameter
 from .errors import ParameterError, shown_by_processing
 from .fleet_algorithm import FleetAlgorithm, Parameters
+from .places import point_in
 
 FILE, INPUT, ORIGIN, ROTATION, NAME = "FILE", "INPUT", "ORIGIN", "ROTATION", "LAYOUT_NAME"
 X, Y = "X_FIELD", "Y_FIELD"
@@ -153,8 +153,8 @@ class ImportConeLayout(FleetAlgorithm):
 
     def _as_it_lies(self, columns: Columns, name: str, context: QgsProcessingContext) -> list[Cone]:
         """Return the cones of the layer's points, in the site CRS."""
-        crs, source = self._setup.crs, self._source
-        site = SitePlacing(crs, SiteFrame(crs.authid(), (0.0, 0.0)), context.transformContext())
+        source = self._source
+        site = SitePlacing.in_crs(self._setup.crs, context.transformContext())
         placing = site.of_layer(source.sourceName(), source.sourceCrs())
         points = point_rows(source.sourceName(), source.getFeatures(), placing, ())
         rows = [{**point.values, "$x": point.x, "$y": point.y} for point in points]
@@ -164,9 +164,9 @@ class ImportConeLayout(FleetAlgorithm):
     def _moved(self, cones: list[Cone], parameters: Parameters, context: QgsProcessingContext) -> list[Cone]:
         if parameters.get(ORIGIN) in (None, ""):
             raise ParameterError(tr("ORIGIN is not given: say where the table's 0,0 goes."))
-        origin = self.parameterAsPoint(parameters, ORIGIN, context, self._setup.crs)
+        origin = point_in(self, parameters, ORIGIN, context, self._setup.crs)
         turn = math.radians(self.parameterAsDouble(parameters, ROTATION, context))
-        return placed(cones, origin.x(), origin.y(), turn)
+        return placed(cones, *origin, turn)
 
 
 def _attributes(feature: QgsFeature) -> dict[str, Any]:

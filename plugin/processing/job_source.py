@@ -20,7 +20,6 @@ from qgis.core import (
 
 from ...robot_bridge.assignment.job import COLLECT, FINISHES, PLACE, TO_STORE, Job, Robot, Store, Target
 from ...robot_bridge.compass import theta_of
-from ...robot_bridge.sites.frame import SiteFrame
 from ..language import tr
 from ..sites.placing import SitePlacing
 from ..sites.point_rows import PointRow, point_rows
@@ -142,7 +141,7 @@ class JobSource:
         source = self.source(name)
         if source is None:
             return
-        site = SitePlacing(crs, SiteFrame(crs.authid(), (0.0, 0.0)), self._context.transformContext())
+        site = SitePlacing.in_crs(crs, self._context.transformContext())
         placing = site.of_layer(source.sourceName(), source.sourceCrs())
         yield from point_rows(source.sourceName(), source.getFeatures(), placing, _NAMES)
 

@@ -10,17 +10,15 @@ from qgis.core import (
     QgsProcessingContext,
     QgsProcessingFeedback,
     QgsProcessingParameterDefinition,
-    QgsProcessingParameterNumber,
-    QgsProcessingParameterString,
 )
 
 from ...robot_bridge.assignment.job import Job
 from ...robot_bridge.assignment.road_travel import RoadTravel
 from ...robot_bridge.assignment.travel import StraightTravel, Travel
-from ...robot_bridge.roads.dense import Driving
 from ...robot_bridge.roads.network import Network
-from ...robot_bridge.roads.routes import REACH, Restrictions, Router
+from ...robot_bridge.roads.routes import Router
 from ..language import tr
+from .driving_wishes import driving_wishes, length_parameters, surfaces_parameter
 from .errors import ParameterError
 from .fleet_algorithm import Parameters
 from .job_source import CONES, ROBOTS, JobSource, layers_crs
@@ -28,29 +26,15 @@ from .keepout_areas import KeepoutAreas, keepout_parameter
 from .road_source import ROADS, RoadSource, network_of_roads, repair_parameter, road_parameters
 from .site_crs_choice import chosen_crs
 
-SURFACES = "SURFACES"
-_REAL = QgsProcessingParameterNumber.Type.Double
-_DRIVING = Driving()
-_LENGTHS = {
-    "LEAST_WIDTH": (tr("Roads at least this wide [m]"), 0.0, 0.0),
-    "DISTANCE": (tr("Farthest place from a road [m]"), REACH, 0.0),
-    "SPACING": (tr("Points of the paths at most this far apart [m]"), _DRIVING.spacing, 0.01),
-    "TURNING_RADIUS": (tr("Turning radius of the robots [m]"), _DRIVING.turning_radius, 0.0),
-    "ROBOT_WIDTH": (tr("Width of the robots [m]"), _DRIVING.robot_width, 0.0),
-}
-
 
 def travel_parameters() -> list[QgsProcessingParameterDefinition]:
     """Return the parameters that say which roads may be driven, and how."""
     roads, tolerance, *others = road_parameters()
     roads.setDescription(tr("Road centrelines (default: straight lines)"))
     made = [
-        QgsProcessingParameterString(SURFACES, tr("Surfaces that may be used (default: all)"), optional=True),
+        surfaces_parameter(),
         keepout_parameter(),
-        *(
-            QgsProcessingParameterNumber(name, title, _REAL, value, minValue=least)
-            for name, (title, value, least) in _LENGTHS.items()
-        ),
+        *length_parameters(),
         repair_parameter(),
         tolerance,
         *others,
@@ -72,6 +56,7 @@ class TravelSource:
         given = parameters.get(ROADS) not in (None, "")
         self._roads = RoadSource(algorithm, parameters, context) if given else None
         self._keepouts = KeepoutAreas(algorithm, parameters, context)
+        self._wishes = driving_wishes(algorithm, parameters, context)
         self._network: Network | None = None
 
     def open(self, jobs: JobSource, feedback: QgsProcessingFeedback) -> QgsCoordinateReferenceSystem | None:
@@ -85,6 +70,7 @@ class TravelSource:
         reading = self._roads.read(feedback)
         if reading is None:
             return None
+        reading.warnings += self._wishes.doubts(reading.roads)
         built = network_of_roads(self._algorithm, self._parameters, self._context, reading, feedback)
         if built is None or feedback.isCanceled():
             return None
@@ -109,17 +95,10 @@ class TravelSource:
 
         :raises RoadsError: when a place is too far from every road.
         """
-        value = {
-            name: self._algorithm.parameterAsDouble(self._parameters, name, self._context)
-            for name in _LENGTHS
-        }
-        driving = Driving(value["SPACING"], value["TURNING_RADIUS"], value["ROBOT_WIDTH"])
+        wishes = self._wishes
         if self._network is None:
-            return StraightTravel(job, driving.spacing)
-        names = self._algorithm.parameterAsString(self._parameters, SURFACES, self._context).split(",")
-        surfaces = frozenset(name.strip() for name in names if name.strip())
-        wanted = Restrictions(False, surfaces or None, value["LEAST_WIDTH"])
+            return StraightTravel(job, wishes.driving.spacing)
         router = Router(self._network)
         progress(0.0)
         self._keepouts.close(router, crs, feedback)
-        return RoadTravel(job, router, driving, wanted, value["DISTANCE"], progress)
+        return RoadTravel(job, router, wishes.driving, wishes.restrictions, wishes.reach, progress)

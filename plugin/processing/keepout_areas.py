@@ -13,7 +13,6 @@ from qgis.core import (
 )
 
 from ...robot_bridge.roads.routes import Router
-from ...robot_bridge.sites.frame import SiteFrame
 from ..language import tr, tr_count
 from ..sites.ground_reading import read_areas
 from ..sites.keepout_edges import edges_through
@@ -57,7 +56,7 @@ class KeepoutAreas:
         """
         if not self._sources:
             return []
-        site = SitePlacing(crs, SiteFrame(crs.authid(), (0.0, 0.0)), self._transforms)
+        site = SitePlacing.in_crs(crs, self._transforms)
         reading = read_areas(self._sources, site, KEEPOUT, feedback)
         for warning in reading.warnings:
             feedback.pushWarning(warning)

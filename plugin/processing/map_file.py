@@ -32,6 +32,7 @@ from ..sites.site_crs import check_site_crs
 from .errors import ParameterError
 from .fleet_algorithm import Parameters
 from .map_window import ORIGIN, ROTATION
+from .places import point_in
 from .site_crs_choice import SITE_CRS, given_crs
 
 MAP = "MAP"
@@ -151,8 +152,7 @@ def map_place(
     crs = _crs(algorithm, parameters, context, meta, feedback)
     origin = _numbers(meta, "origin", 2) or (0.0, 0.0)
     if parameters.get(ORIGIN):
-        point = algorithm.parameterAsPoint(parameters, ORIGIN, context, crs)
-        origin = (point.x(), point.y())
+        origin = point_in(algorithm, parameters, ORIGIN, context, crs)
     (rotation,) = _numbers(meta, "rotation", 1) or (0.0,)
     if parameters.get(ROTATION) not in (None, ""):
         rotation = math.radians(algorithm.parameterAsDouble(parameters, ROTATION, context))

@@ -5,7 +5,6 @@ from __future__ import annotations
 from qgis.core import (
     QgsProcessingAlgorithm,
     QgsProcessingContext,
-    QgsProcessingFeatureSourceDefinition,
     QgsProcessingParameterDefinition,
     QgsProcessingParameterFile,
 )
@@ -16,6 +15,7 @@ from ..sites.obstacle_source import Setups
 from ..sites.profile_file import SUFFIXES, find_profile, read_profile
 from ..sites.roles import setup_of
 from .fleet_algorithm import Parameters
+from .given_layers import layer_in
 
 PROFILE = "PROFILE"
 
@@ -52,10 +52,7 @@ def filter_in(
 
     :raises ExpressionError: when the layer's filter is no expression.
     """
-    value = parameters.get(name)
-    # What is given with "selected features only" is no layer to parameterAsVectorLayer.
-    chosen = value.source.staticValue() if isinstance(value, QgsProcessingFeatureSourceDefinition) else value
-    layer = algorithm.parameterAsVectorLayer({**parameters, name: chosen}, name, context)
+    layer = layer_in(algorithm, parameters, name, context)
     if layer is None:
         return None
     return FeatureFilter.of_layer(layer, algorithm.createExpressionContext(parameters, context))

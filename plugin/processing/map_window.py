@@ -25,6 +25,7 @@ from ..sites.project_site import frame_in_project
 from ..sites.site_crs import crs_name
 from .errors import ParameterError
 from .fleet_algorithm import Parameters
+from .places import extent_in, point_in
 from .site_crs_choice import SITE_CRS
 
 CENTER, WIDTH, HEIGHT, EXTENT = "CENTER", "WIDTH", "HEIGHT", "EXTENT"
@@ -83,17 +84,10 @@ def site_frame(
         return known or SiteFrame(name, (0.0, 0.0))
     origin = (0.0, 0.0)
     if _given(parameters, ORIGIN):
-        point = algorithm.parameterAsPoint(parameters, ORIGIN, context, crs)
-        origin = (point.x(), point.y())
+        origin = point_in(algorithm, parameters, ORIGIN, context, crs)
     degrees = algorithm.parameterAsDouble(parameters, ROTATION, context)
-    if not all(math.isfinite(number) for number in (*origin, degrees)):
-        raise ParameterError(
-            tr(
-                "ORIGIN {origin} or ROTATION {degrees} is not finite: give numbers.",
-                origin=origin,
-                degrees=degrees,
-            )
-        )
+    if not math.isfinite(degrees):
+        raise ParameterError(tr("ROTATION {degrees} is not finite: give a number.", degrees=degrees))
     return SiteFrame(name, origin, math.radians(degrees))
 
 
@@ -109,21 +103,12 @@ def map_window(
     Positions without a CRS of their own are in ``crs``. An extent whose sides are not parallel to the site's
     axes becomes the smallest window that holds it.
 
-    :raises WindowError: when the window encloses nothing.
+    :raises ParameterError: when the window has no place in ``crs``; WindowError when it encloses nothing.
     """
     if _given(parameters, EXTENT):
-        outline = algorithm.parameterAsExtentGeometry(parameters, EXTENT, context, crs)
-        corners = frame.to_site([(vertex.x(), vertex.y()) for vertex in outline.vertices()])
-        if not len(corners):
-            raise ParameterError(
-                tr(
-                    "EXTENT {extent} is no extent: write 'xmin,xmax,ymin,ymax'.",
-                    extent=parameters[EXTENT],
-                )
-            )
+        corners = frame.to_site(extent_in(algorithm, parameters, EXTENT, context, crs))
         return Window.from_bounds(*_rounded(corners.min(axis=0)), *_rounded(corners.max(axis=0)))
-    center = algorithm.parameterAsPoint(parameters, CENTER, context, crs)
-    ((x, y),) = frame.to_site([(center.x(), center.y())])
+    ((x, y),) = frame.to_site([point_in(algorithm, parameters, CENTER, context, crs)])
     return Window(
         float(x),
         float(y),

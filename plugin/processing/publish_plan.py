@@ -44,6 +44,7 @@ from .fleet_algorithm import Parameters
 from .given_layers import layers_problem
 from .map_profile import setups_of
 from .map_window import LOCAL, site_frame
+from .places import extent_in
 from .site_crs_choice import chosen_crs
 
 FOLDER, REPLACE = "FOLDER", "REPLACE"
@@ -263,12 +264,7 @@ def _bounds(
 ) -> Bounds | None:
     if not parameters.get(BOUNDS):
         return None
-    outline = algorithm.parameterAsExtentGeometry(parameters, BOUNDS, context, site.crs)
-    corners = site.frame.to_site([(vertex.x(), vertex.y()) for vertex in outline.vertices()])
-    if not len(corners):
-        raise ParameterError(
-            tr("BOUNDS {bounds} is no extent: write 'xmin,xmax,ymin,ymax'.", bounds=parameters[BOUNDS])
-        )
+    corners = site.frame.to_site(extent_in(algorithm, parameters, BOUNDS, context, site.crs))
     low, high = corners.min(axis=0).round(3), corners.max(axis=0).round(3)
     return Bounds(float(low[0]), float(low[1]), float(high[0]), float(high[1]))
 

@@ -32,7 +32,7 @@ from .placed_cones import Deviations, PlacedCone, values_of
 from .report_items import MARGIN, TEXT_WIDTH, add_text, corner, put, text_format
 from .report_layers import extent_of, factor_of, map_layers
 from .report_table import BEYOND, add_table, time_in_words
-from .whole_file import OutputError
+from .whole_file import OutputError, check_target, write_whole
 
 
 @dataclass(frozen=True)
@@ -54,14 +54,7 @@ def write_pdf(
 
     :raises OutputError: when it cannot be written.
     """
-    if not file.parent.is_dir():
-        raise OutputError(
-            tr(
-                "The report cannot be written to {file}: there is no folder {folder}.",
-                file=file,
-                folder=file.parent,
-            )
-        )
+    check_target(file, tr("The report"))
     # A project of its own, so that nothing is left in the user's.
     project = QgsProject()
     project.setCrs(report.crs)
@@ -85,25 +78,8 @@ def write_pdf(
                 )
             )
         pages = layout.pageCollection().pageCount()
-        _put(part, file)
+        write_whole(file, part.read_bytes(), tr("The report"))
     return pages
-
-
-def _put(part: Path, file: Path) -> None:
-    beside = file.with_name(f".{file.name}.part")
-    try:
-        beside.write_bytes(part.read_bytes())
-        beside.replace(file)
-    except OSError as error:
-        beside.unlink(missing_ok=True)
-        raise OutputError(
-            tr(
-                "The report cannot be written to {file}: {error}. Close it if a program shows it, or choose "
-                "another file.",
-                file=file,
-                error=error.strerror or error,
-            )
-        ) from error
 
 
 def laid_out(report: Report, project: QgsProject, folder: Path) -> QgsPrintLayout:

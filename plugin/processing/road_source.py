@@ -27,7 +27,6 @@ from ...robot_bridge.roads.errors import CancelledError
 from ...robot_bridge.roads.findings import Finding
 from ...robot_bridge.roads.network import Network, build_network
 from ...robot_bridge.roads.repairs import repaired_network
-from ...robot_bridge.sites.frame import SiteFrame
 from ..language import tr, tr_count
 from ..sites.ground_reading import DEFAULT_WIDTH_M, lines_of
 from ..sites.layer_rules import LayerRules
@@ -36,6 +35,8 @@ from ..sites.road_attributes import RoadAttributes, RoadExpressions, RoadRules
 from ..sites.roles import LayerExpressions, expressions_of
 from .errors import ParameterError
 from .fleet_algorithm import Parameters
+from .given_layers import layer_in
+from .map_profile import filter_in
 from .site_crs_choice import SITE_CRS, chosen_crs
 
 ROADS, DEFAULT_WIDTH, SPEED_DEFAULT = "ROADS", "DEFAULT_WIDTH", "DEFAULT_SPEED"
@@ -120,8 +121,9 @@ class RoadSource:
     def __init__(
         self, algorithm: QgsProcessingAlgorithm, parameters: Parameters, context: QgsProcessingContext
     ) -> None:
-        layer = algorithm.parameterAsVectorLayer(parameters, ROADS, context)
+        layer = layer_in(algorithm, parameters, ROADS, context)
         role = expressions_of(layer) if layer is not None else LayerExpressions()
+        self._counted = filter_in(algorithm, parameters, ROADS, context)
         self._algorithm, self._parameters, self._context = algorithm, parameters, context
         given = {
             name.lower(): algorithm.parameterAsString(parameters, name, context) for name in _EXPRESSIONS
@@ -145,7 +147,7 @@ class RoadSource:
             )
         given = self._algorithm, self._parameters, self._context
         crs = chosen_crs(*given, [source.sourceCrs()], layer_first=True)
-        site = SitePlacing(crs, SiteFrame("", (0.0, 0.0)), self._context.transformContext())
+        site = SitePlacing.in_crs(crs, self._context.transformContext())
         placing = site.of_layer(source.sourceName(), source.sourceCrs())
         return self._read(source, crs, placing, feedback)
 
@@ -170,8 +172,9 @@ class RoadSource:
                 return None
             feedback.setProgress(50.0 * number / total)
             notes: list[str] = []
+            counts = self._counted is None or self._counted.keeps(feature, notes)
             rules.at(feature)
-            found = _lines_in_metres(feature, placing, notes)
+            found = _lines_in_metres(feature, placing, notes) if counts else []
             if found:
                 known += [road_rules.of(notes)] * len(found)
             lines += found
@@ -182,6 +185,8 @@ class RoadSource:
             ]
         reading = RoadReading(self._columns(lines, known, name, warnings), features, crs, placing, warnings)
         reading.warnings += rules.warnings
+        if not lines:
+            reading.warnings.append(tr("Layer {name}: none of its features is a road", name=name))
         reading.without_width += [k for k, one in enumerate(known) if one.width is None]
         return reading
 

@@ -42,6 +42,13 @@ class SitePlacing:
     transform_context: QgsCoordinateTransformContext
     local: bool | None = None
 
+    @classmethod
+    def in_crs(
+        cls, crs: QgsCoordinateReferenceSystem, transform_context: QgsCoordinateTransformContext
+    ) -> SitePlacing:
+        """Return a site whose frame is ``crs`` itself: for what knows no other one."""
+        return cls(crs, SiteFrame(crs.authid(), (0.0, 0.0)), transform_context)
+
     def of_layer(self, name: str, crs: QgsCoordinateReferenceSystem) -> LayerPlacing:
         """Return how the coordinates of the layer ``name`` come into the site frame.
 

@@ -20,7 +20,6 @@ from qgis.core import (
 
 from ...robot_bridge.roads.surfaces.index import NOWHERE, SurfaceIndex
 from ...robot_bridge.roads.surfaces.surface import Surface
-from ...robot_bridge.sites.frame import SiteFrame
 from ...robot_bridge.sites.projections import utm_zone_of
 from .errors import SiteCrsError
 from .ground_reading import read_surfaces
@@ -93,9 +92,8 @@ def read_surface_map(sources: SurfaceSources, feedback: QgsFeedback) -> SurfaceM
 
     :raises FleetError: when a layer has no known place or an expression is not one.
     """
-    frame = SiteFrame(sources.crs.authid(), (0.0, 0.0))
-    placing = SitePlacing(sources.crs, frame, sources.transforms)
-    reading = read_surfaces(sources.sources, placing, feedback)
+    site = SitePlacing.in_crs(sources.crs, sources.transforms)
+    reading = read_surfaces(sources.sources, site, feedback)
     if not reading.complete or feedback.isCanceled():
         return None
     return SurfaceMap(SurfaceIndex(reading.items), sources.crs, sources.transforms, reading.warnings)

@@ -122,6 +122,11 @@ def _cone(row: _Row, place: int, name: str) -> Cone:
 
 def _check_columns(head: Sequence[str], columns: Columns) -> None:
     wanted = (columns.x, columns.y, columns.id, columns.order, columns.heading, columns.colour, columns.role)
+    if columns.only and not columns.layout:
+        raise TableError(
+            f"Of several layouts {columns.only!r} is to be taken, and no column says which row is of which: "
+            f"choose it among {', '.join(head) or 'none'}."
+        )
     for column in (*wanted, columns.layout):
         if column and column not in head:
             raise TableError(f"There is no column {column!r}: choose among {', '.join(head) or 'none'}.")

@@ -230,9 +230,15 @@ def test_many_cones_take_more_pages(run, make_layer):
     [
         (FIELDS, [], {}, "no placed cones to report on"),
         ("&field=name:string", [("Point(0 0)", "c")], {}, "no field planned_easting.*placements export"),
-        (FIELDS, rows((0, 0)), {"OUTPUT": "/nowhere/report.pdf"}, "no folder /nowhere"),
+        (
+            FIELDS,
+            rows((0, 0)),
+            {"OUTPUT": "/nowhere/report.pdf"},
+            "The report .* no folder /nowhere",
+        ),
+        (FIELDS, rows((0, 0)), {"CRS": "EPSG:4326"}, "EPSG:4326 .* cannot carry a site"),
     ],
-    ids=["nothing", "other layer", "no folder"],
+    ids=["nothing", "other layer", "no folder", "degrees"],
 )
 def test_what_cannot_be_reported_is_said(run, make_layer, fields, features, more, text):
     layer = make_layer("placed", "Point", fields, features, crs=UTM)

@@ -197,6 +197,18 @@ def test_what_is_wrong_is_named(run, layers, make_layer, layer, fields, features
         run(**layers)
 
 
+def test_a_plan_that_cannot_be_written_is_refused_before_anything_is_planned(run, layers, monkeypatch):
+    monkeypatch.setattr(assign_cones, "assign", lambda *_: pytest.fail("it was planned"))
+    with pytest.raises(QgsProcessingException, match=r"The plan cannot be written to /nowhere/plan\.json"):
+        run(**layers, PLAN="/nowhere/plan.json")
+
+
+def test_a_layer_without_cones_is_warned_of(run, layers, make_layer, listener):
+    none = make_layer("cones", "Point", "&field=id:string", [])
+    assert run(**{**layers, "CONES": none})[0]["TRIP_COUNT"] == 0
+    assert "CONES holds no cone: there is nothing to plan." in listener.warnings
+
+
 @pytest.fixture(scope="module")
 def files(tmp_path_factory):
     """Files of robots and a store on the straight of the sample site."""

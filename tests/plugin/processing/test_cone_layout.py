@@ -9,6 +9,7 @@ from functools import partial
 import pytest
 from fleet_supervisor.robot_bridge.layouts.catalogue import LAYOUTS
 from qgis.core import (
+    QgsCoordinateReferenceSystem,
     QgsFeature,
     QgsGeometry,
     QgsProcessingException,
@@ -86,6 +87,35 @@ def test_along_a_line_cones_follow_it_and_reversed_they_come_back(place):
     assert made[8] == pytest.approx((102, 70, 0))
     back = rows(place(**given, START=20, REVERSE=True))
     assert back[1] == pytest.approx((102, 80, 180))
+
+
+def test_a_line_may_have_heights_and_curves(place):
+    made = rows(place(LAYOUT="slalom", LINE=layer("LineStringZM", "LINESTRING ZM(0 0 5 1,300 0 9 2)")))
+    assert made[3][:2] == (pytest.approx(6), pytest.approx(0))
+    bow = layer("CompoundCurve", "COMPOUNDCURVE(CIRCULARSTRING(0 0,200 200,400 0))")
+    for x, y, _ in list(rows(place(LAYOUT="slalom", LINE=bow)).values())[2:-2]:
+        assert (x - 200) ** 2 + y**2 == pytest.approx(200**2, abs=2 * 200 * 0.02)
+
+
+@pytest.mark.parametrize(
+    ("line", "reason"),
+    [
+        ("", "has no line with a length and a place in the site's CRS"),
+        ("LINESTRING(5 5,5 5)", "has no line with a length and a place in the site's CRS"),
+        ("LINESTRING(0 0,nan 5)", "has no line with a length and a place in the site's CRS"),
+        ("MULTILINESTRING((0 0,300 0),(0 9,300 9))", "has 2 lines: split it"),
+    ],
+)
+def test_a_feature_that_is_not_one_line_is_refused(place, line, reason):
+    with pytest.raises(QgsProcessingException, match=f"The feature 1 of Given {reason}"):
+        place(LAYOUT="slalom", LINE=layer("MultiLineString", line))
+
+
+def test_a_line_whose_place_is_not_known_is_refused(place):
+    line = layer("LineString", "LINESTRING(0 0,300 0)")
+    line.setCrs(QgsCoordinateReferenceSystem())
+    with pytest.raises(QgsProcessingException, match="The layer Given has no CRS, so its place is not known"):
+        place(LAYOUT="slalom", LINE=line)
 
 
 def test_a_line_is_chosen_by_its_id_where_there_are_several(place):

@@ -353,6 +353,24 @@ def test_an_older_export_is_replaced_and_other_files_stay(export, robot_map, tmp
     ]
 
 
+def test_one_file_in_the_way_leaves_all_as_they_were(export, robot_map, tmp_path):
+    out = tmp_path / "out"
+    export(robot_map, FORMATS=["occupancy"])
+    (out / "site.svg").mkdir()
+    before = (out / "site.pgm").read_bytes()
+    with pytest.raises(
+        QgsProcessingException, match=f"{out / 'site.svg'} is a folder, where a file is to be"
+    ):
+        export(robot_map, FORMATS=["occupancy", "svg"], RESOLUTION=1.0)
+    assert (out / "site.pgm").read_bytes() == before
+    assert sorted(file.name for file in out.iterdir()) == ["site.pgm", "site.svg", "site.yaml"]
+
+
+def test_a_folder_that_cannot_be_made_is_named(export, robot_map):
+    with pytest.raises(QgsProcessingException, match="The navigation map cannot be written to /proc/maps: "):
+        export(robot_map, OUTPUT="/proc/maps")
+
+
 def test_the_robot_map_itself_is_never_the_output(export, tmp_path):
     file = tmp_path / "site.svg"
     file.write_text(MAP)

@@ -182,6 +182,28 @@ def test_closed_roads_directions_surfaces_and_widths_are_honoured(run, make_laye
         run("route", layer, START="10,1", GOAL="10,9", LEAST_WIDTH=5)
 
 
+def test_no_way_leads_where_the_robot_is_wider_than_the_road(run, make_layer):
+    layer = square(make_layer, width_m=1.0)
+    assert run("route", layer, **PLACES)["METRES"] == pytest.approx(19.0)
+    assert run("route", layer, START="0,0", GOAL="9,10", ROBOT_WIDTH=1.2)["METRES"] == pytest.approx(19.0)
+    with pytest.raises(QgsProcessingException, match=r"is 1 m wide, narrower than 1\.2 m"):
+        run("route", layer, START="10,5", GOAL="10,9", ROBOT_WIDTH=1.2, DISTANCE=0.5)
+
+
+def test_surfaces_that_no_road_has_are_warned_of(run, make_layer, listener):
+    made = run("route", square(make_layer), SURFACES="asphalt, gras", START="0,0", GOAL="10,5")
+    assert listener.warnings == ["No road has the surface gras: the roads have asphalt, slippery."]
+    assert made["WARNING_COUNT"] == 1
+
+
+def test_a_layer_without_roads_is_told(run, make_layer, listener):
+    layer = make_layer("roads", fields=ALL, features=[])
+    assert run("buildroadnetwork", layer)["EDGE_COUNT"] == 0
+    assert listener.warnings == ["Layer roads: none of its features is a road"]
+    with pytest.raises(QgsProcessingException, match="more than 20 m from every road"):
+        run("route", layer, **PLACES)
+
+
 def test_areas_that_must_not_be_driven_through_are_driven_round(run, make_layer, listener):
     def metres(*areas, **how):
         names = [make_layer("keepouts", "Polygon", features=[(area,)], fields="", **how) for area in areas]

@@ -44,6 +44,7 @@ def test_the_real_layouts_are_read_one_by_one(data: Path) -> None:
         ("x,y_m\n1,2\n", Columns(), r"There is no column 'x_m': choose among x, y_m"),
         ("x_m,y_m\n", Columns(), "has no row"),
         ("x_m,y_m,t\n1,2,a\n", Columns(layout="t", only="b"), "has no row whose t is 'b'"),
+        ("x_m,y_m,t\n1,2,a\n", Columns(only="a"), "'a' is to be taken, and no column .* among x_m, y_m, t"),
         (
             "x_m,y_m,n\n1,2,a\n3,4,a\n",
             Columns(id="n"),

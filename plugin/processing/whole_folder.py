@@ -11,7 +11,7 @@ from ..language import tr
 from .whole_file import OutputError
 
 
-class TileFolder:
+class WholeFolder:
     """Collects files beside ``target``'s own and moves them there at the end.
 
     To be used in a ``with`` block. What was not published when it ends is removed, and so is a folder that
@@ -21,14 +21,15 @@ class TileFolder:
     :raises OutputError: when the folder or a file in it cannot be written.
     """
 
-    def __init__(self, target: Path):
-        self.target = target
-        self._stage = target / f".tiles.{os.getpid()}.part"
+    def __init__(self, target: Path, what: str):
+        """Collect files for the folder ``target``; ``what`` they are is said when they cannot be written."""
+        self.target, self._what = target, what
+        self._stage = target / f".fleet.{os.getpid()}.part"
         self._new, self._earlier = self._stage / "new", self._stage / "earlier"
         self._made: list[Path] = []
         self._published: list[str] = []
 
-    def __enter__(self) -> TileFolder:
+    def __enter__(self) -> WholeFolder:
         self._made = [path for path in (self.target, *self.target.parents) if not path.exists()]
         try:
             self._new.mkdir(parents=True)
@@ -43,7 +44,7 @@ class TileFolder:
         if (self.target / name).is_dir():
             raise OutputError(
                 tr(
-                    "{path} is a folder: choose another folder for the tiles.",
+                    "{path} is a folder, where a file is to be written: choose another OUTPUT.",
                     path=self.target / name,
                 )
             )
@@ -89,8 +90,9 @@ class TileFolder:
     def _failed(self, error: OSError) -> OutputError:
         return OutputError(
             tr(
-                "The tiles cannot be written to {folder}: {reason}. Choose a folder that may be written to, "
-                "and check the free space.",
+                "{what} cannot be written to {folder}: {reason}. Choose a folder that may be written to, and "
+                "check the free space.",
+                what=self._what,
                 folder=self.target,
                 reason=error.strerror or error,
             )
