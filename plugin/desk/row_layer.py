@@ -21,6 +21,7 @@ from qgis.PyQt.QtGui import QColor
 from ...robot_bridge.messages import SiteReport
 from ...robot_bridge.sites.frame import SiteFrame
 from ..sites.fleet_group import fleet_group, remove_if_empty
+from .live.project_watch import ProjectWatch
 from .live_layers import give_style, make_live
 
 Row = tuple[Sequence[tuple[float, float]], Sequence[Any]]
@@ -28,7 +29,10 @@ Row = tuple[Sequence[tuple[float, float]], Sequence[Any]]
 
 
 class RowLayer:
-    """A layer of one kind of geometry in the site's CRS; made when there is a row to show."""
+    """A layer of one kind of geometry in the site's CRS; made when there is a row to show.
+
+    It goes with its project, and comes anew in the next one: what it shows is the desk's, not the project's.
+    """
 
     def __init__(
         self,
@@ -45,6 +49,9 @@ class RowLayer:
         self._frame: SiteFrame | None = None
         self._written: dict[tuple[Any, ...], list[tuple[Sequence[tuple[float, float]], int]]] = {}
         """The points and the id of each feature, by its values."""
+        self._shown: tuple[Sequence[Row], SiteReport | None] = ((), None)
+        self._watch = ProjectWatch(project)
+        self._watch.opened.connect(self._show_again)
 
     @property
     def layer(self) -> QgsVectorLayer | None:
@@ -53,12 +60,13 @@ class RowLayer:
 
     def show(self, rows: Sequence[Row], site: SiteReport | None) -> None:
         """Have a feature for each of ``rows``; those that are there already are left as they are."""
+        self._shown = rows, site
         layer = self.layer
-        if site is None or (not rows and layer is None):
+        if self._watch.is_reading or site is None or (not rows and layer is None):
             return
         frame = SiteFrame(site.crs, site.origin, site.rotation)
         if layer is not None and layer.crs() != QgsCoordinateReferenceSystem(site.crs):
-            self.remove()
+            self._take_out()
             layer = None
         if layer is None:
             layer, self._frame, self._written = self._make(site.crs), frame, {}
@@ -70,7 +78,14 @@ class RowLayer:
             layer.triggerRepaint()
 
     def remove(self) -> None:
-        """Take the layer out of the project."""
+        """Take the layer out of the project, and show nothing in the next one."""
+        self._shown = (), None
+        self._take_out()
+
+    def _show_again(self) -> None:
+        self.show(*self._shown)
+
+    def _take_out(self) -> None:
         if self.layer is not None:
             dirty = self._project.isDirty()
             self._project.removeMapLayer(self._id)

@@ -39,7 +39,7 @@ CORNERS = 32
 SMALLEST_CIRCLE = 12.0
 MOST_CIRCLES = 300
 _FRESH, _STALE, _LOST, _OFFLINE = range(len(STATES))
-_UPWARDS = (_FRESH, _OFFLINE, _STALE, _LOST)
+_UPWARDS = (_OFFLINE, _FRESH, _STALE, _LOST)
 """In which order robots are painted, the selected ones last: what needs to be noticed lies on top."""
 _LAYER = np.argsort(_UPWARDS).astype(np.uint16)
 """The place of each of STATES in that order."""

@@ -9,6 +9,7 @@ from fleet_supervisor.plugin.desk.live_layers import MARK
 from fleet_supervisor.plugin.desk.row_layer import RowLayer
 from fleet_supervisor.plugin.sites.fleet_group import GROUP, fleet_group
 from qgis.core import QgsProject
+from qgis.PyQt.QtWidgets import QApplication
 
 E, N = 488000.0, 5190000.0
 TWO = [([(1.0, 2.0)], ["a", 1]), ([(3.0, 4.0)], ["b", None])]
@@ -91,6 +92,45 @@ def test_a_layer_that_the_user_took_out_comes_back_whole(points, project, site):
     project.removeMapLayer(points.layer.id())
     points.show(TWO, site)
     assert points.layer.featureCount() == 2
+
+
+def test_it_comes_again_in_a_new_project(points, project, site, wait):
+    points.show(TWO, site)
+    project.clear()
+    assert points.layer is None
+    wait(lambda: points.layer is not None)
+    assert set(features(points)) == {"a", "b"}
+
+
+def test_it_comes_again_in_a_project_that_is_opened_and_not_before_that_is_read(
+    points, project, site, tmp_path, make_layer, wait
+):
+    file = str(tmp_path / "other.qgz")
+    other = QgsProject()
+    other.addMapLayer(make_layer("walls"))
+    assert other.write(file)
+    points.show(TWO, site)
+    seen = []
+
+    def meanwhile(*_):
+        points.show(TWO[:1], site)
+        QApplication.processEvents()
+        seen.append(points.layer)
+
+    project.readMapLayer.connect(meanwhile)
+    assert project.read(file)
+    assert seen == [None]
+    wait(lambda: points.layer is not None)
+    assert set(features(points)) == {"a"}
+    assert {layer.name() for layer in project.mapLayers().values()} == {"walls", "Rows"}
+
+
+def test_removed_it_does_not_come_again(points, project, site):
+    points.show(TWO, site)
+    points.remove()
+    project.clear()
+    QApplication.processEvents()
+    assert project.mapLayers() == {}
 
 
 def test_nobody_edits_it(points, site):

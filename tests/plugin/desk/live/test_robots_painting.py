@@ -157,6 +157,17 @@ def test_a_lost_robot_lies_over_a_fresh_one_and_a_selected_one_over_both(canvas,
     assert colours(fresh, lost, chosen=("r1",))[0] == blue
 
 
+def test_a_robot_that_is_off_lies_under_a_live_one_at_its_place(canvas, site):
+    def blue(*states):
+        overlay = show(canvas, site, scene_of(*[(60, 50, 0.0, state) for state in states]))
+        count = len(spots(canvas, STATE_COLOURS[RobotState.FRESH]))
+        canvas.scene().removeItem(overlay)
+        return count
+
+    fresh, offline = RobotState.FRESH, RobotState.OFFLINE
+    assert blue(fresh, offline) == blue(offline, fresh) == blue(fresh) > 20
+
+
 def test_robots_are_painted_layer_after_layer_from_the_top_and_those_side_by_side_in_their_order(qgis_app):
     from fleet_supervisor.plugin.desk.live.robots_painting import STRIP, _from_the_top
 
