@@ -157,7 +157,7 @@ class ExportRobotMapTiles(FleetAlgorithm):
     ):
         plan = self._plan
         steps = QgsProcessingMultiStepFeedback(2, feedback)
-        with shown_by_processing(feedback), WholeFolder(plan.folder, tr("The tiles")) as folder:
+        with shown_by_processing(feedback), WholeFolder(plan.folder, tr("The set of tiles")) as folder:
             if feedback.isCanceled():
                 return {}
             found = obstacle_outlines(plan, area_of(plan.tiles), steps)
