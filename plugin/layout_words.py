@@ -16,12 +16,12 @@ TITLES = {
     "corridor": tr("Corridor"),
 }
 STANDARDS = {
-    "slalom": tr("none; 18 m as European testers drive it"),
+    "slalom": tr("no standard: 18 m as European testers drive it"),
     "circle": tr("ISO 4138:2021, method 1"),
     "fs_skidpad": tr("Formula Student Rules, D 4.1"),
     "fs_acceleration": tr("Formula Student Rules, D 5.1"),
     "braking_lane": tr("length after UN R13-H; test after ISO 21994"),
-    "corridor": tr("none; colours, width and spacing of Formula Student"),
+    "corridor": tr("no standard: colours, width and spacing of Formula Student"),
 }
 """Of layouts whose standard has words in its name."""
 DIMENSIONS = {
@@ -89,6 +89,11 @@ DIMENSIONS = {
 def standard_in_words(layout: type[Layout]) -> str:
     """Return the standard that ``layout`` follows."""
     return STANDARDS.get(layout.NAME, layout.STANDARD)
+
+
+def layout_in_words(layout: type[Layout]) -> str:
+    """Return what ``layout`` is called, and the standard that it follows."""
+    return f"{TITLES[layout.NAME]} ({standard_in_words(layout)})"
 
 
 def dimension_in_words(layout: type[Layout], dimension: Dimension) -> str:

@@ -10,7 +10,7 @@ from qgis.PyQt.QtWidgets import QAction, QMenu
 from ...robot_bridge.layouts.catalogue import LAYOUTS
 from ...robot_bridge.layouts.layout import Layout
 from ..language import tr
-from ..layout_words import TITLES, standard_in_words
+from ..layout_words import layout_in_words
 from .actions import ICONS
 from .layout_dimensions import LayoutDimensions, remembered
 from .layout_tool import LayoutTool
@@ -41,7 +41,7 @@ class LayoutAction:
         self.tool.deactivated.connect(self.dimensions.hide)
         self._layouts = QMenu(window)
         for kind in LAYOUTS.values():
-            entry = self._layouts.addAction(f"{TITLES[kind.NAME]} ({standard_in_words(kind)})")
+            entry = self._layouts.addAction(layout_in_words(kind))
             entry.setObjectName(f"fleet_cone_layout_{kind.NAME}")
             entry.triggered.connect(lambda _=False, kind=kind: self.take(remembered(kind)))
         self.action.setMenu(self._layouts)

@@ -79,7 +79,7 @@ class LayoutDimensions(QDialog):
         """Show the dimensions of ``layout`` for the operator to change."""
         self._kind = type(layout)
         self.setWindowTitle(TITLES[layout.NAME])
-        self.standard.setText(tr("After: {standard}", standard=standard_in_words(self._kind)))
+        self.standard.setText(standard_in_words(self._kind))
         form = QFormLayout()
         form.setRowWrapPolicy(QFormLayout.RowWrapPolicy.DontWrapRows)
         form.setFieldGrowthPolicy(QFormLayout.FieldGrowthPolicy.FieldsStayAtSizeHint)

@@ -13,7 +13,6 @@ from qgis.core import (
     QgsProcessingFeedback,
     QgsProcessingOutputNumber,
     QgsProcessingOutputString,
-    QgsProcessingParameterEnum,
     QgsProcessingParameterFeatureSink,
     QgsProcessingParameterFileDestination,
     QgsProcessingParameterNumber,
@@ -24,13 +23,15 @@ from ...robot_bridge.assignment.checks import check_plan
 from ...robot_bridge.assignment.errors import CancelledError
 from ...robot_bridge.assignment.plan import Plan
 from ...robot_bridge.assignment.plan_json import to_json
-from ...robot_bridge.assignment.scheduling import BALANCED, OBJECTIVES
-from ...robot_bridge.assignment.solving import AUTOMATIC, METHODS, Wanted, assign
+from ...robot_bridge.assignment.scheduling import BALANCED
+from ...robot_bridge.assignment.solving import AUTOMATIC, Wanted, assign
+from ..assignment_words import METHODS, OBJECTIVES
 from ..language import tr, tr_count, tr_page
 from .errors import ParameterError, shown_by_processing
 from .fleet_algorithm import FleetAlgorithm, Parameters, fields_of
 from .job_source import JobSource, job_parameters
 from .job_travel import TravelSource, travel_parameters
+from .named_choice import named_choice
 from .plan_rows import FIGURES, PATH_FIELDS, TARGET_FIELDS, figures, path_rows, target_rows
 from .sinks import fill
 from .whole_file import check_target, write_whole
@@ -80,8 +81,8 @@ class AssignCones(FleetAlgorithm):
             stores,
             roads,
             *others,
-            _choice(OBJECTIVE, tr("Objective"), OBJECTIVES, BALANCED),
-            _choice(METHOD, tr("Method"), METHODS, AUTOMATIC),
+            named_choice(OBJECTIVE, tr("Objective"), OBJECTIVES, BALANCED),
+            named_choice(METHOD, tr("Method"), METHODS, AUTOMATIC),
             QgsProcessingParameterNumber(
                 TIME_LIMIT, tr("Time limit [s]"), QgsProcessingParameterNumber.Type.Double, 10.0, minValue=0.1
             ),
@@ -204,12 +205,6 @@ class _Told:
         """Tell the share of planning; return whether to go on."""
         self._feedback.setProgress(_MEASURED + (_SOLVED - _MEASURED) * share)
         return not self._feedback.isCanceled()
-
-
-def _choice(name: str, title: str, options: tuple[str, ...], default: str) -> QgsProcessingParameterEnum:
-    return QgsProcessingParameterEnum(
-        name, title, options=list(options), defaultValue=default, usesStaticStrings=True
-    )
 
 
 def _report(plan: Plan, feedback: QgsProcessingFeedback) -> None:

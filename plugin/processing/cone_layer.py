@@ -104,9 +104,18 @@ class ConeSetup:
             if sink is not None:
                 made[name] = source
                 fill(sink, fields, rows[name], feedback)
+        if not findings and context.willLoadLayerOnCompletion(made.get(FINDINGS, "")):
+            _do_not_load(made[FINDINGS], context)
+            feedback.pushInfo(tr("There are no findings: their layer is empty, and is not loaded."))
         algorithm.remember(made)
         feedback.pushInfo(tr_count(len(cones), "1 cone", "%n cones"))
         return {**made, CONE_COUNT: len(cones), FINDING_COUNT: len(findings)}
+
+
+def _do_not_load(made: str, context: QgsProcessingContext) -> None:
+    """Let QGIS not load the layer ``made`` when the algorithm has ended: an empty one says nothing."""
+    wanted = context.layersToLoadOnCompletion()
+    context.setLayersToLoadOnCompletion({key: wanted[key] for key in wanted if key != made})
 
 
 def _point(what: Cone | Finding) -> QgsGeometry:

@@ -12,7 +12,6 @@ from qgis.core import (
     QgsProcessingContext,
     QgsProcessingFeedback,
     QgsProcessingParameterBoolean,
-    QgsProcessingParameterEnum,
     QgsProcessingParameterFeatureSource,
     QgsProcessingParameterNumber,
     QgsProcessingParameterPoint,
@@ -24,13 +23,14 @@ from ...robot_bridge.layouts.catalogue import LAYOUTS
 from ...robot_bridge.layouts.cone import Cone
 from ...robot_bridge.layouts.placing import along, placed
 from ..language import tr, tr_page
-from ..layout_words import TITLES, dimension_in_words, standard_in_words
+from ..layout_words import dimension_in_words, layout_in_words
 from ..sites.ground_reading import lines_of
 from ..sites.placing import PlacingError, SitePlacing
 from .cone_ground import ground_parameters
 from .cone_layer import STYLES, ConeSetup, add_layers, site_crs_parameter
 from .errors import ParameterError, shown_by_processing
 from .fleet_algorithm import FleetAlgorithm, Parameters
+from .named_choice import named_choice
 from .places import point_in
 
 LAYOUT, DIMENSIONS, PREFIX = "LAYOUT", "DIMENSIONS", "PREFIX"
@@ -67,8 +67,11 @@ class ConeLayout(FleetAlgorithm):
 
     def initAlgorithm(self, configuration: dict[str, Any] | None = None):
         for parameter in (
-            QgsProcessingParameterEnum(
-                LAYOUT, tr("Layout"), list(LAYOUTS), defaultValue=next(iter(LAYOUTS)), usesStaticStrings=True
+            named_choice(
+                LAYOUT,
+                tr("Layout"),
+                {name: layout_in_words(kind) for name, kind in LAYOUTS.items()},
+                next(iter(LAYOUTS)),
             ),
             QgsProcessingParameterString(
                 DIMENSIONS, tr("Dimensions other than the standard's, as name=value; ..."), optional=True
@@ -118,7 +121,7 @@ class ConeLayout(FleetAlgorithm):
         with shown_by_processing(feedback):
             kind = LAYOUTS[self.parameterAsEnumString(parameters, LAYOUT, context)]
             layout = kind.of(dimensions_in(self.parameterAsString(parameters, DIMENSIONS, context)))
-            feedback.pushInfo(f"{TITLES[kind.NAME]} ({standard_in_words(kind)})")
+            feedback.pushInfo(layout_in_words(kind))
             for one in kind.dimensions():
                 value = f"{one.name}={getattr(layout, one.name):g} {one.unit}".rstrip()
                 feedback.pushInfo(f"  {value}: {dimension_in_words(kind, one)}")

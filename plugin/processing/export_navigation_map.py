@@ -15,7 +15,6 @@ from qgis.core import (
     QgsProcessingOutputFile,
     QgsProcessingOutputNumber,
     QgsProcessingParameterDefinition,
-    QgsProcessingParameterEnum,
     QgsProcessingParameterExpression,
     QgsProcessingParameterFeatureSource,
     QgsProcessingParameterFolderDestination,
@@ -31,6 +30,7 @@ from .map_file import MAP, file_problem, map_parameters, map_place, read_map_fil
 from .map_place import PlacedMap
 from .map_profile import filter_in
 from .mask_areas import areas_of, speed_by
+from .named_choice import named_choice
 from .navigation_files import FORMATS as MADE
 from .navigation_files import Files, NavigationExport
 from .navigation_help import HELP
@@ -41,6 +41,15 @@ FORMATS, NAME, OUTPUT = "FORMATS", "NAME", "OUTPUT"
 RESOLUTION, INSIDE, DRIVES_OVER = "RESOLUTION", "INSIDE", "DRIVES_OVER"
 KEEPOUTS, SPEED_AREAS, SPEED = "KEEPOUTS", "SPEED_AREAS", "SPEED"
 UNKNOWN, OCCUPIED = "unknown", "occupied"
+FORMAT_NAMES = {
+    "occupancy": tr("Nav2 occupancy grid"),
+    "keepout": tr("Nav2 keepout mask"),
+    "speed": tr("Nav2 speed mask"),
+    "geojson": "GeoJSON",
+    "geopackage": "GeoPackage",
+    "svg": "SVG",
+    "png": "PNG",
+}
 
 _REAL = QgsProcessingParameterNumber.Type.Double
 _POLYGONS = [QgsProcessing.SourceType.TypeVectorPolygon]
@@ -203,21 +212,13 @@ def _parameters() -> list[QgsProcessingParameterDefinition]:
     robot_map, *place = map_parameters()
     return [
         robot_map,
-        QgsProcessingParameterEnum(
-            FORMATS,
-            tr("Formats"),
-            options=list(MADE),
-            allowMultiple=True,
-            defaultValue=["occupancy"],
-            usesStaticStrings=True,
-        ),
+        named_choice(FORMATS, tr("Formats"), FORMAT_NAMES, ["occupancy"], several=True),
         QgsProcessingParameterNumber(RESOLUTION, tr("Side of a cell of grid and masks [m]"), _REAL, 0.05),
-        QgsProcessingParameterEnum(
+        named_choice(
             INSIDE,
             tr("Inside of obstacles in the occupancy grid"),
-            options=[UNKNOWN, OCCUPIED],
-            defaultValue=UNKNOWN,
-            usesStaticStrings=True,
+            {UNKNOWN: tr("unknown"), OCCUPIED: tr("occupied")},
+            UNKNOWN,
         ),
         QgsProcessingParameterNumber(DRIVES_OVER, tr("Robots drive over what is lower than [m]"), _REAL, 0.0),
         QgsProcessingParameterFeatureSource(KEEPOUTS, tr("Keepout areas"), _POLYGONS, optional=True),

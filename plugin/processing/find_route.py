@@ -14,14 +14,13 @@ from qgis.core import (
     QgsProcessingOutputNumber,
     QgsProcessingOutputString,
     QgsProcessingParameterDefinition,
-    QgsProcessingParameterEnum,
     QgsProcessingParameterFeatureSink,
     QgsProcessingParameterPoint,
     QgsWkbTypes,
 )
 
 from ...robot_bridge.roads.dense import DensePath, dense_path
-from ...robot_bridge.roads.engines.choice import AUTOMATIC, ENGINES
+from ...robot_bridge.roads.engines.choice import AUTOMATIC
 from ...robot_bridge.roads.engines.engine import Graph
 from ...robot_bridge.roads.network import Network
 from ...robot_bridge.roads.route import Route
@@ -32,6 +31,7 @@ from .errors import shown_by_processing
 from .fleet_algorithm import FleetAlgorithm, Parameters, fields_of
 from .graph_engine import GraphEngine
 from .keepout_areas import KeepoutAreas, keepout_parameter
+from .named_choice import named_choice
 from .places import point_in
 from .road_source import (
     WARNING_COUNT,
@@ -47,6 +47,14 @@ START, GOAL, BY = "START", "GOAL", "BY"
 ENGINE, ROUTE, PATH = "ENGINE", "ROUTE", "PATH"
 SHORTEST, FASTEST = "shortest", "fastest"
 QGIS = "qgis"
+WAYS = {SHORTEST: tr("shortest"), FASTEST: tr("fastest")}
+ENGINE_NAMES = {
+    AUTOMATIC: tr("the fastest that is installed"),
+    "contraction": "RoutingKit",
+    "scipy": "SciPy",
+    QGIS: "QGIS",
+    "plain": tr("none: plain Python"),
+}
 _ROUTE = {
     "order": "int8",
     "feature": "int8",
@@ -95,13 +103,8 @@ class FindRoute(FleetAlgorithm):
 
     def initAlgorithm(self, configuration: dict[str, Any] | None = None):
         roads, tolerance, *others = road_parameters()
-        names = [*ENGINES[:-1], QGIS, ENGINES[-1]]
-        ways = QgsProcessingParameterEnum(
-            BY, tr("Way"), options=[SHORTEST, FASTEST], defaultValue=SHORTEST, usesStaticStrings=True
-        )
-        engine = QgsProcessingParameterEnum(
-            ENGINE, tr("Engine"), options=names, defaultValue=AUTOMATIC, usesStaticStrings=True
-        )
+        ways = named_choice(BY, tr("Way"), WAYS, SHORTEST)
+        engine = named_choice(ENGINE, tr("Engine"), ENGINE_NAMES, AUTOMATIC)
         engine.setFlags(engine.flags() | QgsProcessingParameterDefinition.Flag.FlagAdvanced)
         for parameter in (
             roads,

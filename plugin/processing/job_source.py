@@ -12,19 +12,20 @@ from qgis.core import (
     QgsProcessingContext,
     QgsProcessingFeatureSource,
     QgsProcessingParameterDefinition,
-    QgsProcessingParameterEnum,
     QgsProcessingParameterFeatureSource,
     QgsProcessingParameterNumber,
     QgsProcessingParameterString,
 )
 
-from ...robot_bridge.assignment.job import COLLECT, FINISHES, PLACE, TO_STORE, Job, Robot, Store, Target
+from ...robot_bridge.assignment.job import PLACE, TO_STORE, Job, Robot, Store, Target
 from ...robot_bridge.compass import theta_of
+from ..assignment_words import FINISHES, TASKS
 from ..language import tr
 from ..sites.placing import SitePlacing
 from ..sites.point_rows import PointRow, point_rows
 from .errors import ParameterError
 from .fleet_algorithm import Parameters
+from .named_choice import named_choice
 
 CONES, ROBOTS, STORES = "CONES", "ROBOTS", "STORES"
 TASK, FINISH, STAGE_FIELD = "TASK", "FINISH", "STAGE_FIELD"
@@ -53,13 +54,7 @@ def job_parameters() -> list[QgsProcessingParameterDefinition]:
         QgsProcessingParameterFeatureSource(CONES, tr("Cones"), points),
         QgsProcessingParameterFeatureSource(ROBOTS, tr("Robots, where they are"), points),
         QgsProcessingParameterFeatureSource(STORES, tr("Stores of cones"), points, optional=True),
-        QgsProcessingParameterEnum(
-            TASK,
-            tr("What is done with cones (default of field task)"),
-            options=[PLACE, COLLECT],
-            defaultValue=PLACE,
-            usesStaticStrings=True,
-        ),
+        named_choice(TASK, tr("What is done with cones (default of field task)"), TASKS, PLACE),
         QgsProcessingParameterString(
             STAGE_FIELD, tr("Field of the stage: cones of lower ones come first"), "stage", optional=True
         ),
@@ -67,13 +62,7 @@ def job_parameters() -> list[QgsProcessingParameterDefinition]:
             QgsProcessingParameterNumber(name, title, kind, value, minValue=least)
             for name, (title, kind, value, least) in _NUMBERS.items()
         ),
-        QgsProcessingParameterEnum(
-            FINISH,
-            tr("Where robots go at the end"),
-            options=list(FINISHES),
-            defaultValue=TO_STORE,
-            usesStaticStrings=True,
-        ),
+        named_choice(FINISH, tr("Where robots go at the end"), FINISHES, TO_STORE),
     ]
 
 

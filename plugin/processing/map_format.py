@@ -9,7 +9,6 @@ from qgis.core import (
     QgsProcessingContext,
     QgsProcessingParameterBoolean,
     QgsProcessingParameterDefinition,
-    QgsProcessingParameterEnum,
 )
 
 from ...robot_bridge.robotmap.binary import CODEC_COLUMNS, CODEC_TEXT, encode
@@ -17,11 +16,17 @@ from ...robot_bridge.robotmap.model import Border, RobotMap
 from ...robot_bridge.robotmap.text import write_text
 from ..language import tr
 from .fleet_algorithm import Parameters
+from .named_choice import named_choice
 
 FORMAT, STRICT = "FORMAT", "STRICT"
 # No comma in a choice: QGIS would take it for two.
 TEXT, BINARY, COMPACT = "text", "binary", "compact"
 _CODECS = {TEXT: None, BINARY: CODEC_TEXT, COMPACT: CODEC_COLUMNS}
+_NAMES = {
+    TEXT: tr("text"),
+    BINARY: tr("binary: the text compressed"),
+    COMPACT: tr("compact: binary in columns"),
+}
 _NOTHING = RobotMap(Border(0.0, 0.0, 1.0, 1.0), ())
 
 
@@ -51,13 +56,8 @@ class MapFormat:
 
 def format_parameters() -> list[QgsProcessingParameterDefinition]:
     """Return the parameters."""
-    how = QgsProcessingParameterEnum(
-        FORMAT,
-        tr("Format (compact: binary in columns, about a third of binary)"),
-        options=list(_CODECS),
-        defaultValue=TEXT,
-        usesStaticStrings=True,
-    )
+    title = tr("Format (compact: binary in columns, about a third of binary)")
+    how = named_choice(FORMAT, title, _NAMES, TEXT)
     how.setHelp(
         tr(
             "text: lines that people and scripts read. binary: that text compressed, with a check sum. "

@@ -4,6 +4,51 @@
     <context>
         <name>FleetSupervisor</name>
         <message>
+            <location filename="../../plugin/assignment_words.py" />
+            <source>collect them</source>
+            <translation>recollir-los</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/assignment_words.py" />
+            <source>done as early as possible</source>
+            <translation>acabar al més aviat possible</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/assignment_words.py" />
+            <source>drive back</source>
+            <translation>tornen</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/assignment_words.py" />
+            <source>drive to a store</source>
+            <translation>van a un magatzem</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/assignment_words.py" />
+            <source>fewest metres</source>
+            <translation>menys metres</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/assignment_words.py" />
+            <source>place them</source>
+            <translation>col·locar-los</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/assignment_words.py" />
+            <source>stay where they are</source>
+            <translation>queden on són</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/assignment_words.py" />
+            <source>the best that is installed</source>
+            <translation>el millor dels instal·lats</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/assignment_words.py" />
+            <source>the preview: quick, not the best</source>
+            <translation>la previsualització: ràpida, no la millor</translation>
+        </message>
+        <message>
             <location filename="../../plugin/connection.py" />
             <source>The connection stopped on an internal fault ({name}: {error}). Press Connect to try again and report this text.</source>
             <translation>La connexió s'ha aturat per un error intern ({name}: {error}). Premeu Connecta per tornar-ho a provar i comuniqueu aquest text.</translation>
@@ -1898,11 +1943,6 @@
         </message>
         <message>
             <location filename="../../plugin/desk/layout_dimensions.py" />
-            <source>After: {standard}</source>
-            <translation>Segons: {standard}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/layout_dimensions.py" />
             <source>Degrees clockwise from north; the wheel over the map turns it too</source>
             <translation>Graus en sentit horari des del nord; la roda sobre el mapa també la gira</translation>
         </message>
@@ -3173,33 +3213,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/settings_form.py" />
-            <source>done as early as possible</source>
-            <translation>acabar al més aviat possible</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/settings_form.py" />
-            <source>drive back</source>
-            <translation>tornen</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/settings_form.py" />
-            <source>drive to a store</source>
-            <translation>van a un magatzem</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/settings_form.py" />
-            <source>fewest metres</source>
-            <translation>menys metres</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/settings_form.py" />
             <source>selected</source>
             <translation>seleccionats</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/settings_form.py" />
-            <source>stay where they are</source>
-            <translation>queden on són</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/queues/queue_edits.py" />
@@ -4924,13 +4939,13 @@
         </message>
         <message>
             <location filename="../../plugin/layout_words.py" />
-            <source>none; 18 m as European testers drive it</source>
-            <translation>cap; 18 m, com la condueixen els provadors europeus</translation>
+            <source>no standard: 18 m as European testers drive it</source>
+            <translation>cap norma: 18 m, com la condueixen els provadors europeus</translation>
         </message>
         <message>
             <location filename="../../plugin/layout_words.py" />
-            <source>none; colours, width and spacing of Formula Student</source>
-            <translation>cap; colors, amplada i separació de Formula Student</translation>
+            <source>no standard: colours, width and spacing of Formula Student</source>
+            <translation>cap norma: colors, amplada i separació de Formula Student</translation>
         </message>
         <message>
             <location filename="../../plugin/locator/robot_filter.py" />
@@ -5070,6 +5085,11 @@
             <location filename="../../plugin/processing/assign_cones.py" />
             <source>Assign cones to robots</source>
             <translation>Assigna cons a robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/assign_cones.py" />
+            <source>CONES holds no cone: there is nothing to plan.</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/processing/assign_cones.py" />
@@ -5447,6 +5467,11 @@
             <translation>El SRC del recinte no es coneix: doneu SITE_CRS, com ara EPSG:32633.</translation>
         </message>
         <message>
+            <location filename="../../plugin/processing/cone_layer.py" />
+            <source>There are no findings: their layer is empty, and is not loaded.</source>
+            <translation>No hi ha cap troballa: la seva capa és buida i no es carrega.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/processing/cone_layout.py" />
             <source>&lt;p&gt;Places a layout of traffic cones, either at a &lt;b&gt;point&lt;/b&gt;, turned to a &lt;b&gt;heading&lt;/b&gt; (degrees clockwise from north), or along a &lt;b&gt;line&lt;/b&gt; such as a road's centreline, from &lt;b&gt;start&lt;/b&gt; metres after its beginning. The layer has an id, the order of placing, the heading of travel, the colour and the role of each cone.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Dimensions&lt;/b&gt; change the standard's: &lt;code&gt;vehicle_width=1.7; lane_offset=3&lt;/code&gt;. The log lists those of the layout with their values. A wrong name or value is refused with what there is.&lt;/p&gt; &lt;p&gt;Every cone is &lt;b&gt;checked&lt;/b&gt;: on one of the surfaces (of the allowed classes), away from obstacles and from other cones. What is wrong becomes a layer of findings with the cone's id and the reason; the cones are placed nevertheless.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:conelayout -- LAYOUT=iso3888_1 POINT="640432,5193486.2 [EPSG:32633]" \ HEADING=90 DIMENSIONS="vehicle_width=1.7; exit_length=15" SITE_CRS=EPSG:32633 CONES=cones.gpkg&lt;/pre&gt;</source>
             <translation>&lt;p&gt;Col·loca una disposició de cons de trànsit, o bé en un &lt;b&gt;punt&lt;/b&gt;, girada cap a un &lt;b&gt;rumb&lt;/b&gt; (graus en sentit horari des del nord), o bé al llarg d'una &lt;b&gt;línia&lt;/b&gt; com ara un eix de via, a partir de &lt;b&gt;start&lt;/b&gt; metres del seu començament. La capa té de cada con un identificador, l'ordre de col·locació, el rumb de circulació, el color i el paper.&lt;/p&gt; &lt;p&gt;Les &lt;b&gt;dimensions&lt;/b&gt; canvien les de la norma: &lt;code&gt;vehicle_width=1.7; lane_offset=3&lt;/code&gt;. El registre llista les de la disposició amb els seus valors. Un nom o valor equivocat es refusa dient què hi ha.&lt;/p&gt; &lt;p&gt;Cada con es &lt;b&gt;comprova&lt;/b&gt;: en una de les superfícies (de les classes permeses), lluny d'obstacles i d'altres cons. El que no està bé va a una capa de troballes amb l'identificador del con i el motiu; els cons es col·loquen igualment.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:conelayout -- LAYOUT=iso3888_1 POINT="640432,5193486.2 [EPSG:32633]" \ HEADING=90 DIMENSIONS="vehicle_width=1.7; exit_length=15" SITE_CRS=EPSG:32633 CONES=cones.gpkg&lt;/pre&gt;</translation>
@@ -5508,11 +5533,6 @@
         </message>
         <message>
             <location filename="../../plugin/processing/cone_layout.py" />
-            <source>POINT or HEADING is not finite: give numbers.</source>
-            <translation>POINT o HEADING no és finit: doneu nombres.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/cone_layout.py" />
             <source>Place of the layout's origin</source>
             <translation>Lloc de l'origen de la disposició</translation>
         </message>
@@ -5523,6 +5543,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/cone_layout.py" />
+            <source>The feature {id} of {layer} has no line with a length and a place in the site's CRS: correct it, or choose another.</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
             <source>The feature {id} of {sourcename} has {lines} lines: split it, or choose one that has one.</source>
             <translation>L'entitat {id} de {sourcename} té {lines} línies: dividiu-la, o trieu-ne una que en tingui una.</translation>
         </message>
@@ -5530,11 +5555,6 @@
             <location filename="../../plugin/processing/cone_layout.py" />
             <source>The layer {sourcename} has {found}: choose one line by LINE_ID, or select it and tick 'Selected features only'.</source>
             <translation>La capa {sourcename} té {found}: trieu una línia amb LINE_ID, o seleccioneu-la i marqueu «Només les entitats seleccionades».</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/cone_layout.py" />
-            <source>The line cannot be transformed into the site's CRS ({error}).</source>
-            <translation>La línia no es pot transformar al SRC del recinte ({error}).</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/cone_layout.py" />
@@ -5550,6 +5570,41 @@
             <location filename="../../plugin/processing/cone_layout.py" />
             <source>{how} given: give the place of the layout, or a line that it lies along.</source>
             <translation>{how}: doneu el lloc de la disposició, o una línia per on s'estengui.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/driving_wishes.py" />
+            <source>Farthest place from a road [m]</source>
+            <translation>Distància màxima a una via [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/driving_wishes.py" />
+            <source>No road has the surface {surfaces}: the roads have {there}.</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/driving_wishes.py" />
+            <source>Points of the path at most this far apart [m]</source>
+            <translation>Punts del camí separats com a màxim [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/driving_wishes.py" />
+            <source>Roads at least this wide, and as wide as the robot [m]</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/driving_wishes.py" />
+            <source>Surfaces that may be used (default: all)</source>
+            <translation>Superfícies que es poden fer servir (per defecte: totes)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/driving_wishes.py" />
+            <source>Turning radius of the robot [m]</source>
+            <translation>Radi de gir del robot [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/driving_wishes.py" />
+            <source>Width of the robot [m]</source>
+            <translation>Amplada del robot [m]</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/errors.py" />
@@ -5623,6 +5678,21 @@
         </message>
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>Nav2 keepout mask</source>
+            <translation>màscara de zones prohibides de Nav2</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>Nav2 occupancy grid</source>
+            <translation>graella d'ocupació de Nav2</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>Nav2 speed mask</source>
+            <translation>màscara de velocitat de Nav2</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
             <source>Robots drive over what is lower than [m]</source>
             <translation>Els robots passen per sobre del que és més baix que [m]</translation>
         </message>
@@ -5643,8 +5713,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
-            <source>The folder {folder} cannot be made: {reason}. Choose another OUTPUT.</source>
-            <translation>No es pot crear la carpeta {folder}: {reason}. Trieu un altre OUTPUT.</translation>
+            <source>The navigation map</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
@@ -5663,8 +5733,18 @@
         </message>
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>occupied</source>
+            <translation>ocupat</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
             <source>of 0 or more</source>
             <translation>de 0 o més</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>unknown</source>
+            <translation>desconegut</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
@@ -5879,6 +5959,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/export_robot_map_tiles.py" />
+            <source>The set of tiles</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map_tiles.py" />
             <source>There is no obstacle in any tile: check their place and the site CRS.</source>
             <translation>No hi ha cap obstacle a cap tessel·la: comproveu el lloc i el SRC del recinte.</translation>
         </message>
@@ -5962,16 +6047,6 @@
         </message>
         <message>
             <location filename="../../plugin/processing/find_route.py" />
-            <source>Points of the path at most this far apart [m]</source>
-            <translation>Punts del camí separats com a màxim [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/find_route.py" />
-            <source>Roads at least this wide [m]</source>
-            <translation>Vies almenys així d'amples [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/find_route.py" />
             <source>Route</source>
             <translation>Ruta</translation>
         </message>
@@ -5979,16 +6054,6 @@
             <location filename="../../plugin/processing/find_route.py" />
             <source>Start</source>
             <translation>Inici</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/find_route.py" />
-            <source>Start and goal at most this far from a road [m]</source>
-            <translation>Distància màxima d'inici i final a una via [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/find_route.py" />
-            <source>Surfaces that may be used (default: all)</source>
-            <translation>Superfícies que es poden fer servir (per defecte: totes)</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/find_route.py" />
@@ -6002,13 +6067,23 @@
         </message>
         <message>
             <location filename="../../plugin/processing/find_route.py" />
-            <source>Turning radius of the robot [m]</source>
-            <translation>Radi de gir del robot [m]</translation>
+            <source>fastest</source>
+            <translation>la més ràpida</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/find_route.py" />
-            <source>Width of the robot [m]</source>
-            <translation>Amplada del robot [m]</translation>
+            <source>none: plain Python</source>
+            <translation>cap: només Python</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>shortest</source>
+            <translation>la més curta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>the fastest that is installed</source>
+            <translation>el més ràpid dels instal·lats</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/find_route.py" />
@@ -6217,18 +6292,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/job_travel.py" />
-            <source>Farthest place from a road [m]</source>
-            <translation>Distància màxima a una via [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/job_travel.py" />
             <source>No roads are given: distances and paths are straight lines.</source>
             <translation>No s'han donat vies: distàncies i camins són línies rectes.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/job_travel.py" />
-            <source>Points of the paths at most this far apart [m]</source>
-            <translation>Punts dels camins separats com a màxim [m]</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/job_travel.py" />
@@ -6239,16 +6304,6 @@
             <location filename="../../plugin/processing/job_travel.py" />
             <source>The CRS of the cones is not known: give SITE_CRS, such as EPSG:32633.</source>
             <translation>El SRC dels cons no es coneix: doneu SITE_CRS, com ara EPSG:32633.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/job_travel.py" />
-            <source>Turning radius of the robots [m]</source>
-            <translation>Radi de gir dels robots [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/job_travel.py" />
-            <source>Width of the robots [m]</source>
-            <translation>Amplada dels robots [m]</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/processing/keepout_areas.py" />
@@ -6390,6 +6445,21 @@
         </message>
         <message>
             <location filename="../../plugin/processing/map_format.py" />
+            <source>binary: the text compressed</source>
+            <translation>binari: el text comprimit</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_format.py" />
+            <source>compact: binary in columns</source>
+            <translation>compacte: binari en columnes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_format.py" />
+            <source>text</source>
+            <translation>text</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_format.py" />
             <source>text: lines that people and scripts read. binary: that text compressed, with a check sum. compact: the same map in columns of centimetres, also with a check sum (codec 2).</source>
             <translation>text: línies que llegeixen persones i scripts. binary: aquest text comprimit, amb suma de verificació. compact: el mateix mapa en columnes de centímetres, també amb suma de verificació (còdec 2).</translation>
         </message>
@@ -6515,11 +6585,6 @@
         </message>
         <message>
             <location filename="../../plugin/processing/map_window.py" />
-            <source>EXTENT {extent} is no extent: write 'xmin,xmax,ymin,ymax'.</source>
-            <translation>EXTENT {extent} no és una extensió: escriviu 'xmin,xmax,ymin,ymax'.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/map_window.py" />
             <source>Extent (instead of centre, width and height)</source>
             <translation>Extensió (en lloc de centre, amplada i alçada)</translation>
         </message>
@@ -6540,13 +6605,13 @@
         </message>
         <message>
             <location filename="../../plugin/processing/map_window.py" />
-            <source>ORIGIN {origin} or ROTATION {degrees} is not finite: give numbers.</source>
-            <translation>ORIGIN {origin} o ROTATION {degrees} no és finit: doneu nombres.</translation>
+            <source>Origin of the site frame (default: as the project has it, else 0,0)</source>
+            <translation>Origen del marc del recinte (per defecte: el del projecte, si no 0,0)</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/map_window.py" />
-            <source>Origin of the site frame (default: as the project has it, else 0,0)</source>
-            <translation>Origen del marc del recinte (per defecte: el del projecte, si no 0,0)</translation>
+            <source>ROTATION {degrees} is not finite: give a number.</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/processing/map_window.py" />
@@ -6627,6 +6692,16 @@
             <translation>No hi ha cons col·locats de què informar. Comproveu el filtre de la capa i les opcions de 'robot-bridge placements export'.</translation>
         </message>
         <message>
+            <location filename="../../plugin/processing/places.py" />
+            <source>{name} {extent} is no extent: write 'xmin,xmax,ymin,ymax'.</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/places.py" />
+            <source>{name} {value} has no place in the CRS {crs}: give finite numbers, x or longitude first, and the CRS that they are in.</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
             <location filename="../../plugin/processing/plan_rows.py" />
             <source>Metres of all robots</source>
             <translation>Metres de tots els robots</translation>
@@ -6670,11 +6745,6 @@
             <location filename="../../plugin/processing/publish_help.py" />
             <source>&lt;p&gt;Writes the layers of a site into a folder with &lt;i&gt;site.toml&lt;/i&gt; and &lt;i&gt;site.gpkg&lt;/i&gt;, which &lt;i&gt;robot-bridge serve --site FOLDER&lt;/i&gt; serves.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Layers&lt;/b&gt;: those of the project by their roles (menu Fleet Supervisor, Layer roles), or by a &lt;b&gt;map profile&lt;/b&gt;, or the layers given here. Which features count, heights, where things begin above the ground, labels, road widths and shapes of furniture come from the expressions kept with the roles; heights, labels and widths else from the fields &lt;i&gt;height&lt;/i&gt; or &lt;i&gt;height_m&lt;/i&gt;, &lt;i&gt;surface&lt;/i&gt;, &lt;i&gt;name&lt;/i&gt;, &lt;i&gt;width_m&lt;/i&gt; or &lt;i&gt;width&lt;/i&gt;.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Version&lt;/b&gt;: 1 for a new folder, else one more than the version there. A folder that holds another site is refused unless &lt;b&gt;Replace&lt;/b&gt; is ticked.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Bounds&lt;/b&gt;: the rectangle, along the axes of the site frame, that robots may be sent into. Obstacles are published up to 100 m beyond it, so that a robot at its edge is told what stands there.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Site CRS, origin, rotation&lt;/b&gt;: where the robots' (0, 0) is and how their x axis lies. Default: as the project has it.&lt;/p&gt; &lt;p&gt;An earlier publication is replaced only after the new one is complete; a cancel leaves it as it was. Broken geometry is repaired where that is safe and left out where it is not, each time with a warning that names the layer and the feature. One publication into a folder runs at a time.&lt;/p&gt;</source>
             <translation>&lt;p&gt;Escriu les capes d'un recinte en una carpeta amb &lt;i&gt;site.toml&lt;/i&gt; i &lt;i&gt;site.gpkg&lt;/i&gt;, que serveix &lt;i&gt;robot-bridge serve --site FOLDER&lt;/i&gt;.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Capes&lt;/b&gt;: les del projecte segons els seus papers (menú Fleet Supervisor, Papers de les capes), o segons un &lt;b&gt;perfil de mapa&lt;/b&gt;, o les capes que es donen aquí. Quines entitats compten, les alçades, on comencen les coses sobre el terra, les etiquetes, les amplades de les vies i les formes del mobiliari venen de les expressions que es guarden amb els papers; les alçades, etiquetes i amplades si no dels camps &lt;i&gt;height&lt;/i&gt; o &lt;i&gt;height_m&lt;/i&gt;, &lt;i&gt;surface&lt;/i&gt;, &lt;i&gt;name&lt;/i&gt;, &lt;i&gt;width_m&lt;/i&gt; o &lt;i&gt;width&lt;/i&gt;.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Versió&lt;/b&gt;: 1 per a una carpeta nova, si no una més que la que hi ha. Una carpeta amb un altre recinte es refusa si no es marca &lt;b&gt;Substitueix&lt;/b&gt;.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Límits&lt;/b&gt;: el rectangle, al llarg dels eixos del marc del recinte, on es poden enviar robots. Els obstacles es publiquen fins a 100 m més enllà, perquè un robot a la vora sàpiga què hi ha.&lt;/p&gt; &lt;p&gt;&lt;b&gt;SRC, origen i rotació del recinte&lt;/b&gt;: on és el (0, 0) dels robots i com està el seu eix x. Per defecte: com ho té el projecte.&lt;/p&gt; &lt;p&gt;Una publicació anterior només se substitueix quan la nova és completa; una cancel·lació la deixa com era. La geometria trencada es repara on és segur i queda fora on no ho és, cada vegada amb un avís que anomena la capa i l'entitat. Només es fa una publicació alhora en una carpeta.&lt;/p&gt;</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/publish_plan.py" />
-            <source>BOUNDS {bounds} is no extent: write 'xmin,xmax,ymin,ymax'.</source>
-            <translation>BOUNDS {bounds} no és una extensió: escriviu 'xmin,xmax,ymin,ymax'.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/publish_plan.py" />
@@ -6890,13 +6960,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/report_layout.py" />
-            <source>The report cannot be written to {file}: there is no folder {folder}.</source>
-            <translation>L'informe no es pot escriure a {file}: no hi ha la carpeta {folder}.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/report_layout.py" />
-            <source>The report cannot be written to {file}: {error}. Close it if a program shows it, or choose another file.</source>
-            <translation>L'informe no es pot escriure a {file}: {error}. Tanqueu-lo si un programa el mostra, o trieu un altre fitxer.</translation>
+            <source>The report</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/processing/report_layout.py" />
@@ -6975,6 +7040,11 @@
             <location filename="../../plugin/processing/road_source.py" />
             <source>Layer {name}, feature {id}: {note}</source>
             <translation>Capa {name}, entitat {id}: {note}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_source.py" />
+            <source>Layer {name}: none of its features is a road</source>
+            <translation type="unfinished" />
         </message>
         <message numerus="yes">
             <location filename="../../plugin/processing/road_source.py" />
@@ -7121,16 +7191,6 @@
             <location filename="../../plugin/processing/svg_picture.py" />
             <source>Qt cannot draw the picture of this map: choose svg and open that in a browser.</source>
             <translation>Qt no pot dibuixar la imatge d'aquest mapa: trieu svg i obriu-lo en un navegador.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/tile_folder.py" />
-            <source>The tiles cannot be written to {folder}: {reason}. Choose a folder that may be written to, and check the free space.</source>
-            <translation>Les tessel·les no es poden escriure a {folder}: {reason}. Trieu una carpeta on es pugui escriure, i comproveu l'espai lliure.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/tile_folder.py" />
-            <source>{path} is a folder: choose another folder for the tiles.</source>
-            <translation>{path} és una carpeta: trieu una altra carpeta per a les tessel·les.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/tile_plan.py" />
@@ -7307,6 +7367,16 @@
             <location filename="../../plugin/processing/whole_file.py" />
             <source>{what} cannot be written to {target}: {reason}. Choose a file in a folder that exists, may be written to, and has space.</source>
             <translation>{what} no es pot escriure a {target}: {reason}. Trieu un fitxer en una carpeta que existeixi, on es pugui escriure i que tingui espai.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/whole_folder.py" />
+            <source>{path} is a folder, where a file is to be written: choose another OUTPUT.</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/whole_folder.py" />
+            <source>{what} cannot be written to {folder}: {reason}. Choose a folder that may be written to, and check the free space.</source>
+            <translation type="unfinished" />
         </message>
         <message numerus="yes">
             <location filename="../../plugin/roles/live_preview.py" />

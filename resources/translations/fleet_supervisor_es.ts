@@ -4,6 +4,51 @@
     <context>
         <name>FleetSupervisor</name>
         <message>
+            <location filename="../../plugin/assignment_words.py" />
+            <source>collect them</source>
+            <translation>recogerlos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/assignment_words.py" />
+            <source>done as early as possible</source>
+            <translation>acabar lo antes posible</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/assignment_words.py" />
+            <source>drive back</source>
+            <translation>vuelven</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/assignment_words.py" />
+            <source>drive to a store</source>
+            <translation>van a un almacén</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/assignment_words.py" />
+            <source>fewest metres</source>
+            <translation>menos metros</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/assignment_words.py" />
+            <source>place them</source>
+            <translation>colocarlos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/assignment_words.py" />
+            <source>stay where they are</source>
+            <translation>quedan donde están</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/assignment_words.py" />
+            <source>the best that is installed</source>
+            <translation>el mejor de los instalados</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/assignment_words.py" />
+            <source>the preview: quick, not the best</source>
+            <translation>la vista previa: rápida, no la mejor</translation>
+        </message>
+        <message>
             <location filename="../../plugin/connection.py" />
             <source>The connection stopped on an internal fault ({name}: {error}). Press Connect to try again and report this text.</source>
             <translation>La conexión se detuvo por un error interno ({name}: {error}). Pulse Conectar para volver a intentarlo y comunique este texto.</translation>
@@ -1898,11 +1943,6 @@
         </message>
         <message>
             <location filename="../../plugin/desk/layout_dimensions.py" />
-            <source>After: {standard}</source>
-            <translation>Según: {standard}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/layout_dimensions.py" />
             <source>Degrees clockwise from north; the wheel over the map turns it too</source>
             <translation>Grados en sentido horario desde el norte; la rueda sobre el mapa también la gira</translation>
         </message>
@@ -3173,33 +3213,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/settings_form.py" />
-            <source>done as early as possible</source>
-            <translation>acabar lo antes posible</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/settings_form.py" />
-            <source>drive back</source>
-            <translation>vuelven</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/settings_form.py" />
-            <source>drive to a store</source>
-            <translation>van a un almacén</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/settings_form.py" />
-            <source>fewest metres</source>
-            <translation>menos metros</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/settings_form.py" />
             <source>selected</source>
             <translation>seleccionados</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/settings_form.py" />
-            <source>stay where they are</source>
-            <translation>quedan donde están</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/queues/queue_edits.py" />
@@ -4924,13 +4939,13 @@
         </message>
         <message>
             <location filename="../../plugin/layout_words.py" />
-            <source>none; 18 m as European testers drive it</source>
-            <translation>ninguna; 18 m, como la conducen los probadores europeos</translation>
+            <source>no standard: 18 m as European testers drive it</source>
+            <translation>ninguna norma: 18 m, como la conducen los probadores europeos</translation>
         </message>
         <message>
             <location filename="../../plugin/layout_words.py" />
-            <source>none; colours, width and spacing of Formula Student</source>
-            <translation>ninguna; colores, anchura y separación de Formula Student</translation>
+            <source>no standard: colours, width and spacing of Formula Student</source>
+            <translation>ninguna norma: colores, anchura y separación de Formula Student</translation>
         </message>
         <message>
             <location filename="../../plugin/locator/robot_filter.py" />
@@ -5070,6 +5085,11 @@
             <location filename="../../plugin/processing/assign_cones.py" />
             <source>Assign cones to robots</source>
             <translation>Asignar conos a robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/assign_cones.py" />
+            <source>CONES holds no cone: there is nothing to plan.</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/processing/assign_cones.py" />
@@ -5447,6 +5467,11 @@
             <translation>El SRC del recinto no se conoce: dé SITE_CRS, como EPSG:32633.</translation>
         </message>
         <message>
+            <location filename="../../plugin/processing/cone_layer.py" />
+            <source>There are no findings: their layer is empty, and is not loaded.</source>
+            <translation>No hay hallazgos: su capa está vacía y no se carga.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/processing/cone_layout.py" />
             <source>&lt;p&gt;Places a layout of traffic cones, either at a &lt;b&gt;point&lt;/b&gt;, turned to a &lt;b&gt;heading&lt;/b&gt; (degrees clockwise from north), or along a &lt;b&gt;line&lt;/b&gt; such as a road's centreline, from &lt;b&gt;start&lt;/b&gt; metres after its beginning. The layer has an id, the order of placing, the heading of travel, the colour and the role of each cone.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Dimensions&lt;/b&gt; change the standard's: &lt;code&gt;vehicle_width=1.7; lane_offset=3&lt;/code&gt;. The log lists those of the layout with their values. A wrong name or value is refused with what there is.&lt;/p&gt; &lt;p&gt;Every cone is &lt;b&gt;checked&lt;/b&gt;: on one of the surfaces (of the allowed classes), away from obstacles and from other cones. What is wrong becomes a layer of findings with the cone's id and the reason; the cones are placed nevertheless.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:conelayout -- LAYOUT=iso3888_1 POINT="640432,5193486.2 [EPSG:32633]" \ HEADING=90 DIMENSIONS="vehicle_width=1.7; exit_length=15" SITE_CRS=EPSG:32633 CONES=cones.gpkg&lt;/pre&gt;</source>
             <translation>&lt;p&gt;Coloca una disposición de conos de tráfico, o bien en un &lt;b&gt;punto&lt;/b&gt;, girada hacia un &lt;b&gt;rumbo&lt;/b&gt; (grados en sentido horario desde el norte), o bien a lo largo de una &lt;b&gt;línea&lt;/b&gt; como un eje de vía, a partir de &lt;b&gt;start&lt;/b&gt; metros de su comienzo. La capa tiene de cada cono un identificador, el orden de colocación, el rumbo de circulación, el color y el papel.&lt;/p&gt; &lt;p&gt;Las &lt;b&gt;dimensiones&lt;/b&gt; cambian las de la norma: &lt;code&gt;vehicle_width=1.7; lane_offset=3&lt;/code&gt;. El registro lista las de la disposición con sus valores. Un nombre o valor equivocado se rechaza diciendo qué hay.&lt;/p&gt; &lt;p&gt;Cada cono se &lt;b&gt;comprueba&lt;/b&gt;: en una de las superficies (de las clases permitidas), lejos de obstáculos y de otros conos. Lo que no está bien va a una capa de hallazgos con el identificador del cono y el motivo; los conos se colocan de todos modos.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:conelayout -- LAYOUT=iso3888_1 POINT="640432,5193486.2 [EPSG:32633]" \ HEADING=90 DIMENSIONS="vehicle_width=1.7; exit_length=15" SITE_CRS=EPSG:32633 CONES=cones.gpkg&lt;/pre&gt;</translation>
@@ -5508,11 +5533,6 @@
         </message>
         <message>
             <location filename="../../plugin/processing/cone_layout.py" />
-            <source>POINT or HEADING is not finite: give numbers.</source>
-            <translation>POINT o HEADING no es finito: dé números.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/cone_layout.py" />
             <source>Place of the layout's origin</source>
             <translation>Lugar del origen de la disposición</translation>
         </message>
@@ -5523,6 +5543,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/cone_layout.py" />
+            <source>The feature {id} of {layer} has no line with a length and a place in the site's CRS: correct it, or choose another.</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
             <source>The feature {id} of {sourcename} has {lines} lines: split it, or choose one that has one.</source>
             <translation>El objeto {id} de {sourcename} tiene {lines} líneas: divídalo, o elija uno que tenga una.</translation>
         </message>
@@ -5530,11 +5555,6 @@
             <location filename="../../plugin/processing/cone_layout.py" />
             <source>The layer {sourcename} has {found}: choose one line by LINE_ID, or select it and tick 'Selected features only'.</source>
             <translation>La capa {sourcename} tiene {found}: elija una línea con LINE_ID, o selecciónela y marque «Solo objetos seleccionados».</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/cone_layout.py" />
-            <source>The line cannot be transformed into the site's CRS ({error}).</source>
-            <translation>La línea no se puede transformar al SRC del recinto ({error}).</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/cone_layout.py" />
@@ -5550,6 +5570,41 @@
             <location filename="../../plugin/processing/cone_layout.py" />
             <source>{how} given: give the place of the layout, or a line that it lies along.</source>
             <translation>{how}: dé el lugar de la disposición, o una línea por la que se extienda.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/driving_wishes.py" />
+            <source>Farthest place from a road [m]</source>
+            <translation>Distancia máxima a una vía [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/driving_wishes.py" />
+            <source>No road has the surface {surfaces}: the roads have {there}.</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/driving_wishes.py" />
+            <source>Points of the path at most this far apart [m]</source>
+            <translation>Puntos del camino separados como máximo [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/driving_wishes.py" />
+            <source>Roads at least this wide, and as wide as the robot [m]</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/driving_wishes.py" />
+            <source>Surfaces that may be used (default: all)</source>
+            <translation>Superficies que se pueden usar (por defecto: todas)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/driving_wishes.py" />
+            <source>Turning radius of the robot [m]</source>
+            <translation>Radio de giro del robot [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/driving_wishes.py" />
+            <source>Width of the robot [m]</source>
+            <translation>Anchura del robot [m]</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/errors.py" />
@@ -5623,6 +5678,21 @@
         </message>
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>Nav2 keepout mask</source>
+            <translation>máscara de zonas prohibidas de Nav2</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>Nav2 occupancy grid</source>
+            <translation>rejilla de ocupación de Nav2</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>Nav2 speed mask</source>
+            <translation>máscara de velocidad de Nav2</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
             <source>Robots drive over what is lower than [m]</source>
             <translation>Los robots pasan sobre lo más bajo que [m]</translation>
         </message>
@@ -5643,8 +5713,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
-            <source>The folder {folder} cannot be made: {reason}. Choose another OUTPUT.</source>
-            <translation>No se puede crear la carpeta {folder}: {reason}. Elija otro OUTPUT.</translation>
+            <source>The navigation map</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
@@ -5663,8 +5733,18 @@
         </message>
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>occupied</source>
+            <translation>ocupado</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
             <source>of 0 or more</source>
             <translation>de 0 o más</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>unknown</source>
+            <translation>desconocido</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
@@ -5879,6 +5959,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/export_robot_map_tiles.py" />
+            <source>The set of tiles</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map_tiles.py" />
             <source>There is no obstacle in any tile: check their place and the site CRS.</source>
             <translation>No hay ningún obstáculo en ninguna tesela: compruebe su lugar y el SRC del recinto.</translation>
         </message>
@@ -5962,16 +6047,6 @@
         </message>
         <message>
             <location filename="../../plugin/processing/find_route.py" />
-            <source>Points of the path at most this far apart [m]</source>
-            <translation>Puntos del camino separados como máximo [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/find_route.py" />
-            <source>Roads at least this wide [m]</source>
-            <translation>Vías al menos así de anchas [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/find_route.py" />
             <source>Route</source>
             <translation>Ruta</translation>
         </message>
@@ -5979,16 +6054,6 @@
             <location filename="../../plugin/processing/find_route.py" />
             <source>Start</source>
             <translation>Inicio</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/find_route.py" />
-            <source>Start and goal at most this far from a road [m]</source>
-            <translation>Distancia máxima de inicio y final a una vía [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/find_route.py" />
-            <source>Surfaces that may be used (default: all)</source>
-            <translation>Superficies que se pueden usar (por defecto: todas)</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/find_route.py" />
@@ -6002,13 +6067,23 @@
         </message>
         <message>
             <location filename="../../plugin/processing/find_route.py" />
-            <source>Turning radius of the robot [m]</source>
-            <translation>Radio de giro del robot [m]</translation>
+            <source>fastest</source>
+            <translation>la más rápida</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/find_route.py" />
-            <source>Width of the robot [m]</source>
-            <translation>Anchura del robot [m]</translation>
+            <source>none: plain Python</source>
+            <translation>ninguno: solo Python</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>shortest</source>
+            <translation>la más corta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>the fastest that is installed</source>
+            <translation>el más rápido de los instalados</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/find_route.py" />
@@ -6217,18 +6292,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/job_travel.py" />
-            <source>Farthest place from a road [m]</source>
-            <translation>Distancia máxima a una vía [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/job_travel.py" />
             <source>No roads are given: distances and paths are straight lines.</source>
             <translation>No se dan vías: distancias y caminos son líneas rectas.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/job_travel.py" />
-            <source>Points of the paths at most this far apart [m]</source>
-            <translation>Puntos de los caminos separados como máximo [m]</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/job_travel.py" />
@@ -6239,16 +6304,6 @@
             <location filename="../../plugin/processing/job_travel.py" />
             <source>The CRS of the cones is not known: give SITE_CRS, such as EPSG:32633.</source>
             <translation>El SRC de los conos no se conoce: dé SITE_CRS, como EPSG:32633.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/job_travel.py" />
-            <source>Turning radius of the robots [m]</source>
-            <translation>Radio de giro de los robots [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/job_travel.py" />
-            <source>Width of the robots [m]</source>
-            <translation>Anchura de los robots [m]</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/processing/keepout_areas.py" />
@@ -6390,6 +6445,21 @@
         </message>
         <message>
             <location filename="../../plugin/processing/map_format.py" />
+            <source>binary: the text compressed</source>
+            <translation>binario: el texto comprimido</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_format.py" />
+            <source>compact: binary in columns</source>
+            <translation>compacto: binario en columnas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_format.py" />
+            <source>text</source>
+            <translation>texto</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_format.py" />
             <source>text: lines that people and scripts read. binary: that text compressed, with a check sum. compact: the same map in columns of centimetres, also with a check sum (codec 2).</source>
             <translation>text: líneas que leen personas y scripts. binary: ese texto comprimido, con suma de verificación. compact: el mismo mapa en columnas de centímetros, también con suma de verificación (códec 2).</translation>
         </message>
@@ -6515,11 +6585,6 @@
         </message>
         <message>
             <location filename="../../plugin/processing/map_window.py" />
-            <source>EXTENT {extent} is no extent: write 'xmin,xmax,ymin,ymax'.</source>
-            <translation>EXTENT {extent} no es una extensión: escriba 'xmin,xmax,ymin,ymax'.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/map_window.py" />
             <source>Extent (instead of centre, width and height)</source>
             <translation>Extensión (en lugar de centro, anchura y altura)</translation>
         </message>
@@ -6540,13 +6605,13 @@
         </message>
         <message>
             <location filename="../../plugin/processing/map_window.py" />
-            <source>ORIGIN {origin} or ROTATION {degrees} is not finite: give numbers.</source>
-            <translation>ORIGIN {origin} o ROTATION {degrees} no es finito: dé números.</translation>
+            <source>Origin of the site frame (default: as the project has it, else 0,0)</source>
+            <translation>Origen del marco del recinto (por defecto: el del proyecto, si no 0,0)</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/map_window.py" />
-            <source>Origin of the site frame (default: as the project has it, else 0,0)</source>
-            <translation>Origen del marco del recinto (por defecto: el del proyecto, si no 0,0)</translation>
+            <source>ROTATION {degrees} is not finite: give a number.</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/processing/map_window.py" />
@@ -6627,6 +6692,16 @@
             <translation>No hay conos colocados de los que informar. Compruebe el filtro de la capa y las opciones de 'robot-bridge placements export'.</translation>
         </message>
         <message>
+            <location filename="../../plugin/processing/places.py" />
+            <source>{name} {extent} is no extent: write 'xmin,xmax,ymin,ymax'.</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/places.py" />
+            <source>{name} {value} has no place in the CRS {crs}: give finite numbers, x or longitude first, and the CRS that they are in.</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
             <location filename="../../plugin/processing/plan_rows.py" />
             <source>Metres of all robots</source>
             <translation>Metros de todos los robots</translation>
@@ -6670,11 +6745,6 @@
             <location filename="../../plugin/processing/publish_help.py" />
             <source>&lt;p&gt;Writes the layers of a site into a folder with &lt;i&gt;site.toml&lt;/i&gt; and &lt;i&gt;site.gpkg&lt;/i&gt;, which &lt;i&gt;robot-bridge serve --site FOLDER&lt;/i&gt; serves.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Layers&lt;/b&gt;: those of the project by their roles (menu Fleet Supervisor, Layer roles), or by a &lt;b&gt;map profile&lt;/b&gt;, or the layers given here. Which features count, heights, where things begin above the ground, labels, road widths and shapes of furniture come from the expressions kept with the roles; heights, labels and widths else from the fields &lt;i&gt;height&lt;/i&gt; or &lt;i&gt;height_m&lt;/i&gt;, &lt;i&gt;surface&lt;/i&gt;, &lt;i&gt;name&lt;/i&gt;, &lt;i&gt;width_m&lt;/i&gt; or &lt;i&gt;width&lt;/i&gt;.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Version&lt;/b&gt;: 1 for a new folder, else one more than the version there. A folder that holds another site is refused unless &lt;b&gt;Replace&lt;/b&gt; is ticked.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Bounds&lt;/b&gt;: the rectangle, along the axes of the site frame, that robots may be sent into. Obstacles are published up to 100 m beyond it, so that a robot at its edge is told what stands there.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Site CRS, origin, rotation&lt;/b&gt;: where the robots' (0, 0) is and how their x axis lies. Default: as the project has it.&lt;/p&gt; &lt;p&gt;An earlier publication is replaced only after the new one is complete; a cancel leaves it as it was. Broken geometry is repaired where that is safe and left out where it is not, each time with a warning that names the layer and the feature. One publication into a folder runs at a time.&lt;/p&gt;</source>
             <translation>&lt;p&gt;Escribe las capas de un recinto en una carpeta con &lt;i&gt;site.toml&lt;/i&gt; y &lt;i&gt;site.gpkg&lt;/i&gt;, que sirve &lt;i&gt;robot-bridge serve --site FOLDER&lt;/i&gt;.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Capas&lt;/b&gt;: las del proyecto según sus papeles (menú Fleet Supervisor, Papeles de las capas), o según un &lt;b&gt;perfil de mapa&lt;/b&gt;, o las capas que se dan aquí. Qué objetos espaciales cuentan, las alturas, dónde empiezan las cosas sobre el suelo, las etiquetas, las anchuras de las vías y las formas del mobiliario vienen de las expresiones que se guardan con los papeles; las alturas, etiquetas y anchuras si no de los campos &lt;i&gt;height&lt;/i&gt; o &lt;i&gt;height_m&lt;/i&gt;, &lt;i&gt;surface&lt;/i&gt;, &lt;i&gt;name&lt;/i&gt;, &lt;i&gt;width_m&lt;/i&gt; o &lt;i&gt;width&lt;/i&gt;.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Versión&lt;/b&gt;: 1 para una carpeta nueva, si no una más que la que hay. Una carpeta con otro recinto se rechaza si no se marca &lt;b&gt;Sustituir&lt;/b&gt;.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Límites&lt;/b&gt;: el rectángulo, a lo largo de los ejes del marco del recinto, al que se pueden enviar robots. Los obstáculos se publican hasta 100 m más allá, para que un robot en el borde sepa qué hay.&lt;/p&gt; &lt;p&gt;&lt;b&gt;SRC, origen y rotación del recinto&lt;/b&gt;: dónde está el (0, 0) de los robots y cómo está su eje x. Por defecto: como lo tiene el proyecto.&lt;/p&gt; &lt;p&gt;Una publicación anterior solo se sustituye cuando la nueva está completa; una cancelación la deja como estaba. La geometría rota se repara donde es seguro y queda fuera donde no lo es, cada vez con un aviso que nombra la capa y el objeto espacial. Solo se hace una publicación a la vez en una carpeta.&lt;/p&gt;</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/publish_plan.py" />
-            <source>BOUNDS {bounds} is no extent: write 'xmin,xmax,ymin,ymax'.</source>
-            <translation>BOUNDS {bounds} no es una extensión: escriba 'xmin,xmax,ymin,ymax'.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/publish_plan.py" />
@@ -6890,13 +6960,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/report_layout.py" />
-            <source>The report cannot be written to {file}: there is no folder {folder}.</source>
-            <translation>El informe no se puede escribir en {file}: no existe la carpeta {folder}.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/report_layout.py" />
-            <source>The report cannot be written to {file}: {error}. Close it if a program shows it, or choose another file.</source>
-            <translation>El informe no se puede escribir en {file}: {error}. Ciérrelo si un programa lo muestra, o elija otro archivo.</translation>
+            <source>The report</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/processing/report_layout.py" />
@@ -6975,6 +7040,11 @@
             <location filename="../../plugin/processing/road_source.py" />
             <source>Layer {name}, feature {id}: {note}</source>
             <translation>Capa {name}, objeto espacial {id}: {note}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_source.py" />
+            <source>Layer {name}: none of its features is a road</source>
+            <translation type="unfinished" />
         </message>
         <message numerus="yes">
             <location filename="../../plugin/processing/road_source.py" />
@@ -7121,16 +7191,6 @@
             <location filename="../../plugin/processing/svg_picture.py" />
             <source>Qt cannot draw the picture of this map: choose svg and open that in a browser.</source>
             <translation>Qt no puede dibujar la imagen de este mapa: elija svg y ábralo en un navegador.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/tile_folder.py" />
-            <source>The tiles cannot be written to {folder}: {reason}. Choose a folder that may be written to, and check the free space.</source>
-            <translation>Las teselas no se pueden escribir en {folder}: {reason}. Elija una carpeta donde se pueda escribir, y compruebe el espacio libre.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/tile_folder.py" />
-            <source>{path} is a folder: choose another folder for the tiles.</source>
-            <translation>{path} es una carpeta: elija otra carpeta para las teselas.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/tile_plan.py" />
@@ -7307,6 +7367,16 @@
             <location filename="../../plugin/processing/whole_file.py" />
             <source>{what} cannot be written to {target}: {reason}. Choose a file in a folder that exists, may be written to, and has space.</source>
             <translation>{what} no se puede escribir en {target}: {reason}. Elija un archivo en una carpeta que exista, donde se pueda escribir y que tenga espacio.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/whole_folder.py" />
+            <source>{path} is a folder, where a file is to be written: choose another OUTPUT.</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/whole_folder.py" />
+            <source>{what} cannot be written to {folder}: {reason}. Choose a folder that may be written to, and check the free space.</source>
+            <translation type="unfinished" />
         </message>
         <message numerus="yes">
             <location filename="../../plugin/roles/live_preview.py" />

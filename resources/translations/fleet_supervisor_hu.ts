@@ -4,6 +4,51 @@
     <context>
         <name>FleetSupervisor</name>
         <message>
+            <location filename="../../plugin/assignment_words.py" />
+            <source>collect them</source>
+            <translation>begyűjtés</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/assignment_words.py" />
+            <source>done as early as possible</source>
+            <translation>mielőbb kész legyen</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/assignment_words.py" />
+            <source>drive back</source>
+            <translation>menjenek vissza</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/assignment_words.py" />
+            <source>drive to a store</source>
+            <translation>menjenek raktárhoz</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/assignment_words.py" />
+            <source>fewest metres</source>
+            <translation>legkevesebb méter</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/assignment_words.py" />
+            <source>place them</source>
+            <translation>kihelyezés</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/assignment_words.py" />
+            <source>stay where they are</source>
+            <translation>maradjanak, ahol vannak</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/assignment_words.py" />
+            <source>the best that is installed</source>
+            <translation>a telepítettek közül a legjobb</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/assignment_words.py" />
+            <source>the preview: quick, not the best</source>
+            <translation>az előnézet: gyors, nem a legjobb</translation>
+        </message>
+        <message>
             <location filename="../../plugin/connection.py" />
             <source>The connection stopped on an internal fault ({name}: {error}). Press Connect to try again and report this text.</source>
             <translation>A kapcsolat belső hiba miatt leállt ({name}: {error}). Nyomja meg a Kapcsolódás gombot az újrapróbáláshoz, és jelentse ezt a szöveget.</translation>
@@ -1890,11 +1935,6 @@
         </message>
         <message>
             <location filename="../../plugin/desk/layout_dimensions.py" />
-            <source>After: {standard}</source>
-            <translation>Forrás: {standard}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/layout_dimensions.py" />
             <source>Degrees clockwise from north; the wheel over the map turns it too</source>
             <translation>Fok északtól az óramutató járása szerint; a görgő a térkép felett is forgatja</translation>
         </message>
@@ -3154,33 +3194,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/settings_form.py" />
-            <source>done as early as possible</source>
-            <translation>mielőbb kész legyen</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/settings_form.py" />
-            <source>drive back</source>
-            <translation>menjenek vissza</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/settings_form.py" />
-            <source>drive to a store</source>
-            <translation>menjenek raktárhoz</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/settings_form.py" />
-            <source>fewest metres</source>
-            <translation>legkevesebb méter</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/settings_form.py" />
             <source>selected</source>
             <translation>kijelölt</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/settings_form.py" />
-            <source>stay where they are</source>
-            <translation>maradjanak, ahol vannak</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/queues/queue_edits.py" />
@@ -4901,13 +4916,13 @@
         </message>
         <message>
             <location filename="../../plugin/layout_words.py" />
-            <source>none; 18 m as European testers drive it</source>
-            <translation>nincs; 18 m, ahogy az európai tesztelők hajtják</translation>
+            <source>no standard: 18 m as European testers drive it</source>
+            <translation>nem szabvány: 18 m, ahogy az európai tesztelők hajtják</translation>
         </message>
         <message>
             <location filename="../../plugin/layout_words.py" />
-            <source>none; colours, width and spacing of Formula Student</source>
-            <translation>nincs; színek, szélesség és távolság a Formula Student szerint</translation>
+            <source>no standard: colours, width and spacing of Formula Student</source>
+            <translation>nem szabvány: a Formula Student színei, szélessége és távolságai</translation>
         </message>
         <message>
             <location filename="../../plugin/locator/robot_filter.py" />
@@ -5044,6 +5059,11 @@
             <location filename="../../plugin/processing/assign_cones.py" />
             <source>Assign cones to robots</source>
             <translation>Bóják kiosztása robotoknak</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/assign_cones.py" />
+            <source>CONES holds no cone: there is nothing to plan.</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/processing/assign_cones.py" />
@@ -5416,6 +5436,11 @@
             <translation>A telephely vetülete nem ismert: adja meg a SITE_CRS-t, például EPSG:32633.</translation>
         </message>
         <message>
+            <location filename="../../plugin/processing/cone_layer.py" />
+            <source>There are no findings: their layer is empty, and is not loaded.</source>
+            <translation>Nincs találat: a rétegük üres, ezért nem töltődik be.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/processing/cone_layout.py" />
             <source>&lt;p&gt;Places a layout of traffic cones, either at a &lt;b&gt;point&lt;/b&gt;, turned to a &lt;b&gt;heading&lt;/b&gt; (degrees clockwise from north), or along a &lt;b&gt;line&lt;/b&gt; such as a road's centreline, from &lt;b&gt;start&lt;/b&gt; metres after its beginning. The layer has an id, the order of placing, the heading of travel, the colour and the role of each cone.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Dimensions&lt;/b&gt; change the standard's: &lt;code&gt;vehicle_width=1.7; lane_offset=3&lt;/code&gt;. The log lists those of the layout with their values. A wrong name or value is refused with what there is.&lt;/p&gt; &lt;p&gt;Every cone is &lt;b&gt;checked&lt;/b&gt;: on one of the surfaces (of the allowed classes), away from obstacles and from other cones. What is wrong becomes a layer of findings with the cone's id and the reason; the cones are placed nevertheless.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:conelayout -- LAYOUT=iso3888_1 POINT="640432,5193486.2 [EPSG:32633]" \ HEADING=90 DIMENSIONS="vehicle_width=1.7; exit_length=15" SITE_CRS=EPSG:32633 CONES=cones.gpkg&lt;/pre&gt;</source>
             <translation>&lt;p&gt;Forgalomterelő bóják elrendezését helyezi el, vagy egy &lt;b&gt;ponton&lt;/b&gt;, adott &lt;b&gt;irányba&lt;/b&gt; fordítva (fok, északtól az óramutató járása szerint), vagy egy &lt;b&gt;vonal&lt;/b&gt;, például úttengely mentén, annak elejétől a &lt;b&gt;start&lt;/b&gt; méternyire. A rétegben minden bójának azonosítója, kihelyezési sorszáma, haladási iránya, színe és szerepe van.&lt;/p&gt; &lt;p&gt;A &lt;b&gt;méretek&lt;/b&gt; a szabványéit változtatják: &lt;code&gt;vehicle_width=1.7; lane_offset=3&lt;/code&gt;. A napló felsorolja az elrendezés méreteit értékeikkel. A rossz nevet vagy értéket visszautasítja, és megmondja, mi van.&lt;/p&gt; &lt;p&gt;Minden bóját &lt;b&gt;ellenőriz&lt;/b&gt;: valamelyik felületen van-e (a megengedett osztályokból), távol akadályoktól és más bójáktól. Ami nem jó, a leletek rétegébe kerül a bója azonosítójával és az okkal; a bóják ettől még elhelyeződnek.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:conelayout -- LAYOUT=iso3888_1 POINT="640432,5193486.2 [EPSG:32633]" \ HEADING=90 DIMENSIONS="vehicle_width=1.7; exit_length=15" SITE_CRS=EPSG:32633 CONES=cones.gpkg&lt;/pre&gt;</translation>
@@ -5477,11 +5502,6 @@
         </message>
         <message>
             <location filename="../../plugin/processing/cone_layout.py" />
-            <source>POINT or HEADING is not finite: give numbers.</source>
-            <translation>A POINT vagy a HEADING nem véges: adjon meg számokat.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/cone_layout.py" />
             <source>Place of the layout's origin</source>
             <translation>Az elrendezés kezdőpontjának helye</translation>
         </message>
@@ -5492,6 +5512,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/cone_layout.py" />
+            <source>The feature {id} of {layer} has no line with a length and a place in the site's CRS: correct it, or choose another.</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
             <source>The feature {id} of {sourcename} has {lines} lines: split it, or choose one that has one.</source>
             <translation>A(z) {sourcename} {id}. eleme {lines} vonalból áll: ossza fel, vagy válasszon olyat, amely egyből áll.</translation>
         </message>
@@ -5499,11 +5524,6 @@
             <location filename="../../plugin/processing/cone_layout.py" />
             <source>The layer {sourcename} has {found}: choose one line by LINE_ID, or select it and tick 'Selected features only'.</source>
             <translation>A(z) {sourcename} réteg: {found}. Válasszon egy vonalat a LINE_ID-vel, vagy jelölje ki, és kapcsolja be: „Csak a kijelölt elemek”.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/cone_layout.py" />
-            <source>The line cannot be transformed into the site's CRS ({error}).</source>
-            <translation>A vonal nem számítható át a telephely vetületébe ({error}).</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/cone_layout.py" />
@@ -5519,6 +5539,41 @@
             <location filename="../../plugin/processing/cone_layout.py" />
             <source>{how} given: give the place of the layout, or a line that it lies along.</source>
             <translation>{how}: adja meg az elrendezés helyét, vagy egy vonalat, amely mentén fekszik.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/driving_wishes.py" />
+            <source>Farthest place from a road [m]</source>
+            <translation>Legnagyobb távolság úttól [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/driving_wishes.py" />
+            <source>No road has the surface {surfaces}: the roads have {there}.</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/driving_wishes.py" />
+            <source>Points of the path at most this far apart [m]</source>
+            <translation>A pálya pontjai legfeljebb ilyen távol egymástól [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/driving_wishes.py" />
+            <source>Roads at least this wide, and as wide as the robot [m]</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/driving_wishes.py" />
+            <source>Surfaces that may be used (default: all)</source>
+            <translation>Használható felületek (alapértelmezés: mind)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/driving_wishes.py" />
+            <source>Turning radius of the robot [m]</source>
+            <translation>A robot fordulási sugara [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/driving_wishes.py" />
+            <source>Width of the robot [m]</source>
+            <translation>A robot szélessége [m]</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/errors.py" />
@@ -5592,6 +5647,21 @@
         </message>
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>Nav2 keepout mask</source>
+            <translation>Nav2 tiltottterület-maszk</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>Nav2 occupancy grid</source>
+            <translation>Nav2 foglaltsági rács</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>Nav2 speed mask</source>
+            <translation>Nav2 sebességmaszk</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
             <source>Robots drive over what is lower than [m]</source>
             <translation>A robotok áthajtanak azon, ami ennél alacsonyabb [m]</translation>
         </message>
@@ -5612,8 +5682,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
-            <source>The folder {folder} cannot be made: {reason}. Choose another OUTPUT.</source>
-            <translation>A(z) {folder} mappa nem hozható létre: {reason}. Válasszon másik OUTPUT-ot.</translation>
+            <source>The navigation map</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
@@ -5632,8 +5702,18 @@
         </message>
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>occupied</source>
+            <translation>foglalt</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
             <source>of 0 or more</source>
             <translation>0 vagy nagyobb</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>unknown</source>
+            <translation>ismeretlen</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
@@ -5846,6 +5926,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/export_robot_map_tiles.py" />
+            <source>The set of tiles</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_robot_map_tiles.py" />
             <source>There is no obstacle in any tile: check their place and the site CRS.</source>
             <translation>Egyik csempén sincs akadály: ellenőrizze a helyüket és a telephely vetületét.</translation>
         </message>
@@ -5928,16 +6013,6 @@
         </message>
         <message>
             <location filename="../../plugin/processing/find_route.py" />
-            <source>Points of the path at most this far apart [m]</source>
-            <translation>A pálya pontjai legfeljebb ilyen távol egymástól [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/find_route.py" />
-            <source>Roads at least this wide [m]</source>
-            <translation>Legalább ilyen széles utak [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/find_route.py" />
             <source>Route</source>
             <translation>Útvonal</translation>
         </message>
@@ -5945,16 +6020,6 @@
             <location filename="../../plugin/processing/find_route.py" />
             <source>Start</source>
             <translation>Kiindulás</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/find_route.py" />
-            <source>Start and goal at most this far from a road [m]</source>
-            <translation>A két végpont legnagyobb távolsága az úttól [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/find_route.py" />
-            <source>Surfaces that may be used (default: all)</source>
-            <translation>Használható felületek (alapértelmezés: mind)</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/find_route.py" />
@@ -5968,13 +6033,23 @@
         </message>
         <message>
             <location filename="../../plugin/processing/find_route.py" />
-            <source>Turning radius of the robot [m]</source>
-            <translation>A robot fordulási sugara [m]</translation>
+            <source>fastest</source>
+            <translation>leggyorsabb</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/find_route.py" />
-            <source>Width of the robot [m]</source>
-            <translation>A robot szélessége [m]</translation>
+            <source>none: plain Python</source>
+            <translation>egyik sem: csak Python</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>shortest</source>
+            <translation>legrövidebb</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>the fastest that is installed</source>
+            <translation>a telepítettek közül a leggyorsabb</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/find_route.py" />
@@ -6183,18 +6258,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/job_travel.py" />
-            <source>Farthest place from a road [m]</source>
-            <translation>Legnagyobb távolság úttól [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/job_travel.py" />
             <source>No roads are given: distances and paths are straight lines.</source>
             <translation>Nincsenek megadva utak: a távolságok és pályák egyenes vonalak.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/job_travel.py" />
-            <source>Points of the paths at most this far apart [m]</source>
-            <translation>A pályák pontjai legfeljebb ilyen távol egymástól [m]</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/job_travel.py" />
@@ -6205,16 +6270,6 @@
             <location filename="../../plugin/processing/job_travel.py" />
             <source>The CRS of the cones is not known: give SITE_CRS, such as EPSG:32633.</source>
             <translation>A bóják vetülete nem ismert: adja meg a SITE_CRS-t, például EPSG:32633.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/job_travel.py" />
-            <source>Turning radius of the robots [m]</source>
-            <translation>A robotok fordulási sugara [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/job_travel.py" />
-            <source>Width of the robots [m]</source>
-            <translation>A robotok szélessége [m]</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/processing/keepout_areas.py" />
@@ -6355,6 +6410,21 @@
         </message>
         <message>
             <location filename="../../plugin/processing/map_format.py" />
+            <source>binary: the text compressed</source>
+            <translation>bináris: a szöveg tömörítve</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_format.py" />
+            <source>compact: binary in columns</source>
+            <translation>tömör: bináris oszlopokban</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_format.py" />
+            <source>text</source>
+            <translation>szöveg</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_format.py" />
             <source>text: lines that people and scripts read. binary: that text compressed, with a check sum. compact: the same map in columns of centimetres, also with a check sum (codec 2).</source>
             <translation>text: sorok, amelyeket emberek és szkriptek olvasnak. binary: ez a szöveg tömörítve, ellenőrző összeggel. compact: ugyanaz a térkép centiméterek oszlopaiban, szintén ellenőrző összeggel (2. kodek).</translation>
         </message>
@@ -6480,11 +6550,6 @@
         </message>
         <message>
             <location filename="../../plugin/processing/map_window.py" />
-            <source>EXTENT {extent} is no extent: write 'xmin,xmax,ymin,ymax'.</source>
-            <translation>EXTENT {extent} nem kiterjedés: írja így: 'xmin,xmax,ymin,ymax'.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/map_window.py" />
             <source>Extent (instead of centre, width and height)</source>
             <translation>Kiterjedés (közép, szélesség és magasság helyett)</translation>
         </message>
@@ -6505,13 +6570,13 @@
         </message>
         <message>
             <location filename="../../plugin/processing/map_window.py" />
-            <source>ORIGIN {origin} or ROTATION {degrees} is not finite: give numbers.</source>
-            <translation>ORIGIN {origin} vagy ROTATION {degrees} nem véges: adjon meg számokat.</translation>
+            <source>Origin of the site frame (default: as the project has it, else 0,0)</source>
+            <translation>A telephelyi keret kezdőpontja (alapértelmezés: a projekté, különben 0,0)</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/map_window.py" />
-            <source>Origin of the site frame (default: as the project has it, else 0,0)</source>
-            <translation>A telephelyi keret kezdőpontja (alapértelmezés: a projekté, különben 0,0)</translation>
+            <source>ROTATION {degrees} is not finite: give a number.</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/processing/map_window.py" />
@@ -6591,6 +6656,16 @@
             <translation>Nincsenek kihelyezett bóják, amelyekről jelenteni lehetne. Ellenőrizze a réteg szűrőjét és a 'robot-bridge placements export' beállításait.</translation>
         </message>
         <message>
+            <location filename="../../plugin/processing/places.py" />
+            <source>{name} {extent} is no extent: write 'xmin,xmax,ymin,ymax'.</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/places.py" />
+            <source>{name} {value} has no place in the CRS {crs}: give finite numbers, x or longitude first, and the CRS that they are in.</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
             <location filename="../../plugin/processing/plan_rows.py" />
             <source>Metres of all robots</source>
             <translation>Az összes robot méterei</translation>
@@ -6634,11 +6709,6 @@
             <location filename="../../plugin/processing/publish_help.py" />
             <source>&lt;p&gt;Writes the layers of a site into a folder with &lt;i&gt;site.toml&lt;/i&gt; and &lt;i&gt;site.gpkg&lt;/i&gt;, which &lt;i&gt;robot-bridge serve --site FOLDER&lt;/i&gt; serves.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Layers&lt;/b&gt;: those of the project by their roles (menu Fleet Supervisor, Layer roles), or by a &lt;b&gt;map profile&lt;/b&gt;, or the layers given here. Which features count, heights, where things begin above the ground, labels, road widths and shapes of furniture come from the expressions kept with the roles; heights, labels and widths else from the fields &lt;i&gt;height&lt;/i&gt; or &lt;i&gt;height_m&lt;/i&gt;, &lt;i&gt;surface&lt;/i&gt;, &lt;i&gt;name&lt;/i&gt;, &lt;i&gt;width_m&lt;/i&gt; or &lt;i&gt;width&lt;/i&gt;.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Version&lt;/b&gt;: 1 for a new folder, else one more than the version there. A folder that holds another site is refused unless &lt;b&gt;Replace&lt;/b&gt; is ticked.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Bounds&lt;/b&gt;: the rectangle, along the axes of the site frame, that robots may be sent into. Obstacles are published up to 100 m beyond it, so that a robot at its edge is told what stands there.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Site CRS, origin, rotation&lt;/b&gt;: where the robots' (0, 0) is and how their x axis lies. Default: as the project has it.&lt;/p&gt; &lt;p&gt;An earlier publication is replaced only after the new one is complete; a cancel leaves it as it was. Broken geometry is repaired where that is safe and left out where it is not, each time with a warning that names the layer and the feature. One publication into a folder runs at a time.&lt;/p&gt;</source>
             <translation>&lt;p&gt;Egy telephely rétegeit írja ki egy mappába &lt;i&gt;site.toml&lt;/i&gt; és &lt;i&gt;site.gpkg&lt;/i&gt; fájllal, amelyet a &lt;i&gt;robot-bridge serve --site FOLDER&lt;/i&gt; szolgál ki.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Rétegek&lt;/b&gt;: a projektéi szerepük szerint (Fleet Supervisor menü, Rétegszerepek), vagy egy &lt;b&gt;térképprofil&lt;/b&gt; szerint, vagy az itt megadott rétegek. Hogy mely elemek számítanak, a magasságok, hogy mi hol kezdődik a talaj felett, a címkék, az utak szélessége és a berendezések alakja a szerepekkel őrzött kifejezésekből jön; a magasság, a címke és a szélesség különben a &lt;i&gt;height&lt;/i&gt; vagy &lt;i&gt;height_m&lt;/i&gt;, &lt;i&gt;surface&lt;/i&gt;, &lt;i&gt;name&lt;/i&gt;, &lt;i&gt;width_m&lt;/i&gt; vagy &lt;i&gt;width&lt;/i&gt; mezőből.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Verzió&lt;/b&gt;: új mappánál 1, különben eggyel több, mint ami ott van. Más telephelyet tartalmazó mappát visszautasít, hacsak a &lt;b&gt;Másik telephely közzétételének felülírása&lt;/b&gt; nincs bejelölve.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Határok&lt;/b&gt;: az a téglalap a telephelyi keret tengelyei mentén, ahová robotok küldhetők. Akadályok 100 m-rel azon túl is közzé vannak téve, hogy a szélén lévő robot tudja, mi áll ott.&lt;/p&gt; &lt;p&gt;&lt;b&gt;A telephely vetülete, kezdőpontja, elforgatása&lt;/b&gt;: hol van a robotok (0, 0) pontja, és merre fekszik az x tengelyük. Alapértelmezés: ahogy a projektben van.&lt;/p&gt; &lt;p&gt;Egy korábbi közzététel csak akkor cserélődik le, ha az új teljes; megszakításkor marad, ahogy volt. A hibás geometria ki lesz javítva, ahol ez biztonságos, és kimarad, ahol nem az, mindig figyelmeztetéssel, amely megnevezi a réteget és az elemet. Egy mappába egyszerre egy közzététel fut.&lt;/p&gt;</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/publish_plan.py" />
-            <source>BOUNDS {bounds} is no extent: write 'xmin,xmax,ymin,ymax'.</source>
-            <translation>BOUNDS {bounds} nem kiterjedés: írja így: 'xmin,xmax,ymin,ymax'.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/publish_plan.py" />
@@ -6850,13 +6920,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/report_layout.py" />
-            <source>The report cannot be written to {file}: there is no folder {folder}.</source>
-            <translation>A jelentés nem írható ide: {file}; nincs ilyen mappa: {folder}.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/report_layout.py" />
-            <source>The report cannot be written to {file}: {error}. Close it if a program shows it, or choose another file.</source>
-            <translation>A jelentés nem írható ide: {file}: {error}. Zárja be, ha egy program mutatja, vagy válasszon másik fájlt.</translation>
+            <source>The report</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/processing/report_layout.py" />
@@ -6934,6 +6999,11 @@
             <location filename="../../plugin/processing/road_source.py" />
             <source>Layer {name}, feature {id}: {note}</source>
             <translation>{name} réteg, {id}. elem: {note}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/road_source.py" />
+            <source>Layer {name}: none of its features is a road</source>
+            <translation type="unfinished" />
         </message>
         <message numerus="yes">
             <location filename="../../plugin/processing/road_source.py" />
@@ -7078,16 +7148,6 @@
             <location filename="../../plugin/processing/svg_picture.py" />
             <source>Qt cannot draw the picture of this map: choose svg and open that in a browser.</source>
             <translation>A Qt nem tudja megrajzolni ennek a térképnek a képét: válassza az svg-t, és nyissa meg böngészőben.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/tile_folder.py" />
-            <source>The tiles cannot be written to {folder}: {reason}. Choose a folder that may be written to, and check the free space.</source>
-            <translation>A csempék nem írhatók ide: {folder}: {reason}. Válasszon írható mappát, és ellenőrizze a szabad helyet.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/tile_folder.py" />
-            <source>{path} is a folder: choose another folder for the tiles.</source>
-            <translation>{path} egy mappa: válasszon másik mappát a csempéknek.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/tile_plan.py" />
@@ -7262,6 +7322,16 @@
             <location filename="../../plugin/processing/whole_file.py" />
             <source>{what} cannot be written to {target}: {reason}. Choose a file in a folder that exists, may be written to, and has space.</source>
             <translation>{what} nem írható ide: {target}: {reason}. Válasszon fájlt olyan mappában, amely létezik, írható, és van benne hely.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/whole_folder.py" />
+            <source>{path} is a folder, where a file is to be written: choose another OUTPUT.</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/whole_folder.py" />
+            <source>{what} cannot be written to {folder}: {reason}. Choose a folder that may be written to, and check the free space.</source>
+            <translation type="unfinished" />
         </message>
         <message numerus="yes">
             <location filename="../../plugin/roles/live_preview.py" />

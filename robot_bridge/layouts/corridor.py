@@ -19,7 +19,7 @@ class Corridor(Layout):
 
     NAME: ClassVar[str] = "corridor"
     TITLE: ClassVar[str] = "Corridor"
-    STANDARD: ClassVar[str] = "none; colours, width and spacing of Formula Student"
+    STANDARD: ClassVar[str] = "no standard: colours, width and spacing of Formula Student"
 
     length: float = dimension(50, "Length of the corridor", least=0.1)
     width: float = dimension(3, "Clear width of the corridor", least=0.1)

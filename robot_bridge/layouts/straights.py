@@ -21,7 +21,7 @@ class Slalom(Layout):
 
     NAME: ClassVar[str] = "slalom"
     TITLE: ClassVar[str] = "Slalom"
-    STANDARD: ClassVar[str] = "none; 18 m as European testers drive it"
+    STANDARD: ClassVar[str] = "no standard: 18 m as European testers drive it"
 
     count: float = dimension(9, "Cones to go round", "", least=1, whole=True)
     spacing: float = dimension(18, "From cone to cone", least=0.5)

@@ -17,15 +17,11 @@ from qgis.PyQt.QtWidgets import (
     QWidget,
 )
 
-from ....robot_bridge.assignment.job import STAY, TO_START, TO_STORE
-from ....robot_bridge.assignment.scheduling import BALANCED, LEAST_DISTANCE
+from ...assignment_words import FINISHES, OBJECTIVES
 from ...language import tr
 from ..cone_store import MARK
 from .cone_source import point_layers
 from .plan_settings import PlanSettings
-
-OBJECTIVES = {BALANCED: tr("done as early as possible"), LEAST_DISTANCE: tr("fewest metres")}
-FINISHES = {STAY: tr("stay where they are"), TO_STORE: tr("drive to a store"), TO_START: tr("drive back")}
 
 
 class SettingsForm(QWidget):

@@ -13,6 +13,7 @@ from qgis.core import (
     QgsFeature,
     QgsGeometry,
     QgsProcessingException,
+    QgsProject,
     QgsVectorLayer,
 )
 
@@ -243,3 +244,30 @@ def test_the_guide_has_every_dimension_with_its_value_and_a_picture_of_every_lay
             if one.name != "cone_base":
                 assert f"| `{one.name}` | {one.standard:g}" in section, f"{name}: {one.name}"
     assert "`cone_base`, 0.285 m" in guide
+
+
+@pytest.mark.parametrize(("surface", "loaded"), [((0, 200), ["Cones"]), ((0, 50), ["Cones", "Findings"])])
+def test_a_layer_of_findings_is_loaded_when_there_are_some(provider, listener, surface, loaded):
+    import processing
+
+    west, east = surface
+    road = layer("Polygon", f"Polygon(({west} -10, {east} -10, {east} 10, {west} 10, {west} -10))")
+    before = set(QgsProject.instance().mapLayers())
+    results = processing.runAndLoadResults(
+        "fleet:conelayout",
+        {
+            "LAYOUT": "slalom",
+            "POINT": f"{X + 10},{Y} [{UTM}]",
+            "HEADING": 90,
+            "SURFACES": [road],
+            "SITE_CRS": UTM,
+            "CONES": "memory:",
+            "FINDINGS": "memory:",
+        },
+        feedback=listener,
+    )
+    made = [one for key, one in QgsProject.instance().mapLayers().items() if key not in before]
+    assert sorted(one.name() for one in made) == loaded
+    assert (results["FINDING_COUNT"] == 0) == (loaded == ["Cones"])
+    assert any("no findings" in info for info in listener.infos) == (loaded == ["Cones"])
+    QgsProject.instance().removeMapLayers([one.id() for one in made])

@@ -1,0 +1,57 @@
+"""What algorithms' dialogs show for a choice whose values have names."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from processing.gui.wrappers import WidgetWrapper
+from qgis.core import QgsProcessingParameterEnum
+from qgis.gui import QgsCheckableComboBox, QgsGui
+from qgis.PyQt.QtCore import Qt
+from qgis.PyQt.QtWidgets import QComboBox, QWidget
+
+MODELER = "ModelerParametersDialog"
+"""The class of the dialog for a step of a model."""
+
+
+class ChoiceWidget(WidgetWrapper):
+    """A list of names, of which one can be chosen, or several can be ticked, for the value of each.
+
+    Processing makes it from the metadata of the parameter (``widget_wrapper``).
+    """
+
+    def __new__(cls, parameter: QgsProcessingParameterEnum, dialog: QWidget, *_: Any, **__: Any) -> Any:
+        if type(dialog).__name__ == MODELER:
+            # There a value can be that of another step, too, which only QGIS's own widget offers.
+            registry = QgsGui.processingGuiRegistry()
+            return registry.createModelerParameterWidget(
+                dialog.model, dialog.childId, parameter, dialog.context
+            )
+        return super().__new__(cls)
+
+    def createWidget(self, names: Mapping[str, str]) -> QWidget:
+        parameter = self.parameterDefinition()
+        self._several = parameter.allowMultiple()
+        box = QgsCheckableComboBox() if self._several else QComboBox()
+        # Not in the order of the names: metadata comes back from QGIS sorted by its keys.
+        for value in parameter.options():
+            if self._several:
+                box.addItemWithCheckState(names[value], Qt.CheckState.Unchecked, value)
+            else:
+                box.addItem(names[value], value)
+        changed = box.checkedItemsChanged if self._several else box.currentIndexChanged
+        changed.connect(lambda *_: self.widgetValueHasChanged.emit(self))
+        return box
+
+    def setValue(self, value: Any) -> None:
+        if not self._several:
+            self.widget.setCurrentIndex(self.widget.findData(value))
+            return
+        wanted = value.split(",") if isinstance(value, str) else value or ()
+        for row in range(self.widget.count()):
+            state = Qt.CheckState.Checked if self.widget.itemData(row) in wanted else Qt.CheckState.Unchecked
+            self.widget.setItemCheckState(row, state)
+
+    def value(self) -> Any:
+        return self.widget.checkedItemsData() if self._several else self.widget.currentData()
