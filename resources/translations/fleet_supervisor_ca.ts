@@ -4,51 +4,6 @@
     <context>
         <name>FleetSupervisor</name>
         <message>
-            <location filename="../../plugin/assignment_words.py" />
-            <source>collect them</source>
-            <translation>recollir-los</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/assignment_words.py" />
-            <source>done as early as possible</source>
-            <translation>acabar al més aviat possible</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/assignment_words.py" />
-            <source>drive back</source>
-            <translation>tornen</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/assignment_words.py" />
-            <source>drive to a store</source>
-            <translation>van a un magatzem</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/assignment_words.py" />
-            <source>fewest metres</source>
-            <translation>menys metres</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/assignment_words.py" />
-            <source>place them</source>
-            <translation>col·locar-los</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/assignment_words.py" />
-            <source>stay where they are</source>
-            <translation>queden on són</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/assignment_words.py" />
-            <source>the best that is installed</source>
-            <translation>el millor dels instal·lats</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/assignment_words.py" />
-            <source>the preview: quick, not the best</source>
-            <translation>la previsualització: ràpida, no la millor</translation>
-        </message>
-        <message>
             <location filename="../../plugin/connection.py" />
             <source>The connection stopped on an internal fault ({name}: {error}). Press Connect to try again and report this text.</source>
             <translation>La connexió s'ha aturat per un error intern ({name}: {error}). Premeu Connecta per tornar-ho a provar i comuniqueu aquest text.</translation>
@@ -1943,6 +1898,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/layout_dimensions.py" />
+            <source>After: {standard}</source>
+            <translation>Segons: {standard}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/layout_dimensions.py" />
             <source>Degrees clockwise from north; the wheel over the map turns it too</source>
             <translation>Graus en sentit horari des del nord; la roda sobre el mapa també la gira</translation>
         </message>
@@ -3213,8 +3173,33 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>done as early as possible</source>
+            <translation>acabar al més aviat possible</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>drive back</source>
+            <translation>tornen</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>drive to a store</source>
+            <translation>van a un magatzem</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>fewest metres</source>
+            <translation>menys metres</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
             <source>selected</source>
             <translation>seleccionats</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>stay where they are</source>
+            <translation>queden on són</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/queues/queue_edits.py" />
@@ -4939,13 +4924,13 @@
         </message>
         <message>
             <location filename="../../plugin/layout_words.py" />
-            <source>no standard: 18 m as European testers drive it</source>
-            <translation>cap norma: 18 m, com la condueixen els provadors europeus</translation>
+            <source>none; 18 m as European testers drive it</source>
+            <translation>cap; 18 m, com la condueixen els provadors europeus</translation>
         </message>
         <message>
             <location filename="../../plugin/layout_words.py" />
-            <source>no standard: colours, width and spacing of Formula Student</source>
-            <translation>cap norma: colors, amplada i separació de Formula Student</translation>
+            <source>none; colours, width and spacing of Formula Student</source>
+            <translation>cap; colors, amplada i separació de Formula Student</translation>
         </message>
         <message>
             <location filename="../../plugin/locator/robot_filter.py" />
@@ -5089,7 +5074,7 @@
         <message>
             <location filename="../../plugin/processing/assign_cones.py" />
             <source>CONES holds no cone: there is nothing to plan.</source>
-            <translation type="unfinished" />
+            <translation>CONES no té cap con: no hi ha res per planificar.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/assign_cones.py" />
@@ -5467,11 +5452,6 @@
             <translation>El SRC del recinte no es coneix: doneu SITE_CRS, com ara EPSG:32633.</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/cone_layer.py" />
-            <source>There are no findings: their layer is empty, and is not loaded.</source>
-            <translation>No hi ha cap troballa: la seva capa és buida i no es carrega.</translation>
-        </message>
-        <message>
             <location filename="../../plugin/processing/cone_layout.py" />
             <source>&lt;p&gt;Places a layout of traffic cones, either at a &lt;b&gt;point&lt;/b&gt;, turned to a &lt;b&gt;heading&lt;/b&gt; (degrees clockwise from north), or along a &lt;b&gt;line&lt;/b&gt; such as a road's centreline, from &lt;b&gt;start&lt;/b&gt; metres after its beginning. The layer has an id, the order of placing, the heading of travel, the colour and the role of each cone.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Dimensions&lt;/b&gt; change the standard's: &lt;code&gt;vehicle_width=1.7; lane_offset=3&lt;/code&gt;. The log lists those of the layout with their values. A wrong name or value is refused with what there is.&lt;/p&gt; &lt;p&gt;Every cone is &lt;b&gt;checked&lt;/b&gt;: on one of the surfaces (of the allowed classes), away from obstacles and from other cones. What is wrong becomes a layer of findings with the cone's id and the reason; the cones are placed nevertheless.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:conelayout -- LAYOUT=iso3888_1 POINT="640432,5193486.2 [EPSG:32633]" \ HEADING=90 DIMENSIONS="vehicle_width=1.7; exit_length=15" SITE_CRS=EPSG:32633 CONES=cones.gpkg&lt;/pre&gt;</source>
             <translation>&lt;p&gt;Col·loca una disposició de cons de trànsit, o bé en un &lt;b&gt;punt&lt;/b&gt;, girada cap a un &lt;b&gt;rumb&lt;/b&gt; (graus en sentit horari des del nord), o bé al llarg d'una &lt;b&gt;línia&lt;/b&gt; com ara un eix de via, a partir de &lt;b&gt;start&lt;/b&gt; metres del seu començament. La capa té de cada con un identificador, l'ordre de col·locació, el rumb de circulació, el color i el paper.&lt;/p&gt; &lt;p&gt;Les &lt;b&gt;dimensions&lt;/b&gt; canvien les de la norma: &lt;code&gt;vehicle_width=1.7; lane_offset=3&lt;/code&gt;. El registre llista les de la disposició amb els seus valors. Un nom o valor equivocat es refusa dient què hi ha.&lt;/p&gt; &lt;p&gt;Cada con es &lt;b&gt;comprova&lt;/b&gt;: en una de les superfícies (de les classes permeses), lluny d'obstacles i d'altres cons. El que no està bé va a una capa de troballes amb l'identificador del con i el motiu; els cons es col·loquen igualment.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:conelayout -- LAYOUT=iso3888_1 POINT="640432,5193486.2 [EPSG:32633]" \ HEADING=90 DIMENSIONS="vehicle_width=1.7; exit_length=15" SITE_CRS=EPSG:32633 CONES=cones.gpkg&lt;/pre&gt;</translation>
@@ -5544,7 +5524,7 @@
         <message>
             <location filename="../../plugin/processing/cone_layout.py" />
             <source>The feature {id} of {layer} has no line with a length and a place in the site's CRS: correct it, or choose another.</source>
-            <translation type="unfinished" />
+            <translation>L'entitat {id} de {layer} no té cap línia amb longitud i amb lloc en el SRC del lloc: corregiu-la, o trieu-ne una altra.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/cone_layout.py" />
@@ -5579,7 +5559,7 @@
         <message>
             <location filename="../../plugin/processing/driving_wishes.py" />
             <source>No road has the surface {surfaces}: the roads have {there}.</source>
-            <translation type="unfinished" />
+            <translation>Cap via no té la superfície {surfaces}: les vies tenen {there}.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/driving_wishes.py" />
@@ -5589,7 +5569,7 @@
         <message>
             <location filename="../../plugin/processing/driving_wishes.py" />
             <source>Roads at least this wide, and as wide as the robot [m]</source>
-            <translation type="unfinished" />
+            <translation>Vies almenys així d'amples, i tant com el robot [m]</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/driving_wishes.py" />
@@ -5678,21 +5658,6 @@
         </message>
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
-            <source>Nav2 keepout mask</source>
-            <translation>màscara de zones prohibides de Nav2</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/export_navigation_map.py" />
-            <source>Nav2 occupancy grid</source>
-            <translation>graella d'ocupació de Nav2</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/export_navigation_map.py" />
-            <source>Nav2 speed mask</source>
-            <translation>màscara de velocitat de Nav2</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/export_navigation_map.py" />
             <source>Robots drive over what is lower than [m]</source>
             <translation>Els robots passen per sobre del que és més baix que [m]</translation>
         </message>
@@ -5714,7 +5679,7 @@
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
             <source>The navigation map</source>
-            <translation type="unfinished" />
+            <translation>El mapa de navegació</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
@@ -5733,18 +5698,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
-            <source>occupied</source>
-            <translation>ocupat</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/export_navigation_map.py" />
             <source>of 0 or more</source>
             <translation>de 0 o més</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/export_navigation_map.py" />
-            <source>unknown</source>
-            <translation>desconegut</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
@@ -5960,7 +5915,7 @@
         <message>
             <location filename="../../plugin/processing/export_robot_map_tiles.py" />
             <source>The set of tiles</source>
-            <translation type="unfinished" />
+            <translation>El joc de tessel·les</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/export_robot_map_tiles.py" />
@@ -6064,26 +6019,6 @@
             <location filename="../../plugin/processing/find_route.py" />
             <source>Time on the route [s]</source>
             <translation>Temps de la ruta [s]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/find_route.py" />
-            <source>fastest</source>
-            <translation>la més ràpida</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/find_route.py" />
-            <source>none: plain Python</source>
-            <translation>cap: només Python</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/find_route.py" />
-            <source>shortest</source>
-            <translation>la més curta</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/find_route.py" />
-            <source>the fastest that is installed</source>
-            <translation>el més ràpid dels instal·lats</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/find_route.py" />
@@ -6445,21 +6380,6 @@
         </message>
         <message>
             <location filename="../../plugin/processing/map_format.py" />
-            <source>binary: the text compressed</source>
-            <translation>binari: el text comprimit</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/map_format.py" />
-            <source>compact: binary in columns</source>
-            <translation>compacte: binari en columnes</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/map_format.py" />
-            <source>text</source>
-            <translation>text</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/map_format.py" />
             <source>text: lines that people and scripts read. binary: that text compressed, with a check sum. compact: the same map in columns of centimetres, also with a check sum (codec 2).</source>
             <translation>text: línies que llegeixen persones i scripts. binary: aquest text comprimit, amb suma de verificació. compact: el mateix mapa en columnes de centímetres, també amb suma de verificació (còdec 2).</translation>
         </message>
@@ -6611,7 +6531,7 @@
         <message>
             <location filename="../../plugin/processing/map_window.py" />
             <source>ROTATION {degrees} is not finite: give a number.</source>
-            <translation type="unfinished" />
+            <translation>ROTATION {degrees} no és finit: doneu un nombre.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/map_window.py" />
@@ -6694,12 +6614,12 @@
         <message>
             <location filename="../../plugin/processing/places.py" />
             <source>{name} {extent} is no extent: write 'xmin,xmax,ymin,ymax'.</source>
-            <translation type="unfinished" />
+            <translation>{name} {extent} no és una extensió: escriviu 'xmin,xmax,ymin,ymax'.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/places.py" />
             <source>{name} {value} has no place in the CRS {crs}: give finite numbers, x or longitude first, and the CRS that they are in.</source>
-            <translation type="unfinished" />
+            <translation>{name} {value} no té lloc en el SRC {crs}: doneu nombres finits, primer la x o la longitud, i el SRC en què són.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/plan_rows.py" />
@@ -6961,7 +6881,7 @@
         <message>
             <location filename="../../plugin/processing/report_layout.py" />
             <source>The report</source>
-            <translation type="unfinished" />
+            <translation>L'informe</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/report_layout.py" />
@@ -7044,7 +6964,7 @@
         <message>
             <location filename="../../plugin/processing/road_source.py" />
             <source>Layer {name}: none of its features is a road</source>
-            <translation type="unfinished" />
+            <translation>Capa {name}: cap de les seves entitats no és una via</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/processing/road_source.py" />
@@ -7371,12 +7291,12 @@
         <message>
             <location filename="../../plugin/processing/whole_folder.py" />
             <source>{path} is a folder, where a file is to be written: choose another OUTPUT.</source>
-            <translation type="unfinished" />
+            <translation>{path} és una carpeta, on s'ha d'escriure un fitxer: trieu un altre OUTPUT.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/whole_folder.py" />
             <source>{what} cannot be written to {folder}: {reason}. Choose a folder that may be written to, and check the free space.</source>
-            <translation type="unfinished" />
+            <translation>{what} no es pot escriure a {folder}: {reason}. Trieu una carpeta on es pugui escriure, i comproveu l'espai lliure.</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/roles/live_preview.py" />

@@ -4,51 +4,6 @@
     <context>
         <name>FleetSupervisor</name>
         <message>
-            <location filename="../../plugin/assignment_words.py" />
-            <source>collect them</source>
-            <translation>recogerlos</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/assignment_words.py" />
-            <source>done as early as possible</source>
-            <translation>acabar lo antes posible</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/assignment_words.py" />
-            <source>drive back</source>
-            <translation>vuelven</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/assignment_words.py" />
-            <source>drive to a store</source>
-            <translation>van a un almacén</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/assignment_words.py" />
-            <source>fewest metres</source>
-            <translation>menos metros</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/assignment_words.py" />
-            <source>place them</source>
-            <translation>colocarlos</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/assignment_words.py" />
-            <source>stay where they are</source>
-            <translation>quedan donde están</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/assignment_words.py" />
-            <source>the best that is installed</source>
-            <translation>el mejor de los instalados</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/assignment_words.py" />
-            <source>the preview: quick, not the best</source>
-            <translation>la vista previa: rápida, no la mejor</translation>
-        </message>
-        <message>
             <location filename="../../plugin/connection.py" />
             <source>The connection stopped on an internal fault ({name}: {error}). Press Connect to try again and report this text.</source>
             <translation>La conexión se detuvo por un error interno ({name}: {error}). Pulse Conectar para volver a intentarlo y comunique este texto.</translation>
@@ -1943,6 +1898,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/layout_dimensions.py" />
+            <source>After: {standard}</source>
+            <translation>Según: {standard}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/layout_dimensions.py" />
             <source>Degrees clockwise from north; the wheel over the map turns it too</source>
             <translation>Grados en sentido horario desde el norte; la rueda sobre el mapa también la gira</translation>
         </message>
@@ -3213,8 +3173,33 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>done as early as possible</source>
+            <translation>acabar lo antes posible</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>drive back</source>
+            <translation>vuelven</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>drive to a store</source>
+            <translation>van a un almacén</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>fewest metres</source>
+            <translation>menos metros</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
             <source>selected</source>
             <translation>seleccionados</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>stay where they are</source>
+            <translation>quedan donde están</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/queues/queue_edits.py" />
@@ -4939,13 +4924,13 @@
         </message>
         <message>
             <location filename="../../plugin/layout_words.py" />
-            <source>no standard: 18 m as European testers drive it</source>
-            <translation>ninguna norma: 18 m, como la conducen los probadores europeos</translation>
+            <source>none; 18 m as European testers drive it</source>
+            <translation>ninguna; 18 m, como la conducen los probadores europeos</translation>
         </message>
         <message>
             <location filename="../../plugin/layout_words.py" />
-            <source>no standard: colours, width and spacing of Formula Student</source>
-            <translation>ninguna norma: colores, anchura y separación de Formula Student</translation>
+            <source>none; colours, width and spacing of Formula Student</source>
+            <translation>ninguna; colores, anchura y separación de Formula Student</translation>
         </message>
         <message>
             <location filename="../../plugin/locator/robot_filter.py" />
@@ -5089,7 +5074,7 @@
         <message>
             <location filename="../../plugin/processing/assign_cones.py" />
             <source>CONES holds no cone: there is nothing to plan.</source>
-            <translation type="unfinished" />
+            <translation>CONES no tiene ningún cono: no hay nada que planificar.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/assign_cones.py" />
@@ -5467,11 +5452,6 @@
             <translation>El SRC del recinto no se conoce: dé SITE_CRS, como EPSG:32633.</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/cone_layer.py" />
-            <source>There are no findings: their layer is empty, and is not loaded.</source>
-            <translation>No hay hallazgos: su capa está vacía y no se carga.</translation>
-        </message>
-        <message>
             <location filename="../../plugin/processing/cone_layout.py" />
             <source>&lt;p&gt;Places a layout of traffic cones, either at a &lt;b&gt;point&lt;/b&gt;, turned to a &lt;b&gt;heading&lt;/b&gt; (degrees clockwise from north), or along a &lt;b&gt;line&lt;/b&gt; such as a road's centreline, from &lt;b&gt;start&lt;/b&gt; metres after its beginning. The layer has an id, the order of placing, the heading of travel, the colour and the role of each cone.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Dimensions&lt;/b&gt; change the standard's: &lt;code&gt;vehicle_width=1.7; lane_offset=3&lt;/code&gt;. The log lists those of the layout with their values. A wrong name or value is refused with what there is.&lt;/p&gt; &lt;p&gt;Every cone is &lt;b&gt;checked&lt;/b&gt;: on one of the surfaces (of the allowed classes), away from obstacles and from other cones. What is wrong becomes a layer of findings with the cone's id and the reason; the cones are placed nevertheless.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:conelayout -- LAYOUT=iso3888_1 POINT="640432,5193486.2 [EPSG:32633]" \ HEADING=90 DIMENSIONS="vehicle_width=1.7; exit_length=15" SITE_CRS=EPSG:32633 CONES=cones.gpkg&lt;/pre&gt;</source>
             <translation>&lt;p&gt;Coloca una disposición de conos de tráfico, o bien en un &lt;b&gt;punto&lt;/b&gt;, girada hacia un &lt;b&gt;rumbo&lt;/b&gt; (grados en sentido horario desde el norte), o bien a lo largo de una &lt;b&gt;línea&lt;/b&gt; como un eje de vía, a partir de &lt;b&gt;start&lt;/b&gt; metros de su comienzo. La capa tiene de cada cono un identificador, el orden de colocación, el rumbo de circulación, el color y el papel.&lt;/p&gt; &lt;p&gt;Las &lt;b&gt;dimensiones&lt;/b&gt; cambian las de la norma: &lt;code&gt;vehicle_width=1.7; lane_offset=3&lt;/code&gt;. El registro lista las de la disposición con sus valores. Un nombre o valor equivocado se rechaza diciendo qué hay.&lt;/p&gt; &lt;p&gt;Cada cono se &lt;b&gt;comprueba&lt;/b&gt;: en una de las superficies (de las clases permitidas), lejos de obstáculos y de otros conos. Lo que no está bien va a una capa de hallazgos con el identificador del cono y el motivo; los conos se colocan de todos modos.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:conelayout -- LAYOUT=iso3888_1 POINT="640432,5193486.2 [EPSG:32633]" \ HEADING=90 DIMENSIONS="vehicle_width=1.7; exit_length=15" SITE_CRS=EPSG:32633 CONES=cones.gpkg&lt;/pre&gt;</translation>
@@ -5544,7 +5524,7 @@
         <message>
             <location filename="../../plugin/processing/cone_layout.py" />
             <source>The feature {id} of {layer} has no line with a length and a place in the site's CRS: correct it, or choose another.</source>
-            <translation type="unfinished" />
+            <translation>El objeto {id} de {layer} no tiene ninguna línea con longitud y con lugar en el SRC del sitio: corríjalo, o elija otro.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/cone_layout.py" />
@@ -5579,7 +5559,7 @@
         <message>
             <location filename="../../plugin/processing/driving_wishes.py" />
             <source>No road has the surface {surfaces}: the roads have {there}.</source>
-            <translation type="unfinished" />
+            <translation>Ninguna vía tiene la superficie {surfaces}: las vías tienen {there}.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/driving_wishes.py" />
@@ -5589,7 +5569,7 @@
         <message>
             <location filename="../../plugin/processing/driving_wishes.py" />
             <source>Roads at least this wide, and as wide as the robot [m]</source>
-            <translation type="unfinished" />
+            <translation>Vías al menos así de anchas, y tanto como el robot [m]</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/driving_wishes.py" />
@@ -5678,21 +5658,6 @@
         </message>
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
-            <source>Nav2 keepout mask</source>
-            <translation>máscara de zonas prohibidas de Nav2</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/export_navigation_map.py" />
-            <source>Nav2 occupancy grid</source>
-            <translation>rejilla de ocupación de Nav2</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/export_navigation_map.py" />
-            <source>Nav2 speed mask</source>
-            <translation>máscara de velocidad de Nav2</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/export_navigation_map.py" />
             <source>Robots drive over what is lower than [m]</source>
             <translation>Los robots pasan sobre lo más bajo que [m]</translation>
         </message>
@@ -5714,7 +5679,7 @@
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
             <source>The navigation map</source>
-            <translation type="unfinished" />
+            <translation>El mapa de navegación</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
@@ -5733,18 +5698,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
-            <source>occupied</source>
-            <translation>ocupado</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/export_navigation_map.py" />
             <source>of 0 or more</source>
             <translation>de 0 o más</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/export_navigation_map.py" />
-            <source>unknown</source>
-            <translation>desconocido</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
@@ -5960,7 +5915,7 @@
         <message>
             <location filename="../../plugin/processing/export_robot_map_tiles.py" />
             <source>The set of tiles</source>
-            <translation type="unfinished" />
+            <translation>El juego de teselas</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/export_robot_map_tiles.py" />
@@ -6064,26 +6019,6 @@
             <location filename="../../plugin/processing/find_route.py" />
             <source>Time on the route [s]</source>
             <translation>Tiempo de la ruta [s]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/find_route.py" />
-            <source>fastest</source>
-            <translation>la más rápida</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/find_route.py" />
-            <source>none: plain Python</source>
-            <translation>ninguno: solo Python</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/find_route.py" />
-            <source>shortest</source>
-            <translation>la más corta</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/find_route.py" />
-            <source>the fastest that is installed</source>
-            <translation>el más rápido de los instalados</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/find_route.py" />
@@ -6445,21 +6380,6 @@
         </message>
         <message>
             <location filename="../../plugin/processing/map_format.py" />
-            <source>binary: the text compressed</source>
-            <translation>binario: el texto comprimido</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/map_format.py" />
-            <source>compact: binary in columns</source>
-            <translation>compacto: binario en columnas</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/map_format.py" />
-            <source>text</source>
-            <translation>texto</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/map_format.py" />
             <source>text: lines that people and scripts read. binary: that text compressed, with a check sum. compact: the same map in columns of centimetres, also with a check sum (codec 2).</source>
             <translation>text: líneas que leen personas y scripts. binary: ese texto comprimido, con suma de verificación. compact: el mismo mapa en columnas de centímetros, también con suma de verificación (códec 2).</translation>
         </message>
@@ -6611,7 +6531,7 @@
         <message>
             <location filename="../../plugin/processing/map_window.py" />
             <source>ROTATION {degrees} is not finite: give a number.</source>
-            <translation type="unfinished" />
+            <translation>ROTATION {degrees} no es finito: dé un número.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/map_window.py" />
@@ -6694,12 +6614,12 @@
         <message>
             <location filename="../../plugin/processing/places.py" />
             <source>{name} {extent} is no extent: write 'xmin,xmax,ymin,ymax'.</source>
-            <translation type="unfinished" />
+            <translation>{name} {extent} no es una extensión: escriba 'xmin,xmax,ymin,ymax'.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/places.py" />
             <source>{name} {value} has no place in the CRS {crs}: give finite numbers, x or longitude first, and the CRS that they are in.</source>
-            <translation type="unfinished" />
+            <translation>{name} {value} no tiene lugar en el SRC {crs}: dé números finitos, primero la x o la longitud, y el SRC en que están.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/plan_rows.py" />
@@ -6961,7 +6881,7 @@
         <message>
             <location filename="../../plugin/processing/report_layout.py" />
             <source>The report</source>
-            <translation type="unfinished" />
+            <translation>El informe</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/report_layout.py" />
@@ -7044,7 +6964,7 @@
         <message>
             <location filename="../../plugin/processing/road_source.py" />
             <source>Layer {name}: none of its features is a road</source>
-            <translation type="unfinished" />
+            <translation>Capa {name}: ninguno de sus objetos es una vía</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/processing/road_source.py" />
@@ -7371,12 +7291,12 @@
         <message>
             <location filename="../../plugin/processing/whole_folder.py" />
             <source>{path} is a folder, where a file is to be written: choose another OUTPUT.</source>
-            <translation type="unfinished" />
+            <translation>{path} es una carpeta, donde se ha de escribir un archivo: elija otro OUTPUT.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/whole_folder.py" />
             <source>{what} cannot be written to {folder}: {reason}. Choose a folder that may be written to, and check the free space.</source>
-            <translation type="unfinished" />
+            <translation>{what} no se puede escribir en {folder}: {reason}. Elija una carpeta donde se pueda escribir, y compruebe el espacio libre.</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/roles/live_preview.py" />

@@ -4,51 +4,6 @@
     <context>
         <name>FleetSupervisor</name>
         <message>
-            <location filename="../../plugin/assignment_words.py" />
-            <source>collect them</source>
-            <translation>begyűjtés</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/assignment_words.py" />
-            <source>done as early as possible</source>
-            <translation>mielőbb kész legyen</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/assignment_words.py" />
-            <source>drive back</source>
-            <translation>menjenek vissza</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/assignment_words.py" />
-            <source>drive to a store</source>
-            <translation>menjenek raktárhoz</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/assignment_words.py" />
-            <source>fewest metres</source>
-            <translation>legkevesebb méter</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/assignment_words.py" />
-            <source>place them</source>
-            <translation>kihelyezés</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/assignment_words.py" />
-            <source>stay where they are</source>
-            <translation>maradjanak, ahol vannak</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/assignment_words.py" />
-            <source>the best that is installed</source>
-            <translation>a telepítettek közül a legjobb</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/assignment_words.py" />
-            <source>the preview: quick, not the best</source>
-            <translation>az előnézet: gyors, nem a legjobb</translation>
-        </message>
-        <message>
             <location filename="../../plugin/connection.py" />
             <source>The connection stopped on an internal fault ({name}: {error}). Press Connect to try again and report this text.</source>
             <translation>A kapcsolat belső hiba miatt leállt ({name}: {error}). Nyomja meg a Kapcsolódás gombot az újrapróbáláshoz, és jelentse ezt a szöveget.</translation>
@@ -1935,6 +1890,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/layout_dimensions.py" />
+            <source>After: {standard}</source>
+            <translation>Forrás: {standard}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/layout_dimensions.py" />
             <source>Degrees clockwise from north; the wheel over the map turns it too</source>
             <translation>Fok északtól az óramutató járása szerint; a görgő a térkép felett is forgatja</translation>
         </message>
@@ -3194,8 +3154,33 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>done as early as possible</source>
+            <translation>mielőbb kész legyen</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>drive back</source>
+            <translation>menjenek vissza</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>drive to a store</source>
+            <translation>menjenek raktárhoz</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>fewest metres</source>
+            <translation>legkevesebb méter</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
             <source>selected</source>
             <translation>kijelölt</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/settings_form.py" />
+            <source>stay where they are</source>
+            <translation>maradjanak, ahol vannak</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/queues/queue_edits.py" />
@@ -4916,13 +4901,13 @@
         </message>
         <message>
             <location filename="../../plugin/layout_words.py" />
-            <source>no standard: 18 m as European testers drive it</source>
-            <translation>nem szabvány: 18 m, ahogy az európai tesztelők hajtják</translation>
+            <source>none; 18 m as European testers drive it</source>
+            <translation>nincs; 18 m, ahogy az európai tesztelők hajtják</translation>
         </message>
         <message>
             <location filename="../../plugin/layout_words.py" />
-            <source>no standard: colours, width and spacing of Formula Student</source>
-            <translation>nem szabvány: a Formula Student színei, szélessége és távolságai</translation>
+            <source>none; colours, width and spacing of Formula Student</source>
+            <translation>nincs; színek, szélesség és távolság a Formula Student szerint</translation>
         </message>
         <message>
             <location filename="../../plugin/locator/robot_filter.py" />
@@ -5063,7 +5048,7 @@
         <message>
             <location filename="../../plugin/processing/assign_cones.py" />
             <source>CONES holds no cone: there is nothing to plan.</source>
-            <translation type="unfinished" />
+            <translation>CONES nem tartalmaz bóját: nincs mit tervezni.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/assign_cones.py" />
@@ -5436,11 +5421,6 @@
             <translation>A telephely vetülete nem ismert: adja meg a SITE_CRS-t, például EPSG:32633.</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/cone_layer.py" />
-            <source>There are no findings: their layer is empty, and is not loaded.</source>
-            <translation>Nincs találat: a rétegük üres, ezért nem töltődik be.</translation>
-        </message>
-        <message>
             <location filename="../../plugin/processing/cone_layout.py" />
             <source>&lt;p&gt;Places a layout of traffic cones, either at a &lt;b&gt;point&lt;/b&gt;, turned to a &lt;b&gt;heading&lt;/b&gt; (degrees clockwise from north), or along a &lt;b&gt;line&lt;/b&gt; such as a road's centreline, from &lt;b&gt;start&lt;/b&gt; metres after its beginning. The layer has an id, the order of placing, the heading of travel, the colour and the role of each cone.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Dimensions&lt;/b&gt; change the standard's: &lt;code&gt;vehicle_width=1.7; lane_offset=3&lt;/code&gt;. The log lists those of the layout with their values. A wrong name or value is refused with what there is.&lt;/p&gt; &lt;p&gt;Every cone is &lt;b&gt;checked&lt;/b&gt;: on one of the surfaces (of the allowed classes), away from obstacles and from other cones. What is wrong becomes a layer of findings with the cone's id and the reason; the cones are placed nevertheless.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:conelayout -- LAYOUT=iso3888_1 POINT="640432,5193486.2 [EPSG:32633]" \ HEADING=90 DIMENSIONS="vehicle_width=1.7; exit_length=15" SITE_CRS=EPSG:32633 CONES=cones.gpkg&lt;/pre&gt;</source>
             <translation>&lt;p&gt;Forgalomterelő bóják elrendezését helyezi el, vagy egy &lt;b&gt;ponton&lt;/b&gt;, adott &lt;b&gt;irányba&lt;/b&gt; fordítva (fok, északtól az óramutató járása szerint), vagy egy &lt;b&gt;vonal&lt;/b&gt;, például úttengely mentén, annak elejétől a &lt;b&gt;start&lt;/b&gt; méternyire. A rétegben minden bójának azonosítója, kihelyezési sorszáma, haladási iránya, színe és szerepe van.&lt;/p&gt; &lt;p&gt;A &lt;b&gt;méretek&lt;/b&gt; a szabványéit változtatják: &lt;code&gt;vehicle_width=1.7; lane_offset=3&lt;/code&gt;. A napló felsorolja az elrendezés méreteit értékeikkel. A rossz nevet vagy értéket visszautasítja, és megmondja, mi van.&lt;/p&gt; &lt;p&gt;Minden bóját &lt;b&gt;ellenőriz&lt;/b&gt;: valamelyik felületen van-e (a megengedett osztályokból), távol akadályoktól és más bójáktól. Ami nem jó, a leletek rétegébe kerül a bója azonosítójával és az okkal; a bóják ettől még elhelyeződnek.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:conelayout -- LAYOUT=iso3888_1 POINT="640432,5193486.2 [EPSG:32633]" \ HEADING=90 DIMENSIONS="vehicle_width=1.7; exit_length=15" SITE_CRS=EPSG:32633 CONES=cones.gpkg&lt;/pre&gt;</translation>
@@ -5513,7 +5493,7 @@
         <message>
             <location filename="../../plugin/processing/cone_layout.py" />
             <source>The feature {id} of {layer} has no line with a length and a place in the site's CRS: correct it, or choose another.</source>
-            <translation type="unfinished" />
+            <translation>A(z) {layer} {id}. elemének nincs olyan vonala, amelynek hossza és a telephely vetületében helye van: javítsa ki, vagy válasszon másikat.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/cone_layout.py" />
@@ -5548,7 +5528,7 @@
         <message>
             <location filename="../../plugin/processing/driving_wishes.py" />
             <source>No road has the surface {surfaces}: the roads have {there}.</source>
-            <translation type="unfinished" />
+            <translation>Egyik útnak sincs {surfaces} felülete: az utaké ez: {there}.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/driving_wishes.py" />
@@ -5558,7 +5538,7 @@
         <message>
             <location filename="../../plugin/processing/driving_wishes.py" />
             <source>Roads at least this wide, and as wide as the robot [m]</source>
-            <translation type="unfinished" />
+            <translation>Legalább ilyen és a robotnál nem keskenyebb utak [m]</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/driving_wishes.py" />
@@ -5647,21 +5627,6 @@
         </message>
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
-            <source>Nav2 keepout mask</source>
-            <translation>Nav2 tiltottterület-maszk</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/export_navigation_map.py" />
-            <source>Nav2 occupancy grid</source>
-            <translation>Nav2 foglaltsági rács</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/export_navigation_map.py" />
-            <source>Nav2 speed mask</source>
-            <translation>Nav2 sebességmaszk</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/export_navigation_map.py" />
             <source>Robots drive over what is lower than [m]</source>
             <translation>A robotok áthajtanak azon, ami ennél alacsonyabb [m]</translation>
         </message>
@@ -5683,7 +5648,7 @@
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
             <source>The navigation map</source>
-            <translation type="unfinished" />
+            <translation>A navigációs térkép</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
@@ -5702,18 +5667,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
-            <source>occupied</source>
-            <translation>foglalt</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/export_navigation_map.py" />
             <source>of 0 or more</source>
             <translation>0 vagy nagyobb</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/export_navigation_map.py" />
-            <source>unknown</source>
-            <translation>ismeretlen</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
@@ -5927,7 +5882,7 @@
         <message>
             <location filename="../../plugin/processing/export_robot_map_tiles.py" />
             <source>The set of tiles</source>
-            <translation type="unfinished" />
+            <translation>A csempék készlete</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/export_robot_map_tiles.py" />
@@ -6030,26 +5985,6 @@
             <location filename="../../plugin/processing/find_route.py" />
             <source>Time on the route [s]</source>
             <translation>Idő az útvonalon [s]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/find_route.py" />
-            <source>fastest</source>
-            <translation>leggyorsabb</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/find_route.py" />
-            <source>none: plain Python</source>
-            <translation>egyik sem: csak Python</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/find_route.py" />
-            <source>shortest</source>
-            <translation>legrövidebb</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/find_route.py" />
-            <source>the fastest that is installed</source>
-            <translation>a telepítettek közül a leggyorsabb</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/find_route.py" />
@@ -6410,21 +6345,6 @@
         </message>
         <message>
             <location filename="../../plugin/processing/map_format.py" />
-            <source>binary: the text compressed</source>
-            <translation>bináris: a szöveg tömörítve</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/map_format.py" />
-            <source>compact: binary in columns</source>
-            <translation>tömör: bináris oszlopokban</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/map_format.py" />
-            <source>text</source>
-            <translation>szöveg</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/map_format.py" />
             <source>text: lines that people and scripts read. binary: that text compressed, with a check sum. compact: the same map in columns of centimetres, also with a check sum (codec 2).</source>
             <translation>text: sorok, amelyeket emberek és szkriptek olvasnak. binary: ez a szöveg tömörítve, ellenőrző összeggel. compact: ugyanaz a térkép centiméterek oszlopaiban, szintén ellenőrző összeggel (2. kodek).</translation>
         </message>
@@ -6576,7 +6496,7 @@
         <message>
             <location filename="../../plugin/processing/map_window.py" />
             <source>ROTATION {degrees} is not finite: give a number.</source>
-            <translation type="unfinished" />
+            <translation>ROTATION {degrees} nem véges: adjon meg számot.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/map_window.py" />
@@ -6658,12 +6578,12 @@
         <message>
             <location filename="../../plugin/processing/places.py" />
             <source>{name} {extent} is no extent: write 'xmin,xmax,ymin,ymax'.</source>
-            <translation type="unfinished" />
+            <translation>{name} {extent} nem kiterjedés: írja így: 'xmin,xmax,ymin,ymax'.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/places.py" />
             <source>{name} {value} has no place in the CRS {crs}: give finite numbers, x or longitude first, and the CRS that they are in.</source>
-            <translation type="unfinished" />
+            <translation>{name} {value} helye nem létezik a(z) {crs} vetületben: adjon meg véges számokat, elöl az x-et vagy a hosszúságot, és azt a vetületet, amelyben értendők.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/plan_rows.py" />
@@ -6921,7 +6841,7 @@
         <message>
             <location filename="../../plugin/processing/report_layout.py" />
             <source>The report</source>
-            <translation type="unfinished" />
+            <translation>A jelentés</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/report_layout.py" />
@@ -7003,7 +6923,7 @@
         <message>
             <location filename="../../plugin/processing/road_source.py" />
             <source>Layer {name}: none of its features is a road</source>
-            <translation type="unfinished" />
+            <translation>{name} réteg: egyik eleme sem út</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/processing/road_source.py" />
@@ -7326,12 +7246,12 @@
         <message>
             <location filename="../../plugin/processing/whole_folder.py" />
             <source>{path} is a folder, where a file is to be written: choose another OUTPUT.</source>
-            <translation type="unfinished" />
+            <translation>{path} egy mappa, ahová fájl kerülne: válasszon másik OUTPUT-ot.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/whole_folder.py" />
             <source>{what} cannot be written to {folder}: {reason}. Choose a folder that may be written to, and check the free space.</source>
-            <translation type="unfinished" />
+            <translation>{what} nem írható ide: {folder}: {reason}. Válasszon írható mappát, és ellenőrizze a szabad helyet.</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/roles/live_preview.py" />
