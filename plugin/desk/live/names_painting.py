@@ -36,9 +36,9 @@ SPOTS = 10_000
 """More than any screen has from top to bottom."""
 STATE_LETTERS = 14.0
 """Letters that a robot's state and age take at most, but for hours and days."""
-_URGENT = np.array([5, 3, 1, 5], dtype=np.int8)
-"""The rank of each of STATES: the lost before the stale before all others, each with one before it for those
-that had their texts shown already. Small numbers: numpy sorts them faster."""
+_URGENT = np.array([5, 3, 1, 7], dtype=np.int8)
+"""The rank of each of STATES: the lost before the stale before the fresh before those that are off, each with
+one before it for those that had their texts shown already. Small numbers: numpy sorts them faster."""
 
 
 class NamesPainter:

@@ -66,6 +66,11 @@ def test_what_is_written_follows_what_becomes_of_a_robot(canvas, site):
     assert written_after(canvas, site, fresh, later) == [["r1", "· lost 1 min"]]
 
 
+def test_of_two_at_one_place_the_live_one_is_named(canvas, site):
+    off, live = (60, 50, 0.0, RobotState.OFFLINE), (60, 50, 0.0, RobotState.FRESH)
+    assert written_after(canvas, site, scene_of(off), scene_of(off, live, now=100.3)) == [["r2"]]
+
+
 def test_what_is_written_beside_a_robot_is_never_that_of_another(canvas, site):
     two = scene_of((60, 50, 0.0, RobotState.FRESH), (20, 20, 0.0, RobotState.FRESH))
     others = scene_of((60, 50, 0.0, RobotState.FRESH), now=100.01)
