@@ -22,6 +22,9 @@ class CommandBook:
     def __len__(self) -> int:
         return len(self._reports)
 
+    def __contains__(self, command: str) -> bool:
+        return command in self._reports
+
     def __iter__(self) -> Iterator[CommandReport]:
         return iter(self._reports.values())
 
@@ -41,12 +44,13 @@ class CommandBook:
                 late, newest = late or asked_at(report) < newest, max(newest, asked_at(report))
             self._reports[report.command] = report
             changed.append(report)
+        if not changed:
+            return []
         if late:
             # What was asked for before this desk came is told after what came since.
             self._reports = dict(sorted(self._reports.items(), key=lambda item: asked_at(item[1])))
         self._forget_oldest()
-        if changed:
-            self._look_through()
+        self._look_through()
         return [report for report in changed if report.command in self._reports]
 
     def clear(self) -> None:

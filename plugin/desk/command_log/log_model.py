@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import bisect
-from collections.abc import Iterable
-from itertools import groupby
+from collections.abc import Container, Iterable
+from itertools import count, groupby
 
 from qgis.PyQt.QtCore import QAbstractItemModel, QModelIndex, QObject, Qt
 from qgis.PyQt.QtGui import QFont
@@ -18,6 +18,16 @@ from .entries import Filter, cells, step_cells
 COLUMNS = (tr("Time"), tr("Command"), tr("State"), tr("Details"))
 STATE = 2
 COMMAND_ROLE = Qt.ItemDataRole.UserRole
+ROLES = frozenset(
+    {
+        COMMAND_ROLE,
+        Qt.ItemDataRole.DisplayRole,
+        Qt.ItemDataRole.ToolTipRole,
+        Qt.ItemDataRole.ForegroundRole,
+        Qt.ItemDataRole.FontRole,
+    }
+)
+"""What there is to be told of a cell; a view asks for as much again, of each one that it paints."""
 PAGE = 200
 """Commands that a view is told of at first, and each time that it comes to the end of those."""
 
@@ -37,6 +47,7 @@ class LogModel(QAbstractItemModel):
         """How many of those a view is told of."""
         self._rows: dict[str, int] | None = {}
         """The row of each command; None where it has to be counted anew."""
+        self._next_number = count(1)
         self._numbers: dict[str, int] = {}
         self._by_number: dict[int, str] = {}
         self._bold = QFont()
@@ -84,6 +95,8 @@ class LogModel(QAbstractItemModel):
         return None
 
     def data(self, index: QModelIndex, role: int = 0) -> object:
+        if role not in ROLES:
+            return None
         report = self.report_at(index)
         if report is None:
             return None
@@ -138,6 +151,12 @@ class LogModel(QAbstractItemModel):
             self._remove(row)
         self._insert(new)
         return [report.command for report in new]
+
+    def keep(self, commands: Container[str]) -> None:
+        """List none that is not among ``commands`` any more."""
+        for row in reversed(range(len(self._shown))):
+            if self._shown[row].command not in commands:
+                self._remove(row)
 
     def shorten(self) -> None:
         """Tell a view of the first page only, as long as it has not asked for more than comes in a while."""
@@ -202,15 +221,18 @@ class LogModel(QAbstractItemModel):
         if is_told:
             self.beginRemoveRows(QModelIndex(), row, row)
             self._told -= 1
-        del self._shown[row]
+        command = self._shown.pop(row).command
         self._rows = None
         if is_told:
             self.endRemoveRows()
+        number = self._numbers.pop(command, None)
+        if number is not None:
+            del self._by_number[number]
 
     def _number(self, command: str) -> int:
         number = self._numbers.get(command)
         if number is None:
-            number = self._numbers[command] = len(self._numbers) + 1
+            number = self._numbers[command] = next(self._next_number)
             self._by_number[number] = command
         return number
 

@@ -32,7 +32,7 @@ EVERY_HALF = EVERY_SECOND // 2
 PART_OF_THE_WINDOW = 0.5
 """The part of the window's time that painting may take; on a slow computer frames come less often."""
 ZOOM_METRES = 30.0
-NEW_PLANS = 100
+NEW_PLANS = 50
 """Plans that are made for one frame: a desk that connects is told of a thousand at once."""
 
 
@@ -52,6 +52,7 @@ class LiveView(QObject):
         self._plans = Plans()
         self._trails = Trails()
         self.following = Whom.NOBODY
+        self._by_layer = False
         self.layer_every = EVERY_SECOND
         """After how many pulls the layer of robots is written anew."""
         self.overlay = FleetOverlay(desk.canvas, self._trails)
@@ -90,6 +91,8 @@ class LiveView(QObject):
         if self._desk.site is None:
             self.overlay.show_scene(None)
             return
+        # Without the layer on the map there would be no robots at all.
+        self.overlay.draw_arrows(not (self._by_layer and self.layer.layer in self._desk.canvas.layers()))
         try:
             if self._placement is None:
                 self._placement = self._desk.placement()
@@ -100,6 +103,11 @@ class LiveView(QObject):
         self._last_frame = time.perf_counter()
         self._took = self._last_frame - began
         self.shown = self._desk.picture.generation, self._desk.picture.revision
+
+    def draw_by_layer(self, wanted: bool) -> None:
+        """Let the style of the layer of robots draw them, where that is on the map, in place of arrows."""
+        self._by_layer = wanted
+        self._frame.start()
 
     def zoom_to(self, *robots: str) -> None:
         """Show ``robots`` and their surroundings."""
@@ -156,7 +164,7 @@ class LiveView(QObject):
             self.layer.clear()
             self._trails.clear()
         self._placement = None
-        self.show_now()
+        self._frame.start()
 
     def _way_changed(self) -> None:
         """Place everything anew: the map has another CRS, or coordinates come to it by other operations."""

@@ -20,13 +20,13 @@ BACK = 5.0
 class Plan:
     """One robot's task: (n, 2) ``points`` in metres of the site frame, the last one the target.
 
-    ``along`` are the metres from the first point to each. A target without a way has one point.
+    A target without a way has one point. What is reckoned along a way is so when it is first asked for: of
+    many plans only those of selected robots are.
     """
 
     command: str
     robot: str
     points: Points
-    along: Points
     cone: bool
 
     @property
@@ -43,6 +43,11 @@ class Plan:
     def lengths(self) -> Points:
         """Metres of each step, (n - 1,), more than nothing."""
         return np.maximum(np.hypot(*self.steps.T), 1e-9)
+
+    @cached_property
+    def along(self) -> Points:
+        """Metres along the way from its first point to each, (n,)."""
+        return np.concatenate([[0.0], np.cumsum(np.hypot(*self.steps.T))])
 
 
 class Plans:
@@ -98,5 +103,4 @@ def _plan(task: CommandReport) -> Plan | None:
         return None
     if len(points) == 0 or not np.isfinite(points).all():
         return None
-    along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
-    return Plan(task.command, task.robot, points, along, bool(task.params.get("cone")))
+    return Plan(task.command, task.robot, points, bool(task.params.get("cone")))

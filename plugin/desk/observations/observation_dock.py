@@ -53,7 +53,6 @@ class ObservationDock(ActionDock):
         self._lay_out()
         self._timer = QTimer(self)
         self._timer.setSingleShot(True)
-        self._timer.setInterval(SHOW_AFTER_MS)
         self._timer.timeout.connect(self.refresh)
         self._wire()
         self.refresh()
@@ -111,10 +110,10 @@ class ObservationDock(ActionDock):
             self._desk.complained.emit(str(error))
 
     def _wire(self) -> None:
-        self._desk.observations_changed.connect(lambda _: self._timer.isActive() or self._timer.start())
-        self._desk.site_changed.connect(self.refresh)
+        self._desk.observations_changed.connect(self._refresh_later)
+        self._desk.site_changed.connect(lambda: self._timer.start(0))
         self.thumbnails.made.connect(self.model.picture_came)
-        self.thumbnails.made.connect(lambda _: self._timer.isActive() or self._timer.start())
+        self.thumbnails.made.connect(self._refresh_later)
         self.reviewed.toggled.connect(self.refresh)
         self.list.selectionModel().currentChanged.connect(lambda *_: self._show_chosen())
         self.list.doubleClicked.connect(lambda index: self.go_to(index.data(NUMBER)))
@@ -122,6 +121,10 @@ class ObservationDock(ActionDock):
         self.form.wanted.connect(self._review)
         self.feed.reviewed.connect(self._reviewed)
         self.feed.refused.connect(self._refused)
+
+    def _refresh_later(self, *_: object) -> None:
+        if not self._timer.isActive():
+            self._timer.start(SHOW_AFTER_MS)
 
     def _review(self, request: ReviewObservation) -> None:
         try:
