@@ -18,13 +18,15 @@ RANGES = {"positions_rate": (1.0, 20.0), "layer_seconds": (1.0, 60.0), "robot_si
 class Preferences:
     """``positions_rate`` is how many times a second positions are asked for at most, from the next connection
     on; ``layer_seconds`` is after how many seconds the layer of robots is written anew; ``robot_size`` is how
-    large robots are drawn, 1 as they come; ``folder`` is where files are written to unless another is chosen,
-    empty for the user's documents.
+    large robots are drawn, 1 as they come; ``drawn_by_layer`` is whether the layer of robots draws them, in
+    its style, in place of the live map's arrows; ``folder`` is where files are written to unless another is
+    chosen, empty for the user's documents.
     """
 
     positions_rate: float = 10.0
     layer_seconds: float = 1.0
     robot_size: float = 1.0
+    drawn_by_layer: bool = False
     folder: str = ""
 
 
@@ -39,7 +41,11 @@ def read_preferences() -> Preferences:
             continue
         if least <= number <= most:
             values[name] = number
-    return Preferences(**values, folder=str(settings.value(f"{GROUP}/folder", "") or ""))
+    return Preferences(
+        **values,
+        drawn_by_layer=str(settings.value(f"{GROUP}/drawn_by_layer", "")).lower() == "true",
+        folder=str(settings.value(f"{GROUP}/folder", "") or ""),
+    )
 
 
 def write_preferences(preferences: Preferences) -> None:

@@ -4,6 +4,51 @@
     <context>
         <name>FleetSupervisor</name>
         <message>
+            <location filename="../../plugin/assignment_words.py" />
+            <source>collect them</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/assignment_words.py" />
+            <source>done as early as possible</source>
+            <translation>acabar al més aviat possible</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/assignment_words.py" />
+            <source>drive back</source>
+            <translation>tornen</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/assignment_words.py" />
+            <source>drive to a store</source>
+            <translation>van a un magatzem</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/assignment_words.py" />
+            <source>fewest metres</source>
+            <translation>menys metres</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/assignment_words.py" />
+            <source>place them</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/assignment_words.py" />
+            <source>stay where they are</source>
+            <translation>queden on són</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/assignment_words.py" />
+            <source>the best that is installed</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/assignment_words.py" />
+            <source>the preview: quick, not the best</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
             <location filename="../../plugin/connection.py" />
             <source>The connection stopped on an internal fault ({name}: {error}). Press Connect to try again and report this text.</source>
             <translation>La connexió s'ha aturat per un error intern ({name}: {error}). Premeu Connecta per tornar-ho a provar i comuniqueu aquest text.</translation>
@@ -1898,11 +1943,6 @@
         </message>
         <message>
             <location filename="../../plugin/desk/layout_dimensions.py" />
-            <source>After: {standard}</source>
-            <translation>Segons: {standard}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/layout_dimensions.py" />
             <source>Degrees clockwise from north; the wheel over the map turns it too</source>
             <translation>Graus en sentit horari des del nord; la roda sobre el mapa també la gira</translation>
         </message>
@@ -2299,6 +2339,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/options/preferences_form.py" />
+            <source>Arrows show how each robot is, and move with every position. The layer shows what its style says, as often as it is written anew; while it is not on the map there are arrows</source>
+            <translation>Les fletxes mostren com està cada robot i es mouen amb cada posició. La capa mostra el que diu el seu estil, tan sovint com es torna a escriure; mentre no és al mapa hi ha fletxes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/options/preferences_form.py" />
             <source>At most; from the next connection on. Fewer spare a slow network</source>
             <translation>Com a màxim; a partir de la propera connexió. Menys descarreguen una xarxa lenta</translation>
         </message>
@@ -2314,8 +2359,23 @@
         </message>
         <message>
             <location filename="../../plugin/desk/options/preferences_form.py" />
+            <source>Robots are &amp;drawn by</source>
+            <translation>Qui &amp;dibuixa els robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/options/preferences_form.py" />
             <source>The layer Robots (live): attribute table, labels, expressions. The live map goes its own way</source>
-            <translation>La capa Robots (live): taula d'atributs, etiquetes, expressions. El mapa en viu va per una altra banda</translation>
+            <translation>La capa Robots (en directe): taula d'atributs, etiquetes, expressions. El mapa en viu va per una altra banda</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/options/preferences_form.py" />
+            <source>the layer Robots (live), in its style</source>
+            <translation>la capa Robots (en directe), amb el seu estil</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/options/preferences_form.py" />
+            <source>the live map: arrows</source>
+            <translation>el mapa en viu: fletxes</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/options/preferences_form.py" />
@@ -3173,33 +3233,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/settings_form.py" />
-            <source>done as early as possible</source>
-            <translation>acabar al més aviat possible</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/settings_form.py" />
-            <source>drive back</source>
-            <translation>tornen</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/settings_form.py" />
-            <source>drive to a store</source>
-            <translation>van a un magatzem</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/settings_form.py" />
-            <source>fewest metres</source>
-            <translation>menys metres</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/settings_form.py" />
             <source>selected</source>
             <translation>seleccionats</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/settings_form.py" />
-            <source>stay where they are</source>
-            <translation>queden on són</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/queues/queue_edits.py" />
@@ -4924,13 +4959,13 @@
         </message>
         <message>
             <location filename="../../plugin/layout_words.py" />
-            <source>none; 18 m as European testers drive it</source>
-            <translation>cap; 18 m, com la condueixen els provadors europeus</translation>
+            <source>no standard: 18 m as European testers drive it</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/layout_words.py" />
-            <source>none; colours, width and spacing of Formula Student</source>
-            <translation>cap; colors, amplada i separació de Formula Student</translation>
+            <source>no standard: colours, width and spacing of Formula Student</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/locator/robot_filter.py" />
@@ -5452,6 +5487,11 @@
             <translation>El SRC del recinte no es coneix: doneu SITE_CRS, com ara EPSG:32633.</translation>
         </message>
         <message>
+            <location filename="../../plugin/processing/cone_layer.py" />
+            <source>There are no findings: their layer is empty, and is not loaded.</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
             <location filename="../../plugin/processing/cone_layout.py" />
             <source>&lt;p&gt;Places a layout of traffic cones, either at a &lt;b&gt;point&lt;/b&gt;, turned to a &lt;b&gt;heading&lt;/b&gt; (degrees clockwise from north), or along a &lt;b&gt;line&lt;/b&gt; such as a road's centreline, from &lt;b&gt;start&lt;/b&gt; metres after its beginning. The layer has an id, the order of placing, the heading of travel, the colour and the role of each cone.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Dimensions&lt;/b&gt; change the standard's: &lt;code&gt;vehicle_width=1.7; lane_offset=3&lt;/code&gt;. The log lists those of the layout with their values. A wrong name or value is refused with what there is.&lt;/p&gt; &lt;p&gt;Every cone is &lt;b&gt;checked&lt;/b&gt;: on one of the surfaces (of the allowed classes), away from obstacles and from other cones. What is wrong becomes a layer of findings with the cone's id and the reason; the cones are placed nevertheless.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:conelayout -- LAYOUT=iso3888_1 POINT="640432,5193486.2 [EPSG:32633]" \ HEADING=90 DIMENSIONS="vehicle_width=1.7; exit_length=15" SITE_CRS=EPSG:32633 CONES=cones.gpkg&lt;/pre&gt;</source>
             <translation>&lt;p&gt;Col·loca una disposició de cons de trànsit, o bé en un &lt;b&gt;punt&lt;/b&gt;, girada cap a un &lt;b&gt;rumb&lt;/b&gt; (graus en sentit horari des del nord), o bé al llarg d'una &lt;b&gt;línia&lt;/b&gt; com ara un eix de via, a partir de &lt;b&gt;start&lt;/b&gt; metres del seu començament. La capa té de cada con un identificador, l'ordre de col·locació, el rumb de circulació, el color i el paper.&lt;/p&gt; &lt;p&gt;Les &lt;b&gt;dimensions&lt;/b&gt; canvien les de la norma: &lt;code&gt;vehicle_width=1.7; lane_offset=3&lt;/code&gt;. El registre llista les de la disposició amb els seus valors. Un nom o valor equivocat es refusa dient què hi ha.&lt;/p&gt; &lt;p&gt;Cada con es &lt;b&gt;comprova&lt;/b&gt;: en una de les superfícies (de les classes permeses), lluny d'obstacles i d'altres cons. El que no està bé va a una capa de troballes amb l'identificador del con i el motiu; els cons es col·loquen igualment.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:conelayout -- LAYOUT=iso3888_1 POINT="640432,5193486.2 [EPSG:32633]" \ HEADING=90 DIMENSIONS="vehicle_width=1.7; exit_length=15" SITE_CRS=EPSG:32633 CONES=cones.gpkg&lt;/pre&gt;</translation>
@@ -5658,6 +5698,21 @@
         </message>
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>Nav2 keepout mask</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>Nav2 occupancy grid</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>Nav2 speed mask</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
             <source>Robots drive over what is lower than [m]</source>
             <translation>Els robots passen per sobre del que és més baix que [m]</translation>
         </message>
@@ -5698,8 +5753,18 @@
         </message>
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>occupied</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
             <source>of 0 or more</source>
             <translation>de 0 o més</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>unknown</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
@@ -6019,6 +6084,26 @@
             <location filename="../../plugin/processing/find_route.py" />
             <source>Time on the route [s]</source>
             <translation>Temps de la ruta [s]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>fastest</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>none: plain Python</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>shortest</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>the fastest that is installed</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/processing/find_route.py" />
@@ -6377,6 +6462,21 @@
             <location filename="../../plugin/processing/map_format.py" />
             <source>Format (compact: binary in columns, about a third of binary)</source>
             <translation>Format (compact: binari en columnes, un terç del binari)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_format.py" />
+            <source>binary: the text compressed</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_format.py" />
+            <source>compact: binary in columns</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_format.py" />
+            <source>text</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/processing/map_format.py" />

@@ -4,6 +4,51 @@
     <context>
         <name>FleetSupervisor</name>
         <message>
+            <location filename="../../plugin/assignment_words.py" />
+            <source>collect them</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/assignment_words.py" />
+            <source>done as early as possible</source>
+            <translation>acabar lo antes posible</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/assignment_words.py" />
+            <source>drive back</source>
+            <translation>vuelven</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/assignment_words.py" />
+            <source>drive to a store</source>
+            <translation>van a un almacén</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/assignment_words.py" />
+            <source>fewest metres</source>
+            <translation>menos metros</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/assignment_words.py" />
+            <source>place them</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/assignment_words.py" />
+            <source>stay where they are</source>
+            <translation>quedan donde están</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/assignment_words.py" />
+            <source>the best that is installed</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/assignment_words.py" />
+            <source>the preview: quick, not the best</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
             <location filename="../../plugin/connection.py" />
             <source>The connection stopped on an internal fault ({name}: {error}). Press Connect to try again and report this text.</source>
             <translation>La conexión se detuvo por un error interno ({name}: {error}). Pulse Conectar para volver a intentarlo y comunique este texto.</translation>
@@ -1898,11 +1943,6 @@
         </message>
         <message>
             <location filename="../../plugin/desk/layout_dimensions.py" />
-            <source>After: {standard}</source>
-            <translation>Según: {standard}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/layout_dimensions.py" />
             <source>Degrees clockwise from north; the wheel over the map turns it too</source>
             <translation>Grados en sentido horario desde el norte; la rueda sobre el mapa también la gira</translation>
         </message>
@@ -2299,6 +2339,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/options/preferences_form.py" />
+            <source>Arrows show how each robot is, and move with every position. The layer shows what its style says, as often as it is written anew; while it is not on the map there are arrows</source>
+            <translation>Las flechas muestran cómo está cada robot y se mueven con cada posición. La capa muestra lo que dice su estilo, tan a menudo como se vuelve a escribir; mientras no está en el mapa hay flechas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/options/preferences_form.py" />
             <source>At most; from the next connection on. Fewer spare a slow network</source>
             <translation>Como máximo; desde la próxima conexión. Menos alivian una red lenta</translation>
         </message>
@@ -2314,8 +2359,23 @@
         </message>
         <message>
             <location filename="../../plugin/desk/options/preferences_form.py" />
+            <source>Robots are &amp;drawn by</source>
+            <translation>Quién &amp;dibuja los robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/options/preferences_form.py" />
             <source>The layer Robots (live): attribute table, labels, expressions. The live map goes its own way</source>
-            <translation>La capa Robots (live): tabla de atributos, etiquetas, expresiones. El mapa en vivo va por su cuenta</translation>
+            <translation>La capa Robots (en vivo): tabla de atributos, etiquetas, expresiones. El mapa en vivo va por su cuenta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/options/preferences_form.py" />
+            <source>the layer Robots (live), in its style</source>
+            <translation>la capa Robots (en vivo), con su estilo</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/options/preferences_form.py" />
+            <source>the live map: arrows</source>
+            <translation>el mapa en vivo: flechas</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/options/preferences_form.py" />
@@ -3173,33 +3233,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/settings_form.py" />
-            <source>done as early as possible</source>
-            <translation>acabar lo antes posible</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/settings_form.py" />
-            <source>drive back</source>
-            <translation>vuelven</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/settings_form.py" />
-            <source>drive to a store</source>
-            <translation>van a un almacén</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/settings_form.py" />
-            <source>fewest metres</source>
-            <translation>menos metros</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/settings_form.py" />
             <source>selected</source>
             <translation>seleccionados</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/settings_form.py" />
-            <source>stay where they are</source>
-            <translation>quedan donde están</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/queues/queue_edits.py" />
@@ -4924,13 +4959,13 @@
         </message>
         <message>
             <location filename="../../plugin/layout_words.py" />
-            <source>none; 18 m as European testers drive it</source>
-            <translation>ninguna; 18 m, como la conducen los probadores europeos</translation>
+            <source>no standard: 18 m as European testers drive it</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/layout_words.py" />
-            <source>none; colours, width and spacing of Formula Student</source>
-            <translation>ninguna; colores, anchura y separación de Formula Student</translation>
+            <source>no standard: colours, width and spacing of Formula Student</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/locator/robot_filter.py" />
@@ -5452,6 +5487,11 @@
             <translation>El SRC del recinto no se conoce: dé SITE_CRS, como EPSG:32633.</translation>
         </message>
         <message>
+            <location filename="../../plugin/processing/cone_layer.py" />
+            <source>There are no findings: their layer is empty, and is not loaded.</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
             <location filename="../../plugin/processing/cone_layout.py" />
             <source>&lt;p&gt;Places a layout of traffic cones, either at a &lt;b&gt;point&lt;/b&gt;, turned to a &lt;b&gt;heading&lt;/b&gt; (degrees clockwise from north), or along a &lt;b&gt;line&lt;/b&gt; such as a road's centreline, from &lt;b&gt;start&lt;/b&gt; metres after its beginning. The layer has an id, the order of placing, the heading of travel, the colour and the role of each cone.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Dimensions&lt;/b&gt; change the standard's: &lt;code&gt;vehicle_width=1.7; lane_offset=3&lt;/code&gt;. The log lists those of the layout with their values. A wrong name or value is refused with what there is.&lt;/p&gt; &lt;p&gt;Every cone is &lt;b&gt;checked&lt;/b&gt;: on one of the surfaces (of the allowed classes), away from obstacles and from other cones. What is wrong becomes a layer of findings with the cone's id and the reason; the cones are placed nevertheless.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:conelayout -- LAYOUT=iso3888_1 POINT="640432,5193486.2 [EPSG:32633]" \ HEADING=90 DIMENSIONS="vehicle_width=1.7; exit_length=15" SITE_CRS=EPSG:32633 CONES=cones.gpkg&lt;/pre&gt;</source>
             <translation>&lt;p&gt;Coloca una disposición de conos de tráfico, o bien en un &lt;b&gt;punto&lt;/b&gt;, girada hacia un &lt;b&gt;rumbo&lt;/b&gt; (grados en sentido horario desde el norte), o bien a lo largo de una &lt;b&gt;línea&lt;/b&gt; como un eje de vía, a partir de &lt;b&gt;start&lt;/b&gt; metros de su comienzo. La capa tiene de cada cono un identificador, el orden de colocación, el rumbo de circulación, el color y el papel.&lt;/p&gt; &lt;p&gt;Las &lt;b&gt;dimensiones&lt;/b&gt; cambian las de la norma: &lt;code&gt;vehicle_width=1.7; lane_offset=3&lt;/code&gt;. El registro lista las de la disposición con sus valores. Un nombre o valor equivocado se rechaza diciendo qué hay.&lt;/p&gt; &lt;p&gt;Cada cono se &lt;b&gt;comprueba&lt;/b&gt;: en una de las superficies (de las clases permitidas), lejos de obstáculos y de otros conos. Lo que no está bien va a una capa de hallazgos con el identificador del cono y el motivo; los conos se colocan de todos modos.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:conelayout -- LAYOUT=iso3888_1 POINT="640432,5193486.2 [EPSG:32633]" \ HEADING=90 DIMENSIONS="vehicle_width=1.7; exit_length=15" SITE_CRS=EPSG:32633 CONES=cones.gpkg&lt;/pre&gt;</translation>
@@ -5658,6 +5698,21 @@
         </message>
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>Nav2 keepout mask</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>Nav2 occupancy grid</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>Nav2 speed mask</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
             <source>Robots drive over what is lower than [m]</source>
             <translation>Los robots pasan sobre lo más bajo que [m]</translation>
         </message>
@@ -5698,8 +5753,18 @@
         </message>
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>occupied</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
             <source>of 0 or more</source>
             <translation>de 0 o más</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>unknown</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
@@ -6019,6 +6084,26 @@
             <location filename="../../plugin/processing/find_route.py" />
             <source>Time on the route [s]</source>
             <translation>Tiempo de la ruta [s]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>fastest</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>none: plain Python</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>shortest</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>the fastest that is installed</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/processing/find_route.py" />
@@ -6377,6 +6462,21 @@
             <location filename="../../plugin/processing/map_format.py" />
             <source>Format (compact: binary in columns, about a third of binary)</source>
             <translation>Formato (compact: binario en columnas, un tercio del binario)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_format.py" />
+            <source>binary: the text compressed</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_format.py" />
+            <source>compact: binary in columns</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_format.py" />
+            <source>text</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/processing/map_format.py" />

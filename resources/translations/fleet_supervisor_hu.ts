@@ -4,6 +4,51 @@
     <context>
         <name>FleetSupervisor</name>
         <message>
+            <location filename="../../plugin/assignment_words.py" />
+            <source>collect them</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/assignment_words.py" />
+            <source>done as early as possible</source>
+            <translation>mielőbb kész legyen</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/assignment_words.py" />
+            <source>drive back</source>
+            <translation>menjenek vissza</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/assignment_words.py" />
+            <source>drive to a store</source>
+            <translation>menjenek raktárhoz</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/assignment_words.py" />
+            <source>fewest metres</source>
+            <translation>legkevesebb méter</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/assignment_words.py" />
+            <source>place them</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/assignment_words.py" />
+            <source>stay where they are</source>
+            <translation>maradjanak, ahol vannak</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/assignment_words.py" />
+            <source>the best that is installed</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/assignment_words.py" />
+            <source>the preview: quick, not the best</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
             <location filename="../../plugin/connection.py" />
             <source>The connection stopped on an internal fault ({name}: {error}). Press Connect to try again and report this text.</source>
             <translation>A kapcsolat belső hiba miatt leállt ({name}: {error}). Nyomja meg a Kapcsolódás gombot az újrapróbáláshoz, és jelentse ezt a szöveget.</translation>
@@ -1890,11 +1935,6 @@
         </message>
         <message>
             <location filename="../../plugin/desk/layout_dimensions.py" />
-            <source>After: {standard}</source>
-            <translation>Forrás: {standard}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/layout_dimensions.py" />
             <source>Degrees clockwise from north; the wheel over the map turns it too</source>
             <translation>Fok északtól az óramutató járása szerint; a görgő a térkép felett is forgatja</translation>
         </message>
@@ -2289,6 +2329,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/options/preferences_form.py" />
+            <source>Arrows show how each robot is, and move with every position. The layer shows what its style says, as often as it is written anew; while it is not on the map there are arrows</source>
+            <translation>A nyilak mutatják, hogyan van egy-egy robot, és minden helyzettel mozognak. A réteg azt mutatja, amit a stílusa mond, olyan gyakran, ahogy újraíródik; amíg nincs a térképen, nyilak láthatók</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/options/preferences_form.py" />
             <source>At most; from the next connection on. Fewer spare a slow network</source>
             <translation>Legfeljebb; a következő kapcsolattól érvényes. A kevesebb kíméli a lassú hálózatot</translation>
         </message>
@@ -2304,8 +2349,23 @@
         </message>
         <message>
             <location filename="../../plugin/desk/options/preferences_form.py" />
+            <source>Robots are &amp;drawn by</source>
+            <translation>Robotok &amp;rajzolója</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/options/preferences_form.py" />
             <source>The layer Robots (live): attribute table, labels, expressions. The live map goes its own way</source>
-            <translation>A Robots (live) réteg: attribútumtábla, címkék, kifejezések. Az élő térkép ettől független</translation>
+            <translation>A Robotok (élő) réteg: attribútumtábla, címkék, kifejezések. Az élő térkép ettől független</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/options/preferences_form.py" />
+            <source>the layer Robots (live), in its style</source>
+            <translation>a Robotok (élő) réteg, a maga stílusában</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/options/preferences_form.py" />
+            <source>the live map: arrows</source>
+            <translation>az élő térkép: nyilak</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/options/preferences_form.py" />
@@ -3154,33 +3214,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/settings_form.py" />
-            <source>done as early as possible</source>
-            <translation>mielőbb kész legyen</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/settings_form.py" />
-            <source>drive back</source>
-            <translation>menjenek vissza</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/settings_form.py" />
-            <source>drive to a store</source>
-            <translation>menjenek raktárhoz</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/settings_form.py" />
-            <source>fewest metres</source>
-            <translation>legkevesebb méter</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/settings_form.py" />
             <source>selected</source>
             <translation>kijelölt</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/settings_form.py" />
-            <source>stay where they are</source>
-            <translation>maradjanak, ahol vannak</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/queues/queue_edits.py" />
@@ -4901,13 +4936,13 @@
         </message>
         <message>
             <location filename="../../plugin/layout_words.py" />
-            <source>none; 18 m as European testers drive it</source>
-            <translation>nincs; 18 m, ahogy az európai tesztelők hajtják</translation>
+            <source>no standard: 18 m as European testers drive it</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/layout_words.py" />
-            <source>none; colours, width and spacing of Formula Student</source>
-            <translation>nincs; színek, szélesség és távolság a Formula Student szerint</translation>
+            <source>no standard: colours, width and spacing of Formula Student</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/locator/robot_filter.py" />
@@ -5421,6 +5456,11 @@
             <translation>A telephely vetülete nem ismert: adja meg a SITE_CRS-t, például EPSG:32633.</translation>
         </message>
         <message>
+            <location filename="../../plugin/processing/cone_layer.py" />
+            <source>There are no findings: their layer is empty, and is not loaded.</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
             <location filename="../../plugin/processing/cone_layout.py" />
             <source>&lt;p&gt;Places a layout of traffic cones, either at a &lt;b&gt;point&lt;/b&gt;, turned to a &lt;b&gt;heading&lt;/b&gt; (degrees clockwise from north), or along a &lt;b&gt;line&lt;/b&gt; such as a road's centreline, from &lt;b&gt;start&lt;/b&gt; metres after its beginning. The layer has an id, the order of placing, the heading of travel, the colour and the role of each cone.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Dimensions&lt;/b&gt; change the standard's: &lt;code&gt;vehicle_width=1.7; lane_offset=3&lt;/code&gt;. The log lists those of the layout with their values. A wrong name or value is refused with what there is.&lt;/p&gt; &lt;p&gt;Every cone is &lt;b&gt;checked&lt;/b&gt;: on one of the surfaces (of the allowed classes), away from obstacles and from other cones. What is wrong becomes a layer of findings with the cone's id and the reason; the cones are placed nevertheless.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:conelayout -- LAYOUT=iso3888_1 POINT="640432,5193486.2 [EPSG:32633]" \ HEADING=90 DIMENSIONS="vehicle_width=1.7; exit_length=15" SITE_CRS=EPSG:32633 CONES=cones.gpkg&lt;/pre&gt;</source>
             <translation>&lt;p&gt;Forgalomterelő bóják elrendezését helyezi el, vagy egy &lt;b&gt;ponton&lt;/b&gt;, adott &lt;b&gt;irányba&lt;/b&gt; fordítva (fok, északtól az óramutató járása szerint), vagy egy &lt;b&gt;vonal&lt;/b&gt;, például úttengely mentén, annak elejétől a &lt;b&gt;start&lt;/b&gt; méternyire. A rétegben minden bójának azonosítója, kihelyezési sorszáma, haladási iránya, színe és szerepe van.&lt;/p&gt; &lt;p&gt;A &lt;b&gt;méretek&lt;/b&gt; a szabványéit változtatják: &lt;code&gt;vehicle_width=1.7; lane_offset=3&lt;/code&gt;. A napló felsorolja az elrendezés méreteit értékeikkel. A rossz nevet vagy értéket visszautasítja, és megmondja, mi van.&lt;/p&gt; &lt;p&gt;Minden bóját &lt;b&gt;ellenőriz&lt;/b&gt;: valamelyik felületen van-e (a megengedett osztályokból), távol akadályoktól és más bójáktól. Ami nem jó, a leletek rétegébe kerül a bója azonosítójával és az okkal; a bóják ettől még elhelyeződnek.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:conelayout -- LAYOUT=iso3888_1 POINT="640432,5193486.2 [EPSG:32633]" \ HEADING=90 DIMENSIONS="vehicle_width=1.7; exit_length=15" SITE_CRS=EPSG:32633 CONES=cones.gpkg&lt;/pre&gt;</translation>
@@ -5627,6 +5667,21 @@
         </message>
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>Nav2 keepout mask</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>Nav2 occupancy grid</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>Nav2 speed mask</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
             <source>Robots drive over what is lower than [m]</source>
             <translation>A robotok áthajtanak azon, ami ennél alacsonyabb [m]</translation>
         </message>
@@ -5667,8 +5722,18 @@
         </message>
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>occupied</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
             <source>of 0 or more</source>
             <translation>0 vagy nagyobb</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/export_navigation_map.py" />
+            <source>unknown</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
@@ -5985,6 +6050,26 @@
             <location filename="../../plugin/processing/find_route.py" />
             <source>Time on the route [s]</source>
             <translation>Idő az útvonalon [s]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>fastest</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>none: plain Python</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>shortest</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/find_route.py" />
+            <source>the fastest that is installed</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/processing/find_route.py" />
@@ -6342,6 +6427,21 @@
             <location filename="../../plugin/processing/map_format.py" />
             <source>Format (compact: binary in columns, about a third of binary)</source>
             <translation>Formátum (compact: bináris oszlopokban, a bináris mintegy harmada)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_format.py" />
+            <source>binary: the text compressed</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_format.py" />
+            <source>compact: binary in columns</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <location filename="../../plugin/processing/map_format.py" />
+            <source>text</source>
+            <translation type="unfinished" />
         </message>
         <message>
             <location filename="../../plugin/processing/map_format.py" />

@@ -70,6 +70,10 @@ class FleetOverlay(QgsMapCanvasItem):
         self._painter.robots.magnification = times
         self.update()
 
+    def draw_arrows(self, wanted: bool) -> None:
+        """Draw an arrow for each robot, or leave that to the layer; the rest is drawn always."""
+        self._painter.robots.arrows = wanted
+
     def robot_at(self, x: float, y: float) -> str | None:
         """Return the robot nearest to pixel (x, y), None when there is none nearby."""
         pixels = self._pixels()

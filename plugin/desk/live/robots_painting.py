@@ -60,6 +60,8 @@ class RobotsPainter:
         """The pixel ratio and the magnification that the drawings are for: of others none is kept."""
         self.magnification = 1.0
         """How many times as large as they come robots are drawn."""
+        self.arrows = True
+        """Whether the robots themselves are painted; their rings always are."""
 
     def marks(self, ratio: float, size: float = 1.0) -> Sprites:
         """Return the marks of :func:`~.desk.live.atlases.mark_atlas`."""
@@ -92,6 +94,8 @@ class RobotsPainter:
             rings[-1:] = RING
             marks.paint(painter, view.pixels[chosen], rings)
             layer[chosen] += len(STATES)
+        if not self.arrows:
+            return
         cells = np.where(known, _directions(view.metre), HEADINGS)
         self._paint_drawings(painter, view.there, cells, layer.take(view.rows), size)
 

@@ -51,3 +51,4 @@ class OptionsFactory(QgsOptionsWidgetFactory):
         self._window.desk.connection.rate = preferences.positions_rate
         view.layer_every = max(1, round(preferences.layer_seconds * 1000 / PULL_EVERY_MS))
         view.overlay.magnify(preferences.robot_size)
+        view.draw_by_layer(preferences.drawn_by_layer)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from qgis.gui import QgsFileWidget
-from qgis.PyQt.QtWidgets import QDoubleSpinBox, QFormLayout, QLabel, QWidget
+from qgis.PyQt.QtWidgets import QComboBox, QDoubleSpinBox, QFormLayout, QLabel, QWidget
 
 from ...file_dialogs import file_field
 from ...language import tr
@@ -28,6 +28,7 @@ SPINS = (
         tr("The layer Robots (live): attribute table, labels, expressions. The live map goes its own way"),
     ),
 )
+DRAWN_BY = {False: tr("the live map: arrows"), True: tr("the layer Robots (live), in its style")}
 WIDTH = 90
 """Pixels of a field for a number, so that all are as wide."""
 
@@ -52,6 +53,17 @@ class PreferencesForm(QWidget):
             spin.setMinimumWidth(WIDTH)
             self._spins[name] = spin
             _add(form, text, spin)
+        self._drawn_by = QComboBox()
+        self._drawn_by.setObjectName("fleet_drawn_by_layer")
+        for by_layer, text in DRAWN_BY.items():
+            self._drawn_by.addItem(text, by_layer)
+        self._drawn_by.setToolTip(
+            tr(
+                "Arrows show how each robot is, and move with every position. The layer shows what its style "
+                "says, as often as it is written anew; while it is not on the map there are arrows"
+            )
+        )
+        _add(form, tr("Robots are &drawn by"), self._drawn_by)
         self._folder = file_field()
         self._folder.setObjectName("fleet_folder")
         self._folder.setStorageMode(QgsFileWidget.StorageMode.GetDirectory)
@@ -62,12 +74,17 @@ class PreferencesForm(QWidget):
         """Show these values."""
         for name, spin in self._spins.items():
             spin.setValue(getattr(preferences, name))
+        self._drawn_by.setCurrentIndex(self._drawn_by.findData(preferences.drawn_by_layer))
         self._folder.setFilePath(preferences.folder)
 
     def preferences(self) -> Preferences:
         """Return what stands in the fields."""
         numbers = {name: spin.value() for name, spin in self._spins.items()}
-        return Preferences(**numbers, folder=self._folder.filePath().strip())
+        return Preferences(
+            **numbers,
+            drawn_by_layer=self._drawn_by.currentData(),
+            folder=self._folder.filePath().strip(),
+        )
 
 
 def _add(form: QFormLayout, text: str, field: QWidget) -> None:

@@ -14,6 +14,7 @@ from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import (
     QApplication,
+    QComboBox,
     QDoubleSpinBox,
     QLineEdit,
     QPushButton,
@@ -38,7 +39,7 @@ def test_what_is_set_is_kept_and_works_at_once(page, plugin):
     page.findChild(QDoubleSpinBox, "fleet_low_battery").setValue(35)
     assert read_preferences() == Preferences()
     page.apply()
-    assert read_preferences() == Preferences(4.0, 3.0, 2.0, "")
+    assert read_preferences() == Preferences(4.0, 3.0, 2.0)
     window = plugin.window
     assert window.desk.connection.rate == 4.0
     assert window.view.layer_every == 60
@@ -106,3 +107,22 @@ def test_the_options_have_a_help_button(page):
     window = page.window().findChild(HelpWindow)
     assert window.topic == OPTIONS
     window.close()
+
+
+def test_the_layers_style_draws_the_robots_where_the_layer_is_on_the_map(page, at_desk, iface):
+    painter = at_desk.view.overlay._painter.robots
+    box = page.findChild(QComboBox, "fleet_drawn_by_layer")
+    assert box.currentData() is False
+    box.setCurrentIndex(box.findData(True))
+    page.apply()
+    assert read_preferences().drawn_by_layer
+    iface.canvas.setLayers([])
+    at_desk.view.show_now()
+    assert painter.arrows, "no robot would be seen"
+    iface.canvas.setLayers([at_desk.view.layer.layer])
+    at_desk.view.show_now()
+    assert not painter.arrows
+    box.setCurrentIndex(box.findData(False))
+    page.apply()
+    at_desk.view.show_now()
+    assert painter.arrows and not read_preferences().drawn_by_layer

@@ -177,3 +177,12 @@ def test_robots_are_painted_layer_after_layer_from_the_top_and_those_side_by_sid
     in_a_strip = np.random.default_rng(1).uniform(STRIP, 2 * STRIP, 300)
     assert _from_the_top(np.ones(300, dtype=np.intp), in_a_strip).tolist() == list(range(300))
     assert _from_the_top(np.array([], dtype=np.intp), y[:0]).tolist() == []
+
+
+def test_robots_that_the_layers_style_draws_keep_their_rings(canvas, site):
+    overlay = show(canvas, site, scene_of((60, 50, 0.0, RobotState.FRESH), chosen=("r1",)))
+    assert len(spots(canvas, BLUE)) > 20
+    overlay.draw_arrows(False)
+    overlay.update()
+    assert len(spots(canvas, BLUE)) == 0
+    assert len(spots(canvas, SELECTED)) > 20
