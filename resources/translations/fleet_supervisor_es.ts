@@ -6,7 +6,7 @@
         <message>
             <location filename="../../plugin/assignment_words.py" />
             <source>collect them</source>
-            <translation type="unfinished" />
+            <translation>recogerlos</translation>
         </message>
         <message>
             <location filename="../../plugin/assignment_words.py" />
@@ -31,7 +31,7 @@
         <message>
             <location filename="../../plugin/assignment_words.py" />
             <source>place them</source>
-            <translation type="unfinished" />
+            <translation>colocarlos</translation>
         </message>
         <message>
             <location filename="../../plugin/assignment_words.py" />
@@ -41,12 +41,12 @@
         <message>
             <location filename="../../plugin/assignment_words.py" />
             <source>the best that is installed</source>
-            <translation type="unfinished" />
+            <translation>el mejor de los instalados</translation>
         </message>
         <message>
             <location filename="../../plugin/assignment_words.py" />
             <source>the preview: quick, not the best</source>
-            <translation type="unfinished" />
+            <translation>la vista previa: rápida, no la mejor</translation>
         </message>
         <message>
             <location filename="../../plugin/connection.py" />
@@ -4960,12 +4960,12 @@
         <message>
             <location filename="../../plugin/layout_words.py" />
             <source>no standard: 18 m as European testers drive it</source>
-            <translation type="unfinished" />
+            <translation>ninguna norma: 18 m, como la conducen los probadores europeos</translation>
         </message>
         <message>
             <location filename="../../plugin/layout_words.py" />
             <source>no standard: colours, width and spacing of Formula Student</source>
-            <translation type="unfinished" />
+            <translation>ninguna norma: colores, anchura y separación de Formula Student</translation>
         </message>
         <message>
             <location filename="../../plugin/locator/robot_filter.py" />
@@ -5489,7 +5489,7 @@
         <message>
             <location filename="../../plugin/processing/cone_layer.py" />
             <source>There are no findings: their layer is empty, and is not loaded.</source>
-            <translation type="unfinished" />
+            <translation>No hay hallazgos: su capa está vacía y no se carga.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/cone_layout.py" />
@@ -5699,17 +5699,17 @@
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
             <source>Nav2 keepout mask</source>
-            <translation type="unfinished" />
+            <translation>máscara de zonas prohibidas de Nav2</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
             <source>Nav2 occupancy grid</source>
-            <translation type="unfinished" />
+            <translation>rejilla de ocupación de Nav2</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
             <source>Nav2 speed mask</source>
-            <translation type="unfinished" />
+            <translation>máscara de velocidad de Nav2</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
@@ -5754,7 +5754,7 @@
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
             <source>occupied</source>
-            <translation type="unfinished" />
+            <translation>ocupado</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
@@ -5764,7 +5764,7 @@
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
             <source>unknown</source>
-            <translation type="unfinished" />
+            <translation>desconocido</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
@@ -6088,22 +6088,22 @@
         <message>
             <location filename="../../plugin/processing/find_route.py" />
             <source>fastest</source>
-            <translation type="unfinished" />
+            <translation>la más rápida</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/find_route.py" />
             <source>none: plain Python</source>
-            <translation type="unfinished" />
+            <translation>ninguno: solo Python</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/find_route.py" />
             <source>shortest</source>
-            <translation type="unfinished" />
+            <translation>la más corta</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/find_route.py" />
             <source>the fastest that is installed</source>
-            <translation type="unfinished" />
+            <translation>el más rápido de los instalados</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/find_route.py" />
@@ -6466,17 +6466,17 @@
         <message>
             <location filename="../../plugin/processing/map_format.py" />
             <source>binary: the text compressed</source>
-            <translation type="unfinished" />
+            <translation>binario: el texto comprimido</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/map_format.py" />
             <source>compact: binary in columns</source>
-            <translation type="unfinished" />
+            <translation>compacto: binario en columnas</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/map_format.py" />
             <source>text</source>
-            <translation type="unfinished" />
+            <translation>texto</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/map_format.py" />

@@ -6,7 +6,7 @@
         <message>
             <location filename="../../plugin/assignment_words.py" />
             <source>collect them</source>
-            <translation type="unfinished" />
+            <translation>begyűjtés</translation>
         </message>
         <message>
             <location filename="../../plugin/assignment_words.py" />
@@ -31,7 +31,7 @@
         <message>
             <location filename="../../plugin/assignment_words.py" />
             <source>place them</source>
-            <translation type="unfinished" />
+            <translation>kihelyezés</translation>
         </message>
         <message>
             <location filename="../../plugin/assignment_words.py" />
@@ -41,12 +41,12 @@
         <message>
             <location filename="../../plugin/assignment_words.py" />
             <source>the best that is installed</source>
-            <translation type="unfinished" />
+            <translation>a telepítettek közül a legjobb</translation>
         </message>
         <message>
             <location filename="../../plugin/assignment_words.py" />
             <source>the preview: quick, not the best</source>
-            <translation type="unfinished" />
+            <translation>az előnézet: gyors, nem a legjobb</translation>
         </message>
         <message>
             <location filename="../../plugin/connection.py" />
@@ -4937,12 +4937,12 @@
         <message>
             <location filename="../../plugin/layout_words.py" />
             <source>no standard: 18 m as European testers drive it</source>
-            <translation type="unfinished" />
+            <translation>nem szabvány: 18 m, ahogy az európai tesztelők hajtják</translation>
         </message>
         <message>
             <location filename="../../plugin/layout_words.py" />
             <source>no standard: colours, width and spacing of Formula Student</source>
-            <translation type="unfinished" />
+            <translation>nem szabvány: a Formula Student színei, szélessége és távolságai</translation>
         </message>
         <message>
             <location filename="../../plugin/locator/robot_filter.py" />
@@ -5458,7 +5458,7 @@
         <message>
             <location filename="../../plugin/processing/cone_layer.py" />
             <source>There are no findings: their layer is empty, and is not loaded.</source>
-            <translation type="unfinished" />
+            <translation>Nincs találat: a rétegük üres, ezért nem töltődik be.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/cone_layout.py" />
@@ -5668,17 +5668,17 @@
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
             <source>Nav2 keepout mask</source>
-            <translation type="unfinished" />
+            <translation>Nav2 tiltottterület-maszk</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
             <source>Nav2 occupancy grid</source>
-            <translation type="unfinished" />
+            <translation>Nav2 foglaltsági rács</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
             <source>Nav2 speed mask</source>
-            <translation type="unfinished" />
+            <translation>Nav2 sebességmaszk</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
@@ -5723,7 +5723,7 @@
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
             <source>occupied</source>
-            <translation type="unfinished" />
+            <translation>foglalt</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
@@ -5733,7 +5733,7 @@
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
             <source>unknown</source>
-            <translation type="unfinished" />
+            <translation>ismeretlen</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/export_navigation_map.py" />
@@ -6054,22 +6054,22 @@
         <message>
             <location filename="../../plugin/processing/find_route.py" />
             <source>fastest</source>
-            <translation type="unfinished" />
+            <translation>leggyorsabb</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/find_route.py" />
             <source>none: plain Python</source>
-            <translation type="unfinished" />
+            <translation>egyik sem: csak Python</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/find_route.py" />
             <source>shortest</source>
-            <translation type="unfinished" />
+            <translation>legrövidebb</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/find_route.py" />
             <source>the fastest that is installed</source>
-            <translation type="unfinished" />
+            <translation>a telepítettek közül a leggyorsabb</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/find_route.py" />
@@ -6431,17 +6431,17 @@
         <message>
             <location filename="../../plugin/processing/map_format.py" />
             <source>binary: the text compressed</source>
-            <translation type="unfinished" />
+            <translation>bináris: a szöveg tömörítve</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/map_format.py" />
             <source>compact: binary in columns</source>
-            <translation type="unfinished" />
+            <translation>tömör: bináris oszlopokban</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/map_format.py" />
             <source>text</source>
-            <translation type="unfinished" />
+            <translation>szöveg</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/map_format.py" />
