@@ -5,9 +5,10 @@ A small computer without a battery for its clock begins with a wrong time, set r
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from typing import NamedTuple
+
+from .steady_time import steady_time
 
 LEAST_STEP = 1.0
 """seconds; less is what a clock is corrected by all the time."""
@@ -26,13 +27,6 @@ class ClockStep(NamedTuple):
     def moved(self, at: float) -> float:
         """Return a time that was noted before as the clock would have it now."""
         return at if self.since <= at <= self.now else at + self.by
-
-
-def steady_time() -> float:
-    """Return seconds that nobody sets; where the system can tell they pass while it sleeps, too."""
-    if hasattr(time, "CLOCK_BOOTTIME"):
-        return time.clock_gettime(time.CLOCK_BOOTTIME)
-    return time.monotonic()
 
 
 class ClockWatch:

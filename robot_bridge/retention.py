@@ -10,8 +10,9 @@ from typing import NamedTuple
 from sqlalchemy import Connection
 
 from .access import audit, session_rows
-from .clock_watch import ClockWatch, steady_time
+from .clock_watch import ClockWatch
 from .sites.settings import SiteSettings
+from .steady_time import steady_time
 from .store import closures, commands, emergency_stops, observations, placements, queues, trajectories
 from .store.database import Database
 

@@ -12,11 +12,11 @@ from qgis.gui import QgsMapCanvas
 from qgis.PyQt.QtCore import QObject, QTimer, pyqtSignal
 
 from ...robot_bridge.messages import EmergencyReport, EmergencyStop, SiteReport, to_json
+from ...robot_bridge.steady_time import steady_time
 from ..connection import Connection
 from ..errors import FleetError, NotSentError, PlacementError
 from ..language import tr
 from ..wire.addresses import Credentials
-from ..wire.clock import clock
 from ..wire.mailbox import News
 from ..wire.outbox import Order
 from ..wire.status import LinkStatus, Phase
@@ -71,7 +71,7 @@ class Desk(QObject):
         canvas: QgsMapCanvas,
         project: QgsProject,
         parent: QObject | None = None,
-        clock: Callable[[], float] = clock,
+        clock: Callable[[], float] = steady_time,
     ):
         super().__init__(parent)
         self.canvas = canvas

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 from qgis.core import QgsCoordinateReferenceSystem, QgsPointXY
 
-from ..wire.clock import clock
+from ...robot_bridge.steady_time import steady_time
 
 Numbers = npt.NDArray[np.float64]
 
@@ -42,7 +42,7 @@ class RobotsNow:
     def silence(self, robot: str, now: float | None = None) -> float | None:
         """Return the seconds since a robot's last message."""
         age = self._number(self.age, robot)
-        now = clock() if now is None else now
+        now = steady_time() if now is None else now
         return None if age is None else age + max(0.0, now - self.taken)
 
     def place(self, robot: str) -> QgsPointXY | None:

@@ -6,11 +6,11 @@ import asyncio
 from types import ModuleType
 from typing import Any
 
+from ...robot_bridge.steady_time import steady_time
 from ..errors import AddressError, LinkError
 from ..language import tr
 from .addresses import Credentials
 from .backoff import Backoff
-from .clock import clock
 from .failures import explain
 from .mailbox import Mailbox
 from .outbox import Order
@@ -46,9 +46,9 @@ class DeskClient:
         self._credentials = credentials or Credentials()
         self._mailbox = mailbox
         self._library = library
-        self._protocol = DeskProtocol(operator, rate, url, mailbox, clock)
+        self._protocol = DeskProtocol(operator, rate, url, mailbox, steady_time)
         self._backoff = Backoff()
-        self._awake_at = clock()
+        self._awake_at = steady_time()
         self._outgoing: asyncio.Queue[str] = asyncio.Queue()
 
     async def run(self) -> None:
@@ -63,7 +63,7 @@ class DeskClient:
                     self._mailbox.put_link(LinkStatus(Phase.FAILED, reason, wants_token=failure.wants_token))
                     return
                 wait = self._backoff.next_wait()
-                due = clock() + wait
+                due = steady_time() + wait
                 self._mailbox.put_link(LinkStatus(Phase.RETRYING, reason, next_try=due))
                 await asyncio.sleep(wait)
         finally:
@@ -121,7 +121,7 @@ class DeskClient:
     async def _converse(self, socket: Any) -> None:
         self._outgoing = asyncio.Queue()
         self._send_all(self._protocol.begin())
-        self._awake_at = clock()
+        self._awake_at = steady_time()
         work = (self._read(socket), self._write(socket), self._stay_awake())
         tasks = [asyncio.ensure_future(one) for one in work]
         try:
@@ -158,11 +158,11 @@ class DeskClient:
         while True:
             await asyncio.sleep(AWAKE_EVERY)
             self._check_awake()
-            self._awake_at = clock()
+            self._awake_at = steady_time()
 
     def _check_awake(self) -> None:
         """Raise LinkError when this computer has slept: what comes in now was sent before or meanwhile."""
-        asleep = clock() - self._awake_at
+        asleep = steady_time() - self._awake_at
         if asleep > ASLEEP_AFTER:
             raise LinkError(
                 tr(

@@ -21,7 +21,17 @@ FOREIGN = {
     "websockets",
     "zstandard",
 }
-BRIDGE = ("robotmap", "messages", "liveness", "compass", "roads", "layouts", "assignment", "sites")
+BRIDGE = (
+    "robotmap",
+    "messages",
+    "liveness",
+    "compass",
+    "roads",
+    "layouts",
+    "assignment",
+    "sites",
+    "steady_time",
+)
 
 
 class NothingForeign:

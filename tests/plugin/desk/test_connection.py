@@ -12,9 +12,9 @@ import warnings
 import pytest
 from fleet_supervisor.plugin.connection import Connection
 from fleet_supervisor.plugin.errors import AddressError, NotSentError
-from fleet_supervisor.plugin.wire.clock import clock
 from fleet_supervisor.plugin.wire.outbox import Order
 from fleet_supervisor.plugin.wire.status import Phase
+from fleet_supervisor.robot_bridge.steady_time import steady_time
 from qgis.PyQt.QtCore import QThread
 
 
@@ -187,7 +187,7 @@ def test_an_unanswered_order_is_repeated_with_its_id_and_done_once(connection, g
     wait(lambda: phase_of(connection) is Phase.CONNECTED)
     gateway.mute.add("send")
     params = {"command": "command-1", "robot": "r1", "op": "SetPosEnd", "params": {"x": 1.0, "y": 2.0}}
-    connection.submit(Order("command-1", "send", params, clock()))
+    connection.submit(Order("command-1", "send", params, steady_time()))
     wait(lambda: gateway.asked("send"))
     gateway.stop()
     wait(lambda: phase_of(connection) is Phase.RETRYING, 3)
@@ -204,7 +204,7 @@ def test_an_answered_order_is_not_repeated_on_the_next_link(connection, gateway,
     connection.open(gateway.url, "anna")
     wait(lambda: phase_of(connection) is Phase.CONNECTED)
     params = {"command": "command-1", "robot": "r1", "op": "Abort", "params": {}}
-    connection.submit(Order("command-1", "send", params, clock()))
+    connection.submit(Order("command-1", "send", params, steady_time()))
     answers = []
     wait(lambda: answers.extend(connection.take().answers) or answers)
     gateway.stop()
@@ -219,7 +219,7 @@ def test_an_order_that_became_old_without_a_link_is_handed_back_and_not_sent(con
     wait(lambda: phase_of(connection) is Phase.CONNECTED)
     gateway.mute.add("send")
     params = {"command": "command-1", "robot": "r1", "op": "Abort", "params": {}}
-    connection.submit(Order("command-1", "send", params, clock() - 60.0))
+    connection.submit(Order("command-1", "send", params, steady_time() - 60.0))
     wait(lambda: gateway.asked("send"))
     gateway.stop()
     wait(lambda: phase_of(connection) is Phase.RETRYING, 3)
@@ -235,7 +235,7 @@ def test_closing_hands_back_what_was_not_answered(connection, gateway, wait):
     wait(lambda: phase_of(connection) is Phase.CONNECTED)
     gateway.mute.add("send")
     params = {"command": "command-1", "robot": "r1", "op": "Abort", "params": {}}
-    connection.submit(Order("command-1", "send", params, clock()))
+    connection.submit(Order("command-1", "send", params, steady_time()))
     wait(lambda: gateway.asked("send"))
     connection.close()
     answers = []

@@ -7,8 +7,8 @@ from types import SimpleNamespace
 
 import pytest
 from fleet_supervisor.plugin.wire import client
-from fleet_supervisor.plugin.wire import clock as clock_module
 from fleet_supervisor.plugin.wire.sightings import STATES
+from fleet_supervisor.robot_bridge import steady_time as clock_module
 from fleet_supervisor.robot_bridge.messages import RobotState, to_json
 from qgis.PyQt.QtWidgets import QToolButton
 
@@ -49,7 +49,7 @@ def test_the_clock_counts_sleep_where_the_system_has_one_that_does():
     if not hasattr(time, "CLOCK_BOOTTIME"):
         pytest.skip("only Linux has a clock that counts sleep beside one that does not")
     assert clock_module._GOES_ON_ASLEEP == time.CLOCK_BOOTTIME
-    assert clock_module.clock() == pytest.approx(time.clock_gettime(time.CLOCK_BOOTTIME), abs=60.0)
+    assert clock_module.steady_time() == pytest.approx(time.clock_gettime(time.CLOCK_BOOTTIME), abs=60.0)
 
 
 def test_robots_are_lost_at_once_and_come_back_with_the_link(laptop, lid, gateway, wait):

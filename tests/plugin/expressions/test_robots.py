@@ -9,7 +9,7 @@ import pytest
 from fleet_supervisor.plugin.expressions.functions import ExpressionFunctions
 from fleet_supervisor.plugin.expressions.robots_now import FleetNow, RobotsNow
 from fleet_supervisor.plugin.sites.surface_store import SurfaceStore
-from fleet_supervisor.plugin.wire.clock import clock
+from fleet_supervisor.robot_bridge.steady_time import steady_time
 from qgis.core import (
     NULL,
     QgsCoordinateReferenceSystem,
@@ -45,7 +45,7 @@ def robots(**places):
         xy=np.array(xy),
         age=np.array([0.5, 12.0, 4.0])[: len(places)],
         battery=np.array([0.82, np.nan, 0.1])[: len(places)],
-        taken=clock(),
+        taken=steady_time(),
     )
 
 

@@ -1,4 +1,4 @@
-"""The clock by which robots age and orders grow old: it goes on while the computer sleeps."""
+"""The clock by which ages are told: nobody sets it, and it goes on while the computer sleeps."""
 
 from __future__ import annotations
 
@@ -9,6 +9,6 @@ _GOES_ON_ASLEEP: int | None = getattr(time, "CLOCK_BOOTTIME", getattr(time, "CLO
 neither, and its clock for :func:`time.monotonic` counts sleep."""
 
 
-def clock() -> float:
+def steady_time() -> float:
     """Return seconds of which only differences mean something."""
     return time.monotonic() if _GOES_ON_ASLEEP is None else time.clock_gettime(_GOES_ON_ASLEEP)
