@@ -59,9 +59,13 @@ class Language:
 
     def __init__(self, locale: str | None = None, folder: Path = FOLDER):
         """Take the translation for ``locale``, by default that of QGIS; without one texts stay English."""
+        file = QTranslator()
+        self.found = file.load(QLocale(locale or QgsApplication.locale()), FILES, "", str(folder))
         self._translator = QTranslator()
-        self.found = self._translator.load(QLocale(locale or QgsApplication.locale()), FILES, "", str(folder))
         if self.found:
+            # Out of memory: Qt maps a file that it loads, and ends QGIS when somebody writes into that.
+            self._texts = Path(file.filePath()).read_bytes()
+            self._translator.loadFromData(self._texts)
             QCoreApplication.installTranslator(self._translator)
 
     def remove(self) -> None:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import shutil
+
 import pytest
-from fleet_supervisor.plugin.language import CONTEXT, Language, tr, tr_count
+from fleet_supervisor.plugin.language import CONTEXT, FOLDER, Language, tr, tr_count
 from qgis.PyQt.QtCore import QCoreApplication
 
 
@@ -11,8 +13,8 @@ from qgis.PyQt.QtCore import QCoreApplication
 def speak(qgis_app):
     made = []
 
-    def begin(locale):
-        made.append(Language(locale))
+    def begin(locale, folder=FOLDER):
+        made.append(Language(locale, folder))
         return made[-1]
 
     yield begin
@@ -37,6 +39,15 @@ def test_texts_follow_the_language_and_its_regions(speak, locale, said):
 def test_a_language_that_is_not_there_leaves_english(speak):
     assert not speak("fi").found
     assert QCoreApplication.translate(CONTEXT, "Export robot map") == "Export robot map"
+
+
+def test_a_file_that_is_written_into_while_it_is_in_use_changes_nothing(speak, tmp_path):
+    file = tmp_path / "fleet_supervisor_es.qm"
+    shutil.copy(FOLDER / file.name, file)
+    assert speak("es", tmp_path).found
+    with file.open("r+b") as texts:
+        texts.write(bytes(file.stat().st_size))
+    assert QCoreApplication.translate(CONTEXT, "Export robot map") == "Exportar mapa de robots"
 
 
 def test_a_removed_language_says_nothing_any_more(speak):
