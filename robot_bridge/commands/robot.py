@@ -36,6 +36,10 @@ def robot(
     ask_surface: Annotated[
         bool, typer.Option(help="Ask for the road surfaces of a task and say them as status.")
     ] = False,
+    memory: Annotated[
+        Path | None,
+        typer.Option(help="File in which it remembers where it is, its task and what it has done."),
+    ] = None,
 ) -> None:
     """Run the reference robot: a simulated body that speaks the protocol."""
     from ..access.credentials import Credentials
@@ -58,6 +62,7 @@ def robot(
         image=None if image is None else _bytes(image),
         asks_path=ask_path,
         asks_surface=ask_surface,
+        memory=memory,
     )
 
     async def work() -> None:

@@ -30,6 +30,7 @@ from ..robotmap.errors import RobotMapError
 from ..robotmap.model import RobotMap
 from .body import Body, BodyLimits, Pose
 from .driver import Driver
+from .memory import Memory, Remembered
 from .sightings import Sightings, Thing
 
 STANDING = 0.01
@@ -40,6 +41,8 @@ STEER_EVERY = 0.05
 """seconds; a robot steers as often, however late the program is in letting time pass."""
 MOST_DONE = 10_000
 """Messages that are remembered: many more than a gateway ever has on their way to one robot."""
+REMEMBER_EVERY = 1.0
+"""seconds of driving between two notes of how far the robot has come."""
 GREET_AGAIN = 1.0
 """seconds after which a robot that was refused says Ready once more."""
 
@@ -50,7 +53,7 @@ class AgentSettings:
 
     ``things`` are seen on the way, with ``image`` as the picture of each; with ``asks_path`` the robot asks
     for a path to every target; with ``asks_surface`` it asks what ground it is on and is to go to, and says
-    so as its status.
+    so as its status. With a ``memory`` in which something is, the robot goes on from there.
     """
 
     magic: int
@@ -63,6 +66,7 @@ class AgentSettings:
     image: bytes | None = None
     asks_path: bool = False
     asks_surface: bool = False
+    memory: Memory | None = None
 
 
 class Agent:
@@ -88,7 +92,13 @@ class Agent:
         self._moving = False
         self._wants_path = False
         self._ground: str | None = None
+        self._since_kept = 0.0
         self.map: RobotMap | None = None
+        self._magic = settings.magic
+        remembered = settings.memory.recall() if settings.memory else None
+        if remembered is not None:
+            self._go_on(remembered)
+        self._keep()
 
     @property
     def pose(self) -> Pose:
@@ -98,7 +108,7 @@ class Agent:
     def greet(self) -> None:
         """Say Ready; done again whenever the link is made anew."""
         self._greet_in = math.inf
-        self._say(Ready(magic=self._settings.magic))
+        self._say(Ready(magic=self._magic))
 
     def receive(self, answer: Answer, id: int | None) -> OpAck | None:
         """Take in message ``id`` of the server; return what to acknowledge it with."""
@@ -109,6 +119,9 @@ class Agent:
         if isinstance(answer, OpAck):
             self._take_acknowledgement(answer)
             return None
+        if isinstance(answer, Abort) and self._admitted:
+            # What it has come to the end of has been reached, and is not aborted: said before its OpAck.
+            self._say(self._position())
         if id is not None and id in self._done:
             # The gateway has not heard what became of it: it is told once more that all is done, when it is.
             self._moving = True
@@ -116,12 +129,14 @@ class Agent:
         refusal = self._do(answer)
         if id is not None:
             self._note_done(id)
+        # Before it is acknowledged: what a robot has acknowledged it is not told once more.
+        self._keep()
         return OpAck(id=id, ok=refusal is None, reason=refusal)
 
     def concerns(self, answer: Answer) -> bool:
         """Tell whether a message is for this run of the robot, and not for another one of its account."""
         if isinstance(answer, OpAck) and answer.magic is not None:
-            return answer.magic == self._settings.magic
+            return answer.magic == self._magic
         return self._admitted or isinstance(answer, Start)
 
     def step(self, dt: float) -> None:
@@ -130,6 +145,9 @@ class Agent:
         steps = max(1, round(dt / STEER_EVERY))
         for _ in range(steps):
             self._move(dt / steps)
+        self._since_kept += dt
+        if self._moving and self._since_kept >= REMEMBER_EVERY:
+            self._keep()
         if not self._admitted:
             self._greet_in -= dt
             if self._greet_in <= 0:
@@ -147,11 +165,12 @@ class Agent:
             motion = self._driver.steer(self._body.pose)
             if motion is None:
                 self._driver = None
+                self._keep()
             self._body.drive(*(motion or (0.0, 0.0)))
         self._body.step(dt)
 
     def stop(self) -> None:
-        """Say that the robot stands and does nothing."""
+        """Say that the robot stands and does nothing; what it remembers of its task stays."""
         self._driver = None
         if self._admitted:
             self._say(Stopped())
@@ -161,8 +180,25 @@ class Agent:
         if self._admitted:
             self._say(Alive())
 
+    def _go_on(self, remembered: Remembered) -> None:
+        """Be the run of the robot that is remembered, and say once more that all is done when it is."""
+        self._magic, self._database = remembered.magic, remembered.database
+        self._done = dict.fromkeys(remembered.done)
+        self._body.place(remembered.pose)
+        if remembered.way:
+            self._driver = Driver(remembered.way, remembered.theta, self._settings.limits)
+        self._moving = True
+
+    def _keep(self) -> None:
+        self._since_kept = 0.0
+        if self._settings.memory is None:
+            return
+        way, theta = ([], None) if self._driver is None else (self._driver.left, self._driver.theta)
+        done = list(self._done)
+        self._settings.memory.keep(Remembered(self._magic, self._database, done, self._body.pose, way, theta))
+
     def _take_acknowledgement(self, ack: OpAck) -> None:
-        if ack.magic != self._settings.magic:
+        if ack.magic != self._magic:
             return
         self._admitted = ack.ok
         if ack.ok:
@@ -176,6 +212,7 @@ class Agent:
         if database != self._database:
             self._done.clear()
             self._database = database
+            self._keep()
 
     def _note_done(self, id: int) -> None:
         self._done[id] = None
@@ -247,5 +284,6 @@ class Agent:
     def _notice_stop(self) -> None:
         if self._moving and self._driver is None and abs(self._body.v) < STANDING:
             self._moving = False
+            self._keep()
             self._say(self._position())
             self._say(Stopped())

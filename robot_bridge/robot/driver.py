@@ -41,13 +41,20 @@ class Driver:
     def __init__(
         self, points: Sequence[tuple[float, float]], theta: float | None, limits: BodyLimits
     ) -> None:
+        self._points = list(points)
         self._line = Polyline(points)
-        self._theta = theta
+        self.theta = theta
         self._limits = limits
         self._braking = 2 * BRAKING * limits.acceleration
         self._stations, self._squares = self._corners()
         self._driven = 0.0
         self._at_end = False
+
+    @property
+    def left(self) -> list[tuple[float, float]]:
+        """The points that are still ahead, the last one at least."""
+        ahead = [p for p, at in zip(self._points, self._line.stations, strict=True) if at > self._driven]
+        return ahead or [self._points[-1]]
 
     def steer(self, pose: Pose) -> Motion | None:
         """Return the motion to ask the body for at ``pose``, or None when the task is done."""
@@ -101,7 +108,7 @@ class Driver:
             self._driven = float(station[ahead][np.argmin(off[ahead])])
 
     def _turn_to_heading(self, theta: float) -> Motion | None:
-        if self._theta is None:
+        if self.theta is None:
             return None
-        left = math.remainder(self._theta - theta, math.tau)
+        left = math.remainder(self.theta - theta, math.tau)
         return None if abs(left) < HEADING_REACHED else (0.0, 2.0 * left)

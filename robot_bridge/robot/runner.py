@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import secrets
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Protocol
 
 from sqlalchemy import URL
@@ -13,6 +14,7 @@ from ..access.credentials import Credentials
 from ..messages import Request, check_robot_name
 from .agent import STEER_EVERY, Agent, AgentSettings
 from .body import BodyLimits, Pose
+from .memory import Memory
 from .sightings import Thing
 from .sql_link import SqlLink
 from .websocket_link import WebSocketLink
@@ -37,6 +39,7 @@ class RobotSettings:
     image: bytes | None = None
     asks_path: bool = False
     asks_surface: bool = False
+    memory: Path | None = None
 
 
 class Link(Protocol):
@@ -64,6 +67,7 @@ async def run(settings: RobotSettings, stop: asyncio.Event) -> None:
             image=settings.image,
             asks_path=settings.asks_path,
             asks_surface=settings.asks_surface,
+            memory=None if settings.memory is None else Memory(settings.memory),
         ),
         link.say,
     )

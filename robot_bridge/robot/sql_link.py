@@ -6,11 +6,12 @@ import asyncio
 import contextlib
 import json
 import logging
+from collections.abc import Sequence
 
 from sqlalchemy import URL, Connection
 
 from ..errors import StoreError
-from ..messages import MessageError, OpAck, Request, to_json
+from ..messages import Alive, MessageError, OpAck, Request, SendPos, to_json
 from ..store import answers, requests
 from ..store.answers import AnswerRow
 from ..store.database import Database
@@ -45,7 +46,7 @@ class SqlLink:
                 tasks.create_task(self._write())
         finally:
             with contextlib.suppress(StoreError):
-                await self._flush([], [])
+                await self._flush([])
             await self._database.close()
 
     async def _read(self, agent: Agent) -> None:
@@ -63,7 +64,7 @@ class SqlLink:
         while True:
             await asyncio.sleep(WRITE_INTERVAL)
             try:
-                await self._flush([], [])
+                await self._flush([])
             except StoreError as error:
                 await self._wait_for_the_database(error)
 
@@ -73,14 +74,15 @@ class SqlLink:
 
     async def _turn(self, agent: Agent) -> bool:
         rows = await self._database.read(answers.read, self._robot)
-        read, acks = [], []
+        read = []
         for row in rows:
             own, ack = self._receive(agent, row)
             if own:
                 read.append(row.id)
             if ack is not None:
-                acks.append(ack)
-        await self._flush(read, acks)
+                # Behind what the agent said about the message.
+                self._outgoing.append(ack)
+        await self._flush(read)
         return bool(read)
 
     def _receive(self, agent: Agent, row: AnswerRow) -> tuple[bool, OpAck | None]:
@@ -95,15 +97,30 @@ class SqlLink:
             log.error("the gateway refused request %s: %s", answer.id, answer.reason)
         return True, agent.receive(answer, row.id)
 
-    async def _flush(self, read: list[int], acks: list[OpAck]) -> None:
-        outgoing, self._outgoing = [*acks, *self._outgoing], []
+    async def _flush(self, read: list[int]) -> None:
+        outgoing, self._outgoing = self._outgoing, []
         if not (outgoing or read):
             return
         try:
             await self._database.jot(_exchange, self._robot, read, outgoing)
         except StoreError:
-            self._outgoing = [*outgoing, *self._outgoing][-100:]
+            self._outgoing = [*_still_to_say(outgoing), *self._outgoing]
             raise
+
+
+def _still_to_say(requests: Sequence[Request]) -> list[Request]:
+    """Return what is to be said again, each once; of positions where the robot was when it answered."""
+    kept: list[Request] = []
+    position = None
+    for request in requests:
+        if isinstance(request, SendPos):
+            position = request
+        elif not isinstance(request, Alive) and request not in kept:
+            if isinstance(request, OpAck) and position is not None:
+                kept.append(position)
+                position = None
+            kept.append(request)
+    return kept
 
 
 def _exchange(connection: Connection, robot: str, read: list[int], outgoing: list[Request]) -> None:

@@ -26,6 +26,7 @@ SAY_AGAIN = 1.0
 """seconds after which an observation that the gateway could not store is said once more."""
 REPLACED = 4001
 """Close code of a gateway to which another robot has connected under the same name."""
+Frame = str
 LARGEST_FRAME = 64 << 20
 """bytes; a whole city's map comes in one frame."""
 
@@ -39,7 +40,8 @@ class WebSocketLink:
     def __init__(self, url: str, robot: str, credentials: Credentials | None = None) -> None:
         self._credentials = credentials or Credentials()
         self._url = f"{url}{'&' if '?' in url else '?'}robot={quote(robot)}"
-        self._outgoing: asyncio.Queue[Request] = asyncio.Queue()
+        self._outgoing: asyncio.Queue[Request | Frame] = asyncio.Queue()
+        """What is to be sent, in order: a reply does not overtake what was said before it."""
         self._connected = False
         self._ids = itertools.count(1)
         self._untold: list[Observed] = []
@@ -88,7 +90,7 @@ class WebSocketLink:
         sending = asyncio.create_task(self._send_all(connection))
         try:
             async for frame in connection:
-                await self._receive(connection, agent, frame)
+                self._receive(agent, frame)
         finally:
             self._connected = False
             sending.cancel()
@@ -97,6 +99,9 @@ class WebSocketLink:
         try:
             while True:
                 request = await self._outgoing.get()
+                if isinstance(request, str):
+                    await connection.send(request)
+                    continue
                 id = next(self._ids) if request.acknowledged else None
                 if id is not None:
                     self._asked[id] = request
@@ -104,7 +109,7 @@ class WebSocketLink:
         except ConnectionClosed:
             return
 
-    async def _receive(self, connection: ClientConnection, agent: Agent, frame: str | bytes) -> None:
+    def _receive(self, agent: Agent, frame: str | bytes) -> None:
         try:
             message = jsonrpc.decode(frame)
         except jsonrpc.FrameError as error:
@@ -119,10 +124,10 @@ class WebSocketLink:
         try:
             ack = agent.receive(decode_answer(message.method, message.params), id)
         except MessageError as error:
-            await connection.send(jsonrpc.error(message.id, jsonrpc.INVALID_PARAMS, str(error)))
+            self._outgoing.put_nowait(jsonrpc.error(message.id, jsonrpc.INVALID_PARAMS, str(error)))
             return
         if message.id is not None:
-            await connection.send(_reply(message.id, ack or OpAck(id=id)))
+            self._outgoing.put_nowait(_reply(message.id, ack or OpAck(id=id)))
 
     def _receive_reply(self, agent: Agent, reply: jsonrpc.Reply) -> None:
         asked = self._asked.pop(reply.id, None) if isinstance(reply.id, int) else None

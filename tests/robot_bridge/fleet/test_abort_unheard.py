@@ -109,6 +109,19 @@ async def test_a_robot_that_is_heard_all_along_has_aborted_when_it_says_so(line)
     assert await line.states() == {"a": "waiting"}
 
 
+async def test_a_cone_is_put_down_once_by_a_robot_that_says_where_it_is_before_it_takes_the_abort_on(line):
+    await begin(line)
+    await abort(line)
+    # Its link was away for a moment, in which it came to its end.
+    line.yard.now += 1.0
+    (row,) = await line.yard.deliver()
+    await line.yard.at(*CONE)
+    await line.yard.ack(row.id)
+    await line.go()
+    assert await line.states() == {"a": "done"}
+    assert len(await placed(line)) == 1
+
+
 async def test_a_queue_that_was_resumed_after_the_robot_took_the_abort_on_goes_on(line):
     await begin(line)
     await abort(line)

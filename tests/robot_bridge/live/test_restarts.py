@@ -77,6 +77,45 @@ def test_a_robot_that_is_killed_and_started_again_is_sent_its_task_again(bridge)
     assert math.hypot(desk.robots["r1"]["x"] - 30.0, desk.robots["r1"]["y"] - 20.0) <= 0.2
 
 
+@pytest.mark.parametrize("sql", [False, True], ids=["websocket", "sql"])
+def test_a_robot_that_remembers_is_killed_and_goes_on_with_its_task_by_itself(bridge, tmp_path, sql):
+    more = {"sql": sql, "options": ["--memory", tmp_path / "r1.json"]}
+    robot = bridge.start_robot("r1", (20.0, 20.0, 0.0), **more)
+    desk = watch(bridge)
+    desk.wait_for_robots("r1")
+    desk.send("target-1", "r1", "SetPosEnd", x=45.0, y=20.0)
+    desk.wait_for_step("target-1", "acknowledged")
+    desk.until(lambda: desk.robots["r1"]["x"] > 24)
+    robot.kill()
+    robot.wait(5)
+    bridge.start_robot("r1", (0.0, 0.0, 0.0), **more)
+    command = desk.wait_for_step("target-1", "reached")
+    assert steps(command) == ["queued", "delivered", "acknowledged", "reached"]
+
+
+@pytest.mark.parametrize("sql", [False, True], ids=["websocket", "sql"])
+def test_a_cone_that_was_put_down_before_its_robot_was_killed_is_not_put_down_again(bridge, tmp_path, sql):
+    file = tmp_path / "r1.json"
+    more = {"sql": sql, "options": ["--memory", file]}
+    robot = bridge.start_robot("r1", (20.0, 20.0, 0.0), **more)
+    desk = watch(bridge)
+    desk.wait_for_robots("r1")
+    desk.send("target-1", "r1", "SetPosEnd", x=40.0, y=20.0, cone=True)
+    desk.wait_for_step("target-1", "acknowledged")
+    # It comes to its end, and nobody hears of it.
+    bridge.kill_gateway()
+    wait_until(lambda: json.loads(file.read_text())["way"] == [], 30)
+    robot.kill()
+    robot.wait(5)
+    bridge.sql("delete from rr")
+    bridge.start_gateway()
+    desk = watch(bridge)
+    bridge.start_robot("r1", (0.0, 0.0, 0.0), **more)
+    command = desk.wait_for_step("target-1", "reached")
+    assert steps(command) == ["queued", "delivered", "acknowledged", "reached"]
+    assert bridge.sql("select op from sa where op = 'SetPosEnd'") == []
+
+
 def test_a_robot_that_is_killed_and_then_aborted_does_not_drive_on_when_it_comes_back(bridge):
     robot = bridge.start_robot("r1", (20.0, 20.0, 0.0), sql=True)
     desk = watch(bridge)

@@ -125,6 +125,23 @@ def test_abort_stops_it_and_it_stays(robot):
     assert robot.agent.pose == stood
 
 
+def test_before_it_acknowledges_an_abort_it_says_where_it_is(robot):
+    robot.agent.receive(SetPosEnd(1.0, 0.0), 1)
+    robot.live(10)
+    robot.said.clear()
+    acknowledged = robot.agent.receive(Abort(), 2)
+    (position,) = robot.said
+    assert (position.x, position.v) == (pytest.approx(1.0, abs=0.1), 0.0)
+    assert acknowledged == OpAck(id=2)
+
+
+def test_a_robot_that_was_not_let_in_says_nothing_of_itself_to_an_abort():
+    said = []
+    agent = Agent(AgentSettings(magic=42, pose=(0.0, 0.0, 0.0), limits=BodyLimits()), said.append)
+    assert agent.receive(Abort(), 2) == OpAck(id=2)
+    assert said == []
+
+
 def test_a_map_is_taken_and_a_broken_one_refused_with_the_reason(robot):
     assert robot.agent.map is None
     good = encode(build_map(Outlines.from_rows([]), Window(15.0, 15.0, 30.0, 30.0)))

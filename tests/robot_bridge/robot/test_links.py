@@ -1,0 +1,108 @@
+"""In which order the reference robot's links carry what it says, and what they say again."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+
+import pytest
+from websockets.asyncio.server import serve
+
+from robot_bridge.errors import StoreError
+from robot_bridge.messages import Abort, OpAck, Ready, SetObject, SetPosEnd
+from robot_bridge.robot.agent import Agent, AgentSettings
+from robot_bridge.robot.body import BodyLimits
+from robot_bridge.robot.sql_link import SqlLink
+from robot_bridge.robot.websocket_link import WebSocketLink
+from robot_bridge.store import answers, requests
+from robot_bridge.store.database import Database
+
+ADMITTED = {"id": 1, "ok": True, "magic": 42, "robot": "r1", "database": "first"}
+
+
+def agent_on(link) -> Agent:
+    return Agent(AgentSettings(magic=42, pose=(0.0, 0.0, 0.0), limits=BodyLimits()), link.say)
+
+
+@pytest.fixture
+async def database(tmp_path):
+    database = Database(f"sqlite:///{tmp_path}/fleet.db")
+    await database.open()
+    yield database
+    await database.close()
+
+
+async def said(database, count):
+    """Return the operations in RR, and the parameters of OpAck, once there are ``count`` of them."""
+    async with asyncio.timeout(30):
+        while len(rows := await database.read(requests.read)) < count:
+            await asyncio.sleep(0.02)
+    return [(row.op, json.loads(row.params).get("id") if row.op == "OpAck" else None) for row in rows]
+
+
+@pytest.fixture
+async def on_sql(database, tmp_path):
+    """A robot on SQL that was let in, with RR empty."""
+    link = SqlLink(f"sqlite:///{tmp_path}/fleet.db", "r1")
+    running = asyncio.create_task(link.run(agent_on(link)))
+    await said(database, 1)
+    await database.run(answers.add, "r1", OpAck(ok=True, magic=42, robot="r1", database="first"))
+    async with asyncio.timeout(30):
+        while await database.read(answers.read, "r1"):
+            await asyncio.sleep(0.02)
+    await database.run(requests.remove, [row.id for row in await database.read(requests.read)])
+    yield link
+    running.cancel()
+    await asyncio.gather(running, return_exceptions=True)
+
+
+async def test_on_sql_it_says_where_it_is_before_it_acknowledges_an_abort(database, on_sql):
+    await database.run(answers.add, "r1", SetPosEnd(5.0, 0.0))
+    id = await database.run(answers.add, "r1", Abort())
+    told = [one for one in await said(database, 3) if one[0] in ("SendPos", "OpAck")]
+    assert told[-2:] == [("SendPos", None), ("OpAck", id)]
+
+
+async def test_what_could_not_be_written_is_said_again_once_and_in_that_order(database, on_sql, monkeypatch):
+    jot, failed = on_sql._database.jot, []
+
+    async def lost(*arguments):
+        if len(failed) < 3:
+            failed.append(arguments)
+            raise StoreError("the database is away")
+        return await jot(*arguments)
+
+    monkeypatch.setattr(on_sql._database, "jot", lost)
+    monkeypatch.setattr("robot_bridge.robot.sql_link.RETRY_AFTER", 0.05)
+    for _ in range(2):
+        on_sql.say(Ready(42))
+    on_sql.say(SetObject(1.0, 2.0, "cone-7", source="1"))
+    id = await database.run(answers.add, "r1", Abort())
+    told = await said(database, 4)
+    assert len(failed) == 3
+    assert [told.count(one) for one in (("Ready", None), ("SetObject", None))] == [1, 1]
+    assert told[told.index(("OpAck", id)) - 1] == ("SendPos", None)
+
+
+async def test_on_a_websocket_it_says_where_it_is_before_it_acknowledges_an_abort():
+    heard = asyncio.Queue()
+
+    async def gateway(connection):
+        await connection.send(
+            json.dumps({"jsonrpc": "2.0", "method": "Start", "params": {"database": "first"}})
+        )
+        ready = json.loads(await connection.recv())
+        await connection.send(json.dumps({"jsonrpc": "2.0", "id": ready["id"], "result": ADMITTED}))
+        await connection.send(json.dumps({"jsonrpc": "2.0", "id": 7, "method": "Abort", "params": {}}))
+        async for frame in connection:
+            heard.put_nowait(json.loads(frame))
+
+    async with serve(gateway, "127.0.0.1", 0) as server:
+        port = server.sockets[0].getsockname()[1]
+        link = WebSocketLink(f"ws://127.0.0.1:{port}/robot", "r1")
+        running = asyncio.create_task(link.run(agent_on(link)))
+        async with asyncio.timeout(30):
+            first, second = await heard.get(), await heard.get()
+        running.cancel()
+        await asyncio.gather(running, return_exceptions=True)
+    assert (first["method"], second["id"], "result" in second) == ("SendPos", 7, True)
