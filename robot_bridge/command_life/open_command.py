@@ -159,8 +159,8 @@ def drafted(order: Order, now: float) -> OpenCommand:
 def voided(order: Order, mine: list[OpenCommand], now: float) -> list[OpenCommand]:
     """Return the ends of those commands of the robot, ``mine``, that ``order`` ends at once.
 
-    An Abort ends the task that the robot has not fetched. What it has fetched may be done by the time that the
-    Abort comes, so that ends when it acknowledges the Abort.
+    An Abort ends the task that the robot has not fetched. What it has fetched may be done by the time that
+    the Abort comes, so that ends when it acknowledges the Abort.
     """
     ended = []
     for command in mine:
