@@ -140,7 +140,9 @@ class LayerCheck(QObject):
             if number % AT_ONCE == 0:
                 yield 0.0
         self._kept[check] = still_needed
-        return (yield from check.told(found_for, bool(layers)))
+        # As with the alarms: of layers with nothing in them, as published sites without surfaces have them.
+        is_watched = any(layer.featureCount() != 0 for layer in layers)
+        return (yield from check.told(found_for, is_watched))
 
     def _unseen(self) -> Findings:
         """Tell of what a draft has to be held against and cannot be."""

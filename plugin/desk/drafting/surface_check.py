@@ -46,7 +46,7 @@ class SurfaceCheck:
         return found
 
     def told(self, found: Sequence[tuple[Track, list[bool]]], is_watched: bool) -> Steps[Findings]:
-        """Return the findings; without a layer of road surfaces nobody can tell."""
+        """Return the findings; without any road surface nobody can tell."""
         yield 1.0
         off = [track for track, is_on in found if not is_on]
         if not off or not is_watched:

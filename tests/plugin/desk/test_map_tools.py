@@ -213,6 +213,13 @@ def test_a_target_beside_the_road_is_warned_of_and_can_be_sent(cone, iface, gate
     sent(gateway, wait)
 
 
+def test_where_no_surface_is_known_nothing_is_said_of_roads(cone, iface):
+    layer = layer_with_role("road_surface", 60, 50, 80, 60)
+    layer.dataProvider().truncate()
+    iface.click(30, 55)
+    assert "Cone for r1" in drawn(cone) and "not on a road surface" not in drawn(cone)
+
+
 def test_a_route_across_a_keepout_is_refused_even_if_its_points_are_beside(route, iface, gateway):
     layer_with_role("keepout", 60, 50, 80, 60)
     iface.click(50, 55)
