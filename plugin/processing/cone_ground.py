@@ -26,7 +26,7 @@ from ..language import tr
 from ..sites.feature_filter import FeatureFilter
 from ..sites.ground_reading import read_areas
 from ..sites.obstacle_source import ObstacleSource, obstacle_sources
-from ..sites.placing import PlacingError, SitePlacing
+from ..sites.placing import SitePlacing
 from ..sites.roles import FURNITURE, ROAD_SURFACE, LayerExpressions, LayerSetup, setup_of
 from ..sites.shapes import polygons_of, shapes_of
 from .fleet_algorithm import Parameters
@@ -138,14 +138,9 @@ def read_obstacles(
             if feedback.isCanceled():
                 return shapes
             name, notes = tr("{name}, feature {id}", name=source.name, id=feature.id()), []
-            if counts.keeps(feature, notes) and not feature.geometry().isNull():
-                try:
-                    parts, found = _parts(placing.to_metres(feature.geometry()), name)
-                except PlacingError as error:
-                    parts, found = (
-                        [],
-                        [tr("cannot be transformed into the site's CRS ({error})", error=error)],
-                    )
+            geometry = placing.of_feature(feature, notes) if counts.keeps(feature, notes) else None
+            if geometry is not None:
+                parts, found = _parts(geometry, name)
                 shapes += parts
                 notes += found
             for note in notes:

@@ -25,7 +25,7 @@ from ...robot_bridge.layouts.placing import along, placed
 from ..language import tr, tr_page
 from ..layout_words import dimension_in_words, layout_in_words
 from ..sites.ground_reading import lines_of
-from ..sites.placing import PlacingError, SitePlacing
+from ..sites.placing import SitePlacing
 from .cone_ground import ground_parameters
 from .cone_layer import STYLES, ConeSetup, add_layers, site_crs_parameter
 from .errors import ParameterError, shown_by_processing
@@ -167,11 +167,8 @@ class ConeLayout(FleetAlgorithm):
         source, feature = self._line, self._line_feature(parameters, context)
         site = SitePlacing.in_crs(self._setup.crs, context.transformContext())
         placing = site.of_layer(source.sourceName(), source.sourceCrs())
-        geometry = feature.geometry()
-        try:
-            lines = [] if geometry.isNull() else lines_of(placing.to_metres(geometry), [])
-        except PlacingError:
-            lines = []
+        geometry = placing.of_feature(feature, [])
+        lines = [] if geometry is None else lines_of(geometry, [])
         if not lines:
             raise ParameterError(
                 tr(

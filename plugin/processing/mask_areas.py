@@ -17,7 +17,7 @@ from qgis.core import (
 from ...robot_bridge.robotmap.exporters.masks import MaskArea
 from ..language import tr
 from ..sites.feature_filter import FeatureFilter
-from ..sites.placing import LayerPlacing, PlacingError, SitePlacing
+from ..sites.placing import LayerPlacing, SitePlacing
 from ..sites.shapes import polygons_of, shapes_of
 from .errors import ParameterError
 
@@ -86,14 +86,9 @@ def speed_by(text: str, source: QgsProcessingFeatureSource, context: QgsExpressi
 
 def _polygons(feature: QgsFeature, placing: LayerPlacing, notes: list[str]) -> list[list[np.ndarray]]:
     """Return the rings of each polygon of ``feature`` in the site frame; what is odd goes into ``notes``."""
-    geometry = feature.geometry()
-    if geometry.isNull() or geometry.isEmpty():
-        notes.append(tr("has no geometry; it is left out"))
+    geometry = placing.of_feature(feature, notes)
+    if geometry is None:
         return []
-    try:
-        shapes, odd = shapes_of(placing.to_metres(geometry))
-    except PlacingError as error:
-        notes.append(tr("cannot be transformed into the site's CRS ({error}); it is left out", error=error))
-        return []
+    shapes, odd = shapes_of(geometry)
     notes += odd
     return [[placing.to_site(ring) for ring in rings] for rings in polygons_of(shapes)]

@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 import numpy as np
 from qgis.core import (
     QgsCoordinateReferenceSystem,
-    QgsFeature,
     QgsProcessing,
     QgsProcessingAlgorithm,
     QgsProcessingContext,
@@ -30,7 +29,7 @@ from ...robot_bridge.roads.repairs import repaired_network
 from ..language import tr, tr_count
 from ..sites.ground_reading import DEFAULT_WIDTH_M, lines_of
 from ..sites.layer_rules import LayerRules
-from ..sites.placing import LayerPlacing, PlacingError, SitePlacing
+from ..sites.placing import LayerPlacing, SitePlacing
 from ..sites.road_attributes import RoadAttributes, RoadExpressions, RoadRules
 from ..sites.roles import LayerExpressions, expressions_of
 from .errors import ParameterError
@@ -174,7 +173,8 @@ class RoadSource:
             notes: list[str] = []
             counts = self._counted is None or self._counted.keeps(feature, notes)
             rules.at(feature)
-            found = _lines_in_metres(feature, placing, notes) if counts else []
+            geometry = placing.of_feature(feature, notes) if counts else None
+            found = [] if geometry is None else lines_of(geometry, notes)
             if found:
                 known += [road_rules.of(notes)] * len(found)
             lines += found
@@ -219,20 +219,6 @@ class RoadSource:
             closed=[one.traffic.closed for one in known],
             level=[one.traffic.level for one in known],
         )
-
-
-def _lines_in_metres(feature: QgsFeature, placing: LayerPlacing, notes: list[str]) -> list[np.ndarray]:
-    geometry = feature.geometry()
-    if geometry.isNull() or geometry.isEmpty():
-        notes.append(tr("has no geometry; it is left out"))
-        return []
-    try:
-        return lines_of(placing.to_metres(geometry), notes)
-    except PlacingError as error:
-        notes.append(
-            tr("cannot be transformed into the CRS in metres ({error}); it is left out", error=error)
-        )
-        return []
 
 
 def network_of_roads(

@@ -17,7 +17,7 @@ from .feature_filter import FeatureFilter
 from .layer_rules import LayerRules
 from .obstacle_source import ObstacleSource
 from .parts import parts_of
-from .placing import LayerPlacing, PlacingError, SitePlacing
+from .placing import LayerPlacing, SitePlacing
 from .road_attributes import WIDTH_FIELDS, RoadExpressions, RoadRules
 from .roles import KEEPOUT, ROAD_CENTRELINE, ROAD_SURFACE
 from .shapes import SAGITTA_M, polygons_of, shapes_of
@@ -182,21 +182,12 @@ class _GroundLayer:
                 reading.complete = False
                 return
             doubts: list[str] = []
-            if not self._filter.keeps(feature, doubts):
-                self.note(feature, doubts, reading)
-                continue
-            geometry = feature.geometry()
-            if geometry.isNull() or geometry.isEmpty():
-                self.note(feature, [tr("has no geometry; it is left out")], reading)
-                continue
-            try:
-                moved = self.placing.to_metres(geometry)
-            except PlacingError as error:
-                why = tr("cannot be transformed into the site's CRS ({error}); it is left out", error=error)
-                self.note(feature, [why], reading)
-                continue
-            self.rules.at(feature)
-            yield feature, moved
+            counts = self._filter.keeps(feature, doubts)
+            geometry = self.placing.of_feature(feature, doubts) if counts else None
+            self.note(feature, doubts, reading)
+            if geometry is not None:
+                self.rules.at(feature)
+                yield feature, geometry
 
     def label(self, feature: QgsFeature, notes: list[str]) -> str:
         """Return the label of the feature that was yielded last."""

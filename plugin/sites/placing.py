@@ -12,6 +12,7 @@ from qgis.core import (
     QgsCoordinateTransform,
     QgsCoordinateTransformContext,
     QgsCsException,
+    QgsFeature,
     QgsGeometry,
     QgsRectangle,
 )
@@ -137,6 +138,20 @@ class LayerPlacing:
         except QgsCsException as error:
             raise PlacingError(str(error)) from error
         return moved
+
+    def of_feature(self, feature: QgsFeature, notes: list[str]) -> QgsGeometry | None:
+        """Return the geometry of ``feature`` in metres; None, with a note of why, where it has none there."""
+        geometry = feature.geometry()
+        if geometry.isNull() or geometry.isEmpty():
+            notes.append(tr("has no geometry; it is left out"))
+            return None
+        try:
+            return self.to_metres(geometry)
+        except PlacingError as error:
+            notes.append(
+                tr("cannot be transformed into the site's CRS ({error}); it is left out", error=error)
+            )
+            return None
 
     def to_site(self, xy: np.ndarray) -> np.ndarray:
         """Return ``xy``, (n, 2) metres as :meth:`to_metres` gives them, as (n, 2) in the site frame."""

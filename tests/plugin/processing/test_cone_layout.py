@@ -152,6 +152,11 @@ def test_each_cone_that_may_not_stand_there_is_a_finding(place, listener):
     assert "No surface is of class gravel: the layers have asphalt." in listener.warnings
 
 
+def test_an_obstacle_without_a_geometry_is_named(place, listener):
+    place(LAYOUT="slalom", POINT=f"{X},{Y}", OBSTACLES=[layer("Point", "", name="Posts")])
+    assert "Layer Posts, feature 1: has no geometry; it is left out" in listener.warnings
+
+
 def test_without_surfaces_it_is_said_that_they_are_not_checked(place, listener):
     assert place(LAYOUT="slalom", POINT=f"{X},{Y} [{UTM}]")["FINDING_COUNT"] == 0
     assert any("whether the cones stand on the road is not checked" in info for info in listener.infos)
