@@ -5468,11 +5468,6 @@
         </message>
         <message>
             <location filename="../../plugin/processing/cone_ground.py" />
-            <source>cannot be transformed into the site's CRS ({error})</source>
-            <translation>no es pot transformar al SRC del recinte ({error})</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/cone_ground.py" />
             <source>{name}, feature {id}</source>
             <translation>{name}, entitat {id}</translation>
         </message>
@@ -6665,16 +6660,6 @@
         </message>
         <message>
             <location filename="../../plugin/processing/mask_areas.py" />
-            <source>cannot be transformed into the site's CRS ({error}); it is left out</source>
-            <translation>no es pot transformar al SRC del recinte ({error}); s'omet</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/mask_areas.py" />
-            <source>has no geometry; it is left out</source>
-            <translation>no té geometria; s'omet</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/mask_areas.py" />
             <source>has no speed above 0 m/s, so it sets no limit; it is left out</source>
             <translation>no té cap velocitat superior a 0 m/s, així que no limita; s'omet</translation>
         </message>
@@ -7123,11 +7108,6 @@
             <location filename="../../plugin/processing/road_source.py" />
             <source>Width of roads of which it is not known [m]</source>
             <translation>Amplada de les vies de les quals no es coneix [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/road_source.py" />
-            <source>cannot be transformed into the CRS in metres ({error}); it is left out</source>
-            <translation>no es pot transformar al SRC en metres ({error}); s'omet</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/sinks.py" />
@@ -8021,6 +8001,16 @@
             <location filename="../../plugin/sites/placing.py" />
             <source>The layer {name} is in the CRS {crs}, which has no known relation to the site CRS {site_crs}: choose the layer's CRS as the site CRS, or {tick}.</source>
             <translation>La capa {name} és en el SRC {crs}, que no té cap relació coneguda amb el SRC del recinte {site_crs}: trieu el SRC de la capa com a SRC del recinte, o {tick}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/placing.py" />
+            <source>cannot be transformed into the site's CRS ({error}); it is left out</source>
+            <translation>no es pot transformar al SRC del recinte ({error}); s'omet</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/placing.py" />
+            <source>has no geometry; it is left out</source>
+            <translation>no té geometria; s'omet</translation>
         </message>
         <message>
             <location filename="../../plugin/sites/placing.py" />

@@ -5468,11 +5468,6 @@
         </message>
         <message>
             <location filename="../../plugin/processing/cone_ground.py" />
-            <source>cannot be transformed into the site's CRS ({error})</source>
-            <translation>no se puede transformar al SRC del recinto ({error})</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/cone_ground.py" />
             <source>{name}, feature {id}</source>
             <translation>{name}, objeto espacial {id}</translation>
         </message>
@@ -6665,16 +6660,6 @@
         </message>
         <message>
             <location filename="../../plugin/processing/mask_areas.py" />
-            <source>cannot be transformed into the site's CRS ({error}); it is left out</source>
-            <translation>no se puede transformar al SRC del recinto ({error}); se omite</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/mask_areas.py" />
-            <source>has no geometry; it is left out</source>
-            <translation>no tiene geometría; se omite</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/mask_areas.py" />
             <source>has no speed above 0 m/s, so it sets no limit; it is left out</source>
             <translation>no tiene velocidad superior a 0 m/s, así que no limita; se omite</translation>
         </message>
@@ -7123,11 +7108,6 @@
             <location filename="../../plugin/processing/road_source.py" />
             <source>Width of roads of which it is not known [m]</source>
             <translation>Anchura de las vías de las que no se conoce [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/road_source.py" />
-            <source>cannot be transformed into the CRS in metres ({error}); it is left out</source>
-            <translation>no se puede transformar al SRC en metros ({error}); se omite</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/sinks.py" />
@@ -8021,6 +8001,16 @@
             <location filename="../../plugin/sites/placing.py" />
             <source>The layer {name} is in the CRS {crs}, which has no known relation to the site CRS {site_crs}: choose the layer's CRS as the site CRS, or {tick}.</source>
             <translation>La capa {name} está en el SRC {crs}, que no tiene relación conocida con el SRC del recinto {site_crs}: elija el SRC de la capa como SRC del recinto, o {tick}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/placing.py" />
+            <source>cannot be transformed into the site's CRS ({error}); it is left out</source>
+            <translation>no se puede transformar al SRC del recinto ({error}); se omite</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/placing.py" />
+            <source>has no geometry; it is left out</source>
+            <translation>no tiene geometría; se omite</translation>
         </message>
         <message>
             <location filename="../../plugin/sites/placing.py" />

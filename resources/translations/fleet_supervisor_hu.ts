@@ -5437,11 +5437,6 @@
         </message>
         <message>
             <location filename="../../plugin/processing/cone_ground.py" />
-            <source>cannot be transformed into the site's CRS ({error})</source>
-            <translation>nem számítható át a telephely vetületébe ({error})</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/cone_ground.py" />
             <source>{name}, feature {id}</source>
             <translation>{name}, {id}. elem</translation>
         </message>
@@ -6630,16 +6625,6 @@
         </message>
         <message>
             <location filename="../../plugin/processing/mask_areas.py" />
-            <source>cannot be transformed into the site's CRS ({error}); it is left out</source>
-            <translation>nem számítható át a telephely vetületébe ({error}); kimarad</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/mask_areas.py" />
-            <source>has no geometry; it is left out</source>
-            <translation>nincs geometriája; kimarad</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/mask_areas.py" />
             <source>has no speed above 0 m/s, so it sets no limit; it is left out</source>
             <translation>nincs 0 m/s feletti sebessége, így nem korlátoz; kimarad</translation>
         </message>
@@ -7081,11 +7066,6 @@
             <location filename="../../plugin/processing/road_source.py" />
             <source>Width of roads of which it is not known [m]</source>
             <translation>Az ismeretlen szélességű utak szélessége [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/road_source.py" />
-            <source>cannot be transformed into the CRS in metres ({error}); it is left out</source>
-            <translation>nem számítható át a méteres vetületbe ({error}); kimarad</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/sinks.py" />
@@ -7968,6 +7948,16 @@
             <location filename="../../plugin/sites/placing.py" />
             <source>The layer {name} is in the CRS {crs}, which has no known relation to the site CRS {site_crs}: choose the layer's CRS as the site CRS, or {tick}.</source>
             <translation>A(z) {name} réteg vetülete {crs}, amelynek nincs ismert kapcsolata a telephely vetületével ({site_crs}): válassza a réteg vetületét a telephely vetületének, vagy {tick}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/placing.py" />
+            <source>cannot be transformed into the site's CRS ({error}); it is left out</source>
+            <translation>nem számítható át a telephely vetületébe ({error}); kimarad</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/placing.py" />
+            <source>has no geometry; it is left out</source>
+            <translation>nincs geometriája; kimarad</translation>
         </message>
         <message>
             <location filename="../../plugin/sites/placing.py" />
