@@ -16,10 +16,10 @@ from pathlib import Path
 
 import numpy as np
 from plugin_files import ROOT
-from stage.errors import StageError
 from stage.fleet import PROJECT, SITE, start_gateway
 from stage.picture import reduce_colours
-from stage.processes import Processes, leave_on_signals
+from stage.processes import Processes
+from stage.program import ended
 from stage.qgis import Profile, virtual_screen
 from stage.session import follow, start_qgis
 
@@ -96,13 +96,7 @@ def main() -> int:
     default = ROOT / "docs" / "images"
     parser.add_argument("pictures", type=Path, nargs="?", default=default, metavar="FOLDER")
     pictures = parser.parse_args().pictures.resolve()
-    leave_on_signals()
-    try:
-        run(pictures)
-    except StageError as error:
-        print(f"cone_plan_pictures: error: {error}", file=sys.stderr)
-        return 1
-    return 0
+    return ended("cone_plan_pictures", lambda: run(pictures))
 
 
 if __name__ == "__main__":

@@ -17,10 +17,10 @@ from pathlib import Path
 import numpy as np
 from plugin_files import ROOT, version
 from stage.desk_wire import ask
-from stage.errors import StageError
 from stage.fleet import PROJECT, SITE, STARTS, start_gateway, start_robots
 from stage.map_export import export
-from stage.processes import Processes, leave_on_signals
+from stage.processes import Processes
+from stage.program import ended
 from stage.qgis import Profile, virtual_screen
 from stage.report import PAPER_BYTES_PER_M2, Report
 from stage.session import follow, start_qgis
@@ -125,22 +125,19 @@ def versions() -> dict[str, str]:
     return {"Fleet Supervisor": version(), "QGIS": Qgis.QGIS_VERSION, "Python": platform.python_version()}
 
 
-def main() -> int:
-    leave_on_signals()
+def run() -> None:
+    """Do the main job on the sample site, and write the report of it."""
     shutil.rmtree(FOLDER, ignore_errors=True)
     FOLDER.mkdir(parents=True)
     report = Report(versions())
-    try:
-        with Processes(FOLDER / "logs") as processes:
-            Demonstration(processes, report).run()
-    except StageError as error:
-        print(f"demo: error: {error}\n(logs: {FOLDER / 'logs'})", file=sys.stderr)
-        return 1
-    except KeyboardInterrupt:
-        return 130
+    with Processes(FOLDER / "logs") as processes:
+        Demonstration(processes, report).run()
     (FOLDER / "report.md").write_text(report.text(), encoding="utf-8")
     print(f"see {FOLDER}: report.md, canvas.png, site.map, site.bin")
-    return 0
+
+
+def main() -> int:
+    return ended("demo", run, f"logs: {FOLDER / 'logs'}")
 
 
 if __name__ == "__main__":

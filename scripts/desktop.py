@@ -15,10 +15,10 @@ from pathlib import Path
 
 import numpy as np
 from plugin_files import ROOT
-from stage.errors import StageError
 from stage.fleet import PROJECT, SITE, STARTS, start_gateway, start_robots
 from stage.picture import reduce_colours
-from stage.processes import Processes, leave_on_signals
+from stage.processes import Processes
+from stage.program import ended
 from stage.qgis import Profile, has_screen, virtual_screen
 from stage.session import follow, start_qgis
 
@@ -99,15 +99,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--screenshot", type=Path, metavar="PNG", help="take this picture of it and end")
     picture = parser.parse_args().screenshot
-    leave_on_signals()
-    try:
-        run(picture.resolve() if picture else None)
-    except StageError as error:
-        print(f"desktop: error: {error}", file=sys.stderr)
-        return 1
-    except KeyboardInterrupt:
-        return 130
-    return 0
+    return ended("desktop", lambda: run(picture.resolve() if picture else None))
 
 
 if __name__ == "__main__":

@@ -10,9 +10,9 @@ import sys
 from pathlib import Path
 
 from plugin_files import ROOT
-from stage.errors import StageError
 from stage.picture import reduce_colours
-from stage.processes import Processes, leave_on_signals
+from stage.processes import Processes
+from stage.program import ended
 from stage.qgis import Profile, virtual_screen
 from stage.session import follow, start_qgis
 
@@ -48,13 +48,7 @@ def main() -> int:
     default = ROOT / "docs" / "images" / "roles-dialog.png"
     parser.add_argument("picture", type=Path, nargs="?", default=default, metavar="PNG")
     picture = parser.parse_args().picture.resolve()
-    leave_on_signals()
-    try:
-        run(picture)
-    except StageError as error:
-        print(f"roles_picture: error: {error}", file=sys.stderr)
-        return 1
-    return 0
+    return ended("roles_picture", lambda: run(picture))
 
 
 if __name__ == "__main__":

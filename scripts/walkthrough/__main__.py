@@ -17,7 +17,8 @@ from pathlib import Path
 from plugin_files import ROOT
 from stage.errors import StageError
 from stage.fleet import SITE, account, start_gateway, start_robots
-from stage.processes import Processes, leave_on_signals
+from stage.processes import Processes
+from stage.program import ended
 from stage.qgis import Profile, virtual_screen
 from stage.session import follow, start_qgis
 
@@ -105,17 +106,13 @@ def main() -> int:
     arguments = parser.parse_args()
     if unknown := set(arguments.walks) - set(names):
         parser.error(f"there is no walk {', '.join(sorted(unknown))}; there are {', '.join(names)}")
-    leave_on_signals()
-    try:
+
+    def walked() -> None:
         for walk in WALKS:
             if walk.name in (arguments.walks or names):
                 run(walk, arguments.pictures.resolve())
-    except StageError as error:
-        print(f"walkthrough: error: {error}\n(logs: {FOLDER / 'logs'}, screen: {FAILED})", file=sys.stderr)
-        return 1
-    except KeyboardInterrupt:
-        return 130
-    return 0
+
+    return ended("walkthrough", walked, f"logs: {FOLDER / 'logs'}, screen: {FAILED}")
 
 
 if __name__ == "__main__":

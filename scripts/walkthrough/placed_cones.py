@@ -7,6 +7,7 @@ from pathlib import Path
 
 from stage.errors import StageError
 
+from .operator_at_screen import OperatorAtScreen
 from .scene import Scene
 from .toolbox import close, lay_out_cones
 
@@ -37,9 +38,7 @@ def place_cones(scene: Scene) -> None:
     # The keys of the stops do not need the panels, and what comes does need their room.
     operator.press("F9")
     operator.wait("the fleet panel closing", lambda: not operator.widget("fleet_dock")["visible"])
-    operator.press("Alt+F12")
-    operator.press("Ctrl+1")
-    operator.wait_for_widget("Layers")
+    _show_layers(operator)
 
 
 def report_cones(scene: Scene) -> None:
@@ -52,6 +51,11 @@ def report_cones(scene: Scene) -> None:
     operator.wait_for_text("fleet_placed_figures", r"^(\d+) of \1 cones placed")
     scene.film.shoot("placed", "the plan is driven: every cone, and how far off it stands")
     write_report(scene)
+    _show_layers(operator)
+
+
+def _show_layers(operator: OperatorAtScreen) -> None:
+    """Show the layers where the plan stood, whose room they had made."""
     operator.press("Alt+F12")
     operator.press("Ctrl+1")
     operator.wait_for_widget("Layers")

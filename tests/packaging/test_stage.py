@@ -32,6 +32,14 @@ with Processes(Path(sys.argv[1])) as processes:
     print(processes.start("one", sys.argv[2:]).pid, flush=True)
     time.sleep(60)
 """
+ENDING = """\
+import sys
+from stage.errors import StageError
+from stage.program import ended
+def work():
+    {work}
+sys.exit(ended("show", work, "logs: here"))
+"""
 
 
 def is_running(pid: int) -> bool:
@@ -166,3 +174,18 @@ WRONG = [
 def test_anything_else_is_refused(commands, poses, complaint):
     with pytest.raises(StageError, match=complaint):
         judge(REACHED, commands, poses, 0.2)
+
+
+@pytest.mark.parametrize(
+    ("work", "status", "told"),
+    [
+        ("pass", 0, ""),
+        ("raise StageError('there is no screen')", 1, "show: error: there is no screen\n(logs: here)\n"),
+        ("raise KeyboardInterrupt", 130, ""),
+        ("import os; os.kill(os.getpid(), 15)", 128 + 15, ""),
+    ],
+)
+def test_a_program_ends_with_its_status_and_what_went_wrong_in_one_line(root, work, status, told):
+    program = [sys.executable, "-c", ENDING.format(work=work)]
+    done = subprocess.run(program, cwd=root / "scripts", capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (status, told)
