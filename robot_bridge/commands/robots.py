@@ -12,6 +12,7 @@ from sqlalchemy import Connection
 from ..access import accounts as tokens
 from ..access.errors import AccessError
 from ..messages import check_robot_name
+from ..store import robots as stored_robots
 from ..store.accounts.choice import has_accounts, keeper_on
 from ..store.address import shown
 from . import robot_tokens
@@ -85,17 +86,26 @@ def rotate(
 def remove(
     name: NameArgument, database: DatabaseOption = DEFAULT, database_password_file: PasswordFileOption = None
 ) -> None:
-    """Take a robot's account, its token, its connections and what waits for it away; its history stays."""
+    """Take a robot's account, its token, its connections and what waits for it away; its history stays.
+
+    On SQLite also a robot that never had a token. A gateway that runs knows it until it is started anew.
+    """
     address = database_address(database, database_password_file)
 
     def work(connection: Connection) -> None:
+        was_known = stored_robots.forget(connection, name)
         if has_accounts(address.drivername):
             keeper_on(connection).remove_robot(name)
-        if _has_token(connection, name) or not has_accounts(address.drivername):
+        elif not was_known and not _has_token(connection, name):
+            raise AccessError(
+                f"robot {name!r} is not known and has no token; the desks list the robots that are known, "
+                "'robot-bridge robots tokens' those that have a token"
+            )
+        if _has_token(connection, name):
             tokens.revoke_robot_token(connection, name, time.time())
 
     act(address, "robots remove", name, None, work)
-    _say(f"robot {name} can connect no more")
+    _say(f"robot {name} is removed; desks show it until the gateway and they are started anew")
 
 
 @app.command("list")

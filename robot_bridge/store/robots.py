@@ -6,7 +6,7 @@ import json
 from collections.abc import Sequence
 
 import msgspec
-from sqlalchemy import Connection, select
+from sqlalchemy import Connection, delete, select
 
 from ..messages import SendPos
 from ..robots import Robot
@@ -49,3 +49,8 @@ def load(connection: Connection) -> list[Robot]:
 def names(connection: Connection) -> list[str]:
     """Return the names of the robots that an earlier gateway knew, sorted."""
     return sorted(connection.scalars(select(robots.c.name)))
+
+
+def forget(connection: Connection, name: str) -> bool:
+    """Know a robot no more; return whether it was known."""
+    return connection.execute(delete(robots).where(robots.c.name == name)).rowcount > 0

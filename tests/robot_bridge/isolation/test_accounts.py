@@ -9,7 +9,9 @@ import pytest
 from yards import GATEWAY, MINE, OTHER, ROBOTS, RefusedError, Yard, command_line
 
 from robot_bridge.errors import StoreError
+from robot_bridge.robots import Robot
 from robot_bridge.store import revisions
+from robot_bridge.store import robots as stored_robots
 from robot_bridge.store.accounts.choice import keeper_on
 from robot_bridge.store.accounts.keeper import AccountError
 from robot_bridge.store.database import run_once
@@ -258,3 +260,13 @@ def test_on_sqlite_a_robot_gets_a_token_and_no_password(tmp_path):
     assert sqlite("robots", "remove", "r1").returncode == 0
     assert sqlite("robots", "list").stdout == ""
     assert "SQLite has no accounts" in sqlite("database", "account", "gateway").stderr
+
+
+def test_on_sqlite_a_robot_that_was_never_given_a_token_is_removed(tmp_path):
+    url = f"sqlite:///{tmp_path / 'fleet.db'}"
+    run_once(url, revisions.create)
+    gone, stays = (stored_robots.row(Robot(name, 1, "websocket", 1.0)) for name in ("r1", "r2"))
+    run_once(url, lambda connection: stored_robots.save(connection, [gone, stays]))
+    assert command_line("robots", "remove", "r1", "--database", url).returncode == 0
+    assert run_once(url, stored_robots.names) == ["r2"]
+    assert "'r1' is not known" in command_line("robots", "remove", "r1", "--database", url).stderr

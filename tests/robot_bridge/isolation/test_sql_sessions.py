@@ -141,7 +141,7 @@ def test_a_server_is_set_up_as_the_page_says(place):
     before = password.read_text()
     printed = place.shell.run(written(OPERATION, "both"))
     assert place.printed.splitlines()[-1] == printed.splitlines()[-1] == "r1\tdatabase account"
-    assert "robot r2 can connect no more" in printed
+    assert "robot r2 is removed" in printed
     assert "rror" not in place.printed + printed
     assert len(password.read_text().strip()) >= 32
     assert password.read_text() != before
