@@ -32,7 +32,7 @@ def from_json(text: str | bytes) -> Plan:
     """
     try:
         document = json.loads(text)
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         raise PlanFileError(f"This is no JSON document ({error}): choose the file of a plan.") from error
     if not isinstance(document, dict) or document.get("format") != FORMAT:
         raise PlanFileError(f"This is no plan: its format is not {FORMAT!r}. Choose the file of a plan.")
@@ -138,7 +138,10 @@ _KINDS: dict[str, tuple[type, ...]] = {"float": (int, float), "int": (int,), "st
 def _checked(value: Any, kind: str, at: str) -> Any:
     if not isinstance(value, _KINDS[kind]) or (isinstance(value, bool) and kind != "bool"):
         raise PlanFileError(f"The plan's {at} is {value!r}, which is no {kind}: make the plan again.")
-    if isinstance(value, float) and not math.isfinite(value):
-        raise PlanFileError(f"The plan's {at} is {value!r}: it has to be a finite number.")
-    number: Any = value
-    return float(number) if kind == "float" else number
+    try:
+        number: Any = float(value) if kind == "float" else value
+    except OverflowError:
+        number = math.inf
+    if kind == "float" and not math.isfinite(number):
+        raise PlanFileError(f"The plan's {at} is no finite number: make the plan again.")
+    return number

@@ -79,15 +79,16 @@ def near_obstacles(cones: Sequence[Cone], obstacles: Sequence[Shape], distance: 
     points = _points(cones)
     findings = []
     for obstacle in obstacles:
-        away = np.min([_away(points, ring) for ring in obstacle.rings], axis=0)
-        inside = _inside(points, obstacle.rings) if obstacle.area else np.zeros(len(cones), bool)
+        near = _near_box(points, obstacle.rings[0], distance)
+        if not len(near):
+            continue
+        some = points[near]
+        away = np.min([_away(some, ring) for ring in obstacle.rings], axis=0)
+        inside = _inside(some, obstacle.rings) if obstacle.area else np.zeros(len(some), bool)
         for k in np.flatnonzero(inside | (away < distance - 1e-9)).tolist():
             how = "is inside" if inside[k] else f"is {away[k]:.2f} m from"
-            findings.append(
-                _finding(
-                    Kind.OBSTACLE, cones[k], f"{how} {obstacle.name}: keep {distance:g} m from obstacles"
-                )
-            )
+            text = f"{how} {obstacle.name}: keep {distance:g} m from obstacles"
+            findings.append(_finding(Kind.OBSTACLE, cones[near[k]], text))
     return findings
 
 
@@ -102,6 +103,15 @@ def near_cones(cones: Sequence[Cone], distance: float) -> list[Finding]:
             text = f"is {away[other]:.2f} m from {cones[other].id}: keep {distance:g} m between cones"
             findings.append(_finding(Kind.CONES, cones[k], text))
     return findings
+
+
+def _near_box(points: Floats, line: Floats, distance: float) -> NDArray[np.int64]:
+    """Return which of ``points`` are in the box around ``line`` or nearer to it than ``distance``.
+
+    Of a long shore only the cones beside it are then held against each of its points.
+    """
+    low, high = line.min(axis=0) - distance, line.max(axis=0) + distance
+    return np.flatnonzero(((points >= low) & (points <= high)).all(axis=1))
 
 
 def _points(cones: Sequence[Cone]) -> Floats:

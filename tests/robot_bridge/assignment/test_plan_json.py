@@ -82,3 +82,10 @@ def test_what_is_no_json_is_told() -> None:
 def test_numbers_are_finite(plan: Plan) -> None:
     with pytest.raises(PlanFileError, match="finite"):
         from_json(to_json(plan).replace('"theta":0.0', '"theta":1e999', 1))
+
+
+def test_numbers_and_depths_beyond_all_bounds_are_refused(plan):
+    with pytest.raises(PlanFileError, match="no finite number"):
+        from_json(to_json(plan).replace('"theta":0.0', '"theta":1' + 400 * "0", 1))
+    with pytest.raises(PlanFileError, match="no JSON document"):
+        from_json(100_000 * "[")
