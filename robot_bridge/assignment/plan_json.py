@@ -138,10 +138,13 @@ _KINDS: dict[str, tuple[type, ...]] = {"float": (int, float), "int": (int,), "st
 def _checked(value: Any, kind: str, at: str) -> Any:
     if not isinstance(value, _KINDS[kind]) or (isinstance(value, bool) and kind != "bool"):
         raise PlanFileError(f"The plan's {at} is {value!r}, which is no {kind}: make the plan again.")
+    number: Any = value
+    if kind != "float":
+        return number
     try:
-        number: Any = float(value) if kind == "float" else value
+        finite = math.isfinite(number)
     except OverflowError:
-        number = math.inf
-    if kind == "float" and not math.isfinite(number):
+        finite = False
+    if not finite:
         raise PlanFileError(f"The plan's {at} is no finite number: make the plan again.")
-    return number
+    return float(number)
