@@ -135,14 +135,13 @@ def in_words(route: RouteReport, wishes: WayWishes, apart: str = "; ") -> str:
         if minutes
         else tr("{seconds} s", seconds=seconds)
     )
-    parts = [
-        tr(
-            "{metres:.0f} m {surface}",
-            metres=one.metres,
-            surface=one.surface or tr("surface not known"),
-        )
-        for one in route.surfaces
-    ]
+    surfaces = [(one.metres, one.surface or tr("surface not known")) for one in route.surfaces]
+    # Of one surface the metres are those of the way, which cuts corners that the roads' have.
+    parts = (
+        [tr("{metres:.0f} m {surface}", metres=metres, surface=surface) for metres, surface in surfaces]
+        if len(surfaces) > 1
+        else [surface for _, surface in surfaces]
+    )
     text = ", ".join([tr("{metres:.1f} m", metres=route.metres), time, *parts])
     if wishes.in_words():
         text += apart + ", ".join(wishes.in_words())

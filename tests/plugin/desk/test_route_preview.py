@@ -7,7 +7,7 @@ from fleet_supervisor.plugin.desk.route_preview import Question, RoutePreview, i
 from fleet_supervisor.plugin.desk.way_wishes import SHORTEST, WayWishes, surfaces_of
 from fleet_supervisor.plugin.desk.way_wishes_dialog import WayWishesDialog
 from fleet_supervisor.plugin.wire.outbox import Answer
-from fleet_supervisor.robot_bridge.messages import RouteReport
+from fleet_supervisor.robot_bridge.messages import RouteReport, SurfaceMetres
 from qgis.PyQt.QtWidgets import QLineEdit, QPushButton, QWidget
 
 
@@ -114,6 +114,15 @@ def test_what_was_wanted_stands_beside_the_way():
 def test_names_of_surfaces_are_read_with_commas_between():
     assert surfaces_of(" asphalt,, slippery section ,asphalt") == ("asphalt", "slippery section")
     assert surfaces_of(" ") == ()
+
+
+def test_a_way_on_one_surface_tells_its_metres_once():
+    def words(*surfaces):
+        route = RouteReport([], 336.9, 59.0, [SurfaceMetres(name, metres) for name, metres in surfaces])
+        return in_words(route, SHORTEST)
+
+    assert words(("", 338.0)) == "336.9 m, 59 s, surface not known"
+    assert words(("asphalt", 300.0), ("", 38.0)) == "336.9 m, 59 s, 300 m asphalt, 38 m surface not known"
 
 
 def test_the_dialog_begins_with_what_holds_and_gives_what_was_changed(qgis_app):
