@@ -5,11 +5,14 @@ from __future__ import annotations
 from collections.abc import Collection
 from dataclasses import asdict, dataclass
 
-from sqlalchemy import Connection, func, insert, select, update
+from sqlalchemy import Connection, insert, select, update
 
 from ..store.ageing import delete_oldest
 from ..store.schema import sessions
 from .errors import AccessError
+
+AT_ONCE = 500
+"""sessions that are asked about in one statement."""
 
 
 @dataclass(frozen=True)
@@ -71,13 +74,13 @@ def forget_ended(connection: Connection, before: float, limit: int) -> int:
 
 def ended_among(connection: Connection, open_here: Collection[str]) -> dict[str, str]:
     """Return which of the sessions that a gateway holds open somebody has ended, each with the reason."""
-    open_rows = select(func.count()).where(sessions.c.ended_at.is_(None))
-    if not open_here or connection.execute(open_rows).scalar_one() >= len(open_here):
-        return {}
-    query = select(sessions.c.id, sessions.c.reason).where(
-        sessions.c.id.in_(sorted(open_here)), sessions.c.ended_at.is_not(None)
-    )
-    return {id: reason or "" for id, reason in connection.execute(query)}
+    found: dict[str, str] = {}
+    wanted = sorted(open_here)
+    for begin in range(0, len(wanted), AT_ONCE):
+        some = sessions.c.id.in_(wanted[begin : begin + AT_ONCE])
+        query = select(sessions.c.id, sessions.c.reason).where(some, sessions.c.ended_at.is_not(None))
+        found.update({id: reason or "" for id, reason in connection.execute(query)})
+    return found
 
 
 def listed(connection: Connection, *, everything: bool, limit: int) -> list[SessionRow]:

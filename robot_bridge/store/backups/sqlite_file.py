@@ -14,8 +14,6 @@ from ...errors import StoreError
 from .. import revisions
 
 _MAGIC = b"SQLite format 3\x00"
-_PAGES = 2000
-"""pages copied at once, 8 MB; in between others may write."""
 
 
 class SqliteBackups:
@@ -33,7 +31,9 @@ class SqliteBackups:
     def write(self, partial: Path, revision: str) -> None:
         """Copy the database into ``partial``."""
         with _connected(self._file()) as source, _connected(partial) as target:
-            source.backup(target, pages=_PAGES)
+            # All in one step: one in several begins anew whenever somebody has written in between, and a
+            # gateway always does. With its log SQLite lets others write meanwhile.
+            source.backup(target)
             # A file of its own: what would wait in a log beside it could be left behind.
             target.execute("PRAGMA journal_mode = DELETE")
 

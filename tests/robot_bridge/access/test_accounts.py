@@ -270,6 +270,9 @@ async def test_a_session_can_be_ended_by_how_its_id_begins(database):
             await database.run(session_rows.end, id, 2.0, "why")
     await database.run(session_rows.end, "bb", 2.0, "why")
     assert await database.run(session_rows.ended_among, ["aa11", "aa22", "bb33"]) == {"bb33": "why"}
+    # One whose end could not be written makes up for it in number.
+    await database.run(session_rows.begin, SessionRow("cc44", "Ben", None, "viewer", "here", 1.0))
+    assert await database.run(session_rows.ended_among, ["aa11", "aa22", "bb33"]) == {"bb33": "why"}
     with pytest.raises(AccessError):
         await database.run(session_rows.end, "bb33", 3.0, "again")
     left = await database.run(lambda c: session_rows.listed(c, everything=False, limit=9))

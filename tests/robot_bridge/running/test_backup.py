@@ -1,11 +1,13 @@
 """A backup holds what the database held, on each kind of database, and comes back whole or not at all."""
 
 import asyncio
+import contextlib
 import gzip
 import os
 import secrets
 import sqlite3
 import stat
+import threading
 from pathlib import Path
 
 import pytest
@@ -141,7 +143,7 @@ def test_a_database_that_holds_something_is_replaced_only_when_told(address, tmp
     run_once(address, lambda c: c.execute(metadata.tables["robots"].delete()))
     changed = run_once(address, contents)
     with pytest.raises(
-        BridgeError, match="is not empty: it has 1 rows in commands; back it up, then give --replace"
+        BridgeError, match="is not empty: it has 1 row in commands; back it up, then give --replace"
     ):
         put_back(address, file)
     assert run_once(address, contents) == changed != before
@@ -304,3 +306,33 @@ def test_a_program_that_is_missing_is_named_and_no_password(address, tmp_path, k
         back_up(address, tmp_path / "backup")
     assert str(address.password) not in str(caught.value)
     assert os.listdir(tmp_path) == [fake.name]  # noqa: PTH208
+
+
+def test_a_backup_comes_to_its_end_while_a_gateway_writes_all_the_time(tmp_path):
+    file = tmp_path / "fleet.db"
+    address = read_address(f"sqlite:///{file}")
+    run_once(address, revisions.create)
+    with contextlib.closing(sqlite3.connect(file, isolation_level=None)) as connection:
+        connection.execute("insert into bridge values ('filling', ?)", ("x" * 40_000_000,))
+    written, ended = [], threading.Event()
+    writer = threading.Thread(target=write_on, args=(file, written, ended))
+    writer.start()
+    backing_up = threading.Thread(target=back_up, args=(address, tmp_path / "backup.db"), daemon=True)
+    try:
+        backing_up.start()
+        backing_up.join(120)
+        came_to_its_end = not backing_up.is_alive()
+    finally:
+        ended.set()
+        writer.join()
+    assert came_to_its_end
+    assert revision_in(address, tmp_path / "backup.db") == revisions.NEEDED
+    assert written
+
+
+def write_on(file, written, ended):
+    """Write a row every few milliseconds, as a gateway does."""
+    with contextlib.closing(sqlite3.connect(file, timeout=30, isolation_level=None)) as connection:
+        while not ended.wait(0.005):
+            connection.execute("insert into audit (at, who, action, done) values (1.0, 'Ada', 'send', 1)")
+            written.append(1)
