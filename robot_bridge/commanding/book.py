@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import asyncio
-import contextlib
 import dataclasses
 from collections import Counter
-from collections.abc import AsyncIterator, Awaitable, Callable, Coroutine, Iterable, Sequence
-from typing import Any, TypeVar
+from collections.abc import Awaitable, Callable, Coroutine, Iterable, Sequence
+from typing import Any
 
 from sqlalchemy import Connection
 
@@ -24,12 +22,13 @@ from ..command_life.open_command import (
 )
 from ..command_life.open_commands import OpenCommands
 from ..command_life.states import is_open, may_become
-from ..errors import DataRefusedError, RefusedError, StoreError, UncertainError
+from ..errors import DataRefusedError, RefusedError, StoreError
 from ..messages import Command, CommandReport, CommandState, OpAck, SendPos, SetPath, SetPosEnd
 from ..polyline import Polyline
 from ..store import commands
 from ..store.commands import StoredCommand
 from ..store.database import Database, to_its_end
+from .holding import HeldRobots
 from .writing import (
     Also,
     Draft,
@@ -44,7 +43,6 @@ from .writing import (
 
 __all__ = ["GATEWAY", "CommandBook", "OpenCommand", "Order"]
 
-T = TypeVar("T")
 DRIVEN_STEP = 0.5
 """metres along a path between two that are stored."""
 NOWHERE = SendPos(x=1e9, y=1e9, theta=0.0, v=0.0)
@@ -61,7 +59,6 @@ class CommandBook:
     Every change is committed before it is shown: ``changed`` is called with each command's new report, and
     ``outbox_changed`` with the robot for which SA holds something new. ``check`` raises RefusedError for a
     message that must not be sent to a robot now; ``consider`` is awaited before, for what of that takes long.
-    What concerns one robot waits only for what concerns the same robot.
     """
 
     def __init__(
@@ -90,8 +87,7 @@ class CommandBook:
         self.keep_out: Callable[[Command], Awaitable[None]] = _let_pass
         """Raises RefusedError for a message that leads into a keepout; for orders that are fenced."""
         self._open = OpenCommands()
-        self._locks: dict[str, asyncio.Lock] = {}
-        self._doubtful = False
+        self._held = HeldRobots(database, self._look_up)
         self._late: set[tuple[str, int]] = set()
 
     async def restore(self) -> None:
@@ -226,8 +222,8 @@ class CommandBook:
 
     async def look_up(self) -> None:
         """Find out what became of a transaction that may have been done or not; raises StoreError."""
-        if self._doubtful:
-            async with self._holding(()):
+        if self._held.are_in_doubt:
+            async with self._held.of(()):
                 # Whoever holds robots looks it up.
                 return
 
@@ -244,12 +240,12 @@ class CommandBook:
     # --- what has to be done to its end, with the robots' locks held --------------------------------------
 
     async def _issue(self, orders: list[Order], also: Also | None) -> list[CommandReport]:
-        async with self._holding(order.robot for order in orders):
+        async with self._held.of(order.robot for order in orders):
             # What takes long first: nothing may come between the checks and the transaction.
             found = [await self._fenced(order) for order in orders]
             now = self._clock()
             drafts = [self._draft(order, fault, now) for order, fault in zip(orders, found, strict=True)]
-            issued, ended = await self._run(write_drafts, drafts, also)
+            issued, ended = await self._held.run(write_drafts, drafts, also)
             for command in ended:
                 self._apply(command)
             for command in issued:
@@ -294,24 +290,24 @@ class CommandBook:
         return self.is_carrying_out(robot, task)
 
     async def _lead(self, robot: str, task: str, path: SetPath, write: Callable[[Connection], None]) -> None:
-        async with self._holding([robot]):
+        async with self._held.of([robot]):
             await self._consider(path)
             self._check(path)
             if not self.is_carrying_out(robot, task):
                 raise RefusedError(f"robot {robot!r} has been told otherwise in the meantime")
-            await self._run(write)
+            await self._held.run(write)
             self._outbox_changed(robot)
 
     async def _delivered(self, sa_ids: list[int]) -> None:
         # By now some may be further on.
         robots = {self._open.queued[id].report.robot for id in sa_ids if id in self._open.queued}
-        async with self._holding(robots):
+        async with self._held.of(robots):
             queued = [self._open.queued[id] for id in sa_ids if id in self._open.queued]
             now = self._clock()
             await self._save([command.step(CommandState.DELIVERED, now, GATEWAY) for command in queued])
 
     async def _acknowledged(self, robot: str, ack: OpAck) -> float | None:
-        async with self._holding([robot]):
+        async with self._held.of([robot]):
             command = next((c for c in self._open.of(robot) if c.sa_id == ack.id), None)
             if command is None and ack.ok and ack.id is not None:
                 await self._note_late(robot, ack.id)
@@ -320,7 +316,7 @@ class CommandBook:
                 command.acknowledgement_waits = False
             steps = [] if command is None else self._taken(command, robot, ack)
             # One transaction: a message that is gone from SA with its step unsaved would be lost.
-            await self._run(write_acknowledged, robot, ack.id, steps)
+            await self._held.run(write_acknowledged, robot, ack.id, steps)
             for step in steps:
                 self._apply(step)
             return command.written_at if command is not None and command.is_on_its_way else None
@@ -328,7 +324,7 @@ class CommandBook:
     async def _note_late(self, robot: str, sa_id: int) -> None:
         """Note that the robot read a message whose command has ended; what cannot be stored now is kept."""
         try:
-            report = await self._run(write_late, robot, sa_id, self._clock())
+            report = await self._held.run(write_late, robot, sa_id, self._clock())
         except DataRefusedError:
             raise
         except StoreError:
@@ -345,7 +341,7 @@ class CommandBook:
 
     async def _done(self, command: OpenCommand, deviation: float | None, pose: SendPos) -> None:
         """Note that a robot has reached what it was told to, or (no ``deviation``) has given it up unseen."""
-        async with self._holding([command.report.robot]):
+        async with self._held.of([command.report.robot]):
             if self._open.get(command.report.command) is not command:
                 return
             now, abort = self._clock(), given_up_by(command, self._open.of(command.report.robot))
@@ -359,7 +355,7 @@ class CommandBook:
                 await self._save(ended_by(abort, [command], abort.acknowledged_at, ABORTED))
 
     async def _deliver_again(self, robot: str, reason: str, expire_after: float) -> None:
-        async with self._holding([robot]):
+        async with self._held.of([robot]):
             mine, now = self._open.of(robot), self._clock()
             forgotten = [c for c in mine if c.report.state is not CommandState.QUEUED]
             if not forgotten:
@@ -376,12 +372,12 @@ class CommandBook:
             again = [
                 self._anew(c, reason, now) for c in mine if c.report.command not in gone and c.sa_id >= first
             ]
-            for command in await self._run(write_again, again, ended):
+            for command in await self._held.run(write_again, again, ended):
                 self._apply(command)
             self._outbox_changed(robot)
 
     async def _expire(self, ids: list[str]) -> None:
-        async with self._holding({robot for id in ids if (robot := self.robot_of(id))}):
+        async with self._held.of({robot for id in ids if (robot := self.robot_of(id))}):
             found = [command for id in ids if (command := self._open.get(id))]
             late = [command for command in found if command.report.state is CommandState.QUEUED]
             now, reason = self._clock(), "the robot did not fetch it in time"
@@ -433,7 +429,7 @@ class CommandBook:
 
     async def _save(self, steps: list[OpenCommand]) -> None:
         if steps:
-            await self._run(write_all, steps)
+            await self._held.run(write_all, steps)
             for command in steps:
                 self._apply(command)
 
@@ -444,29 +440,11 @@ class CommandBook:
             self._open.remove(command.report.command)
         self._changed(command.report)
 
-    async def _run(self, work: Callable[..., T], *arguments: Any) -> T:
-        try:
-            return await self._database.run(work, *arguments)
-        except UncertainError:
-            self._doubtful = True
-            raise
-
-    @contextlib.asynccontextmanager
-    async def _holding(self, robots: Iterable[str]) -> AsyncIterator[None]:
-        """Hold the locks of some robots, taken in one order by everybody."""
-        async with contextlib.AsyncExitStack() as stack:
-            for robot in sorted(set(robots)):
-                await stack.enter_async_context(self._locks.setdefault(robot, asyncio.Lock()))
-            if self._doubtful:
-                await self._look_up()
-            yield
-
     async def _look_up(self) -> None:
         """Take over what the database holds, after a transaction that may have been done or not."""
         stored = {s.report.command: s for s in await self._database.run(commands.still_open)}
         here = {command.report.command: command for command in self._open}
         ended = await self._database.run(commands.find_all, sorted(here.keys() - stored.keys()))
-        self._doubtful = False
         for found in [*ended.values(), *stored.values()]:
             known = here.get(found.report.command)
             if known is None or (known.report, known.sa_id) != (found.report, found.sa_id):
