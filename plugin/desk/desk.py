@@ -167,6 +167,15 @@ class Desk(QObject):
     def _take_site(self, site: SiteReport, is_greeting: bool) -> None:
         if site == self.site and not self._is_other_gateway:
             return
+        if self.site is not None and site.id != self.site.id and not self._is_other_gateway:
+            # Nobody at this desk asked for it.
+            self.complained.emit(
+                tr(
+                    "Another site is served now: {site}, no longer {before}. Open its project.",
+                    site=site.name,
+                    before=self.site.name,
+                )
+            )
         if self._is_another(site, is_greeting):
             self._forget_robots()
         self.site, self._is_other_gateway = site, False

@@ -1542,6 +1542,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/desk.py" />
+            <source>Another site is served now: {site}, no longer {before}. Open its project.</source>
+            <translation>Ara se serveix un altre recinte: {site}, ja no {before}. Obriu-ne el projecte.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/desk.py" />
             <source>EMERGENCY STOP is NOT sent yet: the link is down. It is sent as soon as that is back; use the robots' own emergency stops now.</source>
             <translation>La PARADA D'EMERGÈNCIA encara NO s'ha enviat: l'enllaç està tallat. S'envia quan torni; feu servir ara les parades d'emergència dels mateixos robots.</translation>
         </message>

@@ -1542,6 +1542,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/desk.py" />
+            <source>Another site is served now: {site}, no longer {before}. Open its project.</source>
+            <translation>Ahora se sirve otro recinto: {site}, ya no {before}. Abra su proyecto.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/desk.py" />
             <source>EMERGENCY STOP is NOT sent yet: the link is down. It is sent as soon as that is back; use the robots' own emergency stops now.</source>
             <translation>La PARADA DE EMERGENCIA aún NO se ha enviado: el enlace está caído. Se envía en cuanto vuelva; use ahora las paradas de emergencia de los propios robots.</translation>
         </message>

@@ -1536,6 +1536,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/desk.py" />
+            <source>Another site is served now: {site}, no longer {before}. Open its project.</source>
+            <translation>Most másik telephely van kiszolgálva: {site}, már nem {before}. Nyissa meg annak projektjét.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/desk.py" />
             <source>EMERGENCY STOP is NOT sent yet: the link is down. It is sent as soon as that is back; use the robots' own emergency stops now.</source>
             <translation>A VÉSZLEÁLLÍTÁS MÉG NINCS elküldve: a kapcsolat megszakadt. Elmegy, amint visszatér; most használja a robotok saját vészleállítóit.</translation>
         </message>

@@ -61,6 +61,25 @@ def test_an_order_to_send_outlasts_it(drawn, gateway, site, wait, monkeypatch):
     assert len(gateway.asked("send")) == 1
 
 
+@pytest.mark.parametrize("is_chosen", [True, False])
+def test_another_site_is_told_whoever_had_it_served(at_desk, gateway, site, wait, iface, is_chosen):
+    other = replace(site, id="other", name="Other")
+    if is_chosen:
+        tell(gateway, other, wait, at_desk)
+    else:
+        gateway.stop()
+        wait(lambda: at_desk.desk.link.phase.value == "retrying", what="the loss of the link")
+        gateway.site = other
+        gateway.start()
+        wait(lambda: at_desk.desk.site == other, 10, "the other site")
+    assert [text for text in iface.texts() if "Other, no longer Yard" in text]
+
+
+def test_the_same_site_published_anew_is_no_other(at_desk, gateway, site, wait, iface):
+    tell(gateway, replace(site, version="2", name="Renamed"), wait, at_desk)
+    assert not [text for text in iface.texts() if "no longer" in text]
+
+
 @pytest.mark.parametrize("how", ["frame", "gateway"])
 def test_a_draft_for_other_robots_is_taken_away_and_that_is_said(drawn, gateway, site, wait, iface, how):
     if how == "frame":
