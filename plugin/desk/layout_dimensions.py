@@ -97,7 +97,14 @@ class LayoutDimensions(QDialog):
         self._area.setWidget(body)
         self.show_heading(heading)
         self._fill(layout)
+        if not self.testAttribute(Qt.WidgetAttribute.WA_Moved):
+            self._lie_beside_the_map()
         self.show()
+
+    def _lie_beside_the_map(self) -> None:
+        """Go to the lower left corner of the window: Qt would begin in its middle, where the cones go."""
+        window = self.parentWidget().window().geometry()
+        self.move(window.left(), window.bottom() + 1 - self.height())
 
     def show_heading(self, heading: float) -> None:
         """Show which way the layout is turned."""

@@ -54,6 +54,19 @@ def turn(iface, notches, modifiers=NONE):
     QApplication.processEvents()
 
 
+def test_the_dimensions_leave_the_middle_of_the_map_free_and_stay_where_they_are_moved_to(entry, iface):
+    window = iface.mainWindow()
+    window.resize(1280, 800)
+    QApplication.processEvents()
+    slalom = LAYOUTS["slalom"].of({})
+    entry.take(slalom)
+    assert not entry.dimensions.geometry().contains(window.geometry().center())
+    entry.dimensions.move(300, 200)
+    entry.dimensions.hide()
+    entry.take(slalom)
+    assert entry.dimensions.pos() == QPoint(300, 200)
+
+
 def cones():
     (layer,) = (
         one for one in QgsProject.instance().mapLayers().values() if one.customProperty("fleet/cones")
