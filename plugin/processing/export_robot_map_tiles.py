@@ -166,7 +166,7 @@ class ExportRobotMapTiles(FleetAlgorithm):
             reading, outlines = found
             steps.setCurrentStep(1)
             skip_empty = self.parameterAsBool(parameters, SKIP_EMPTY, context)
-            maker = _TileMaker(plan, reading.warnings, skip_empty)
+            maker = _TileMaker(plan, [*plan.warnings, *reading.warnings], skip_empty)
             if not maker.make_all(OutlineIndex(outlines), folder, steps):
                 return {}
             folder.publish()

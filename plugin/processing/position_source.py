@@ -63,7 +63,13 @@ class PositionSource:
         """Return time, x, y and speed, None for a feature that is no position."""
         geometry = feature.geometry()
         robot, time = feature.attribute(self._robot), seconds(feature.attribute(self._time))
-        if geometry.isNull() or geometry.isEmpty() or robot in (None, "") or time is None:
+        # Of several points nobody can tell where the robot was.
+        if (
+            geometry.isNull()
+            or geometry.constGet().nCoordinates() != 1
+            or robot in (None, "")
+            or time is None
+        ):
             return None
         point = next(geometry.vertices())
         if not (math.isfinite(point.x()) and math.isfinite(point.y())):

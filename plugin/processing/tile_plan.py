@@ -16,7 +16,7 @@ from qgis.core import (
 
 from ..language import tr
 from ..sites.feature_filter import FeatureFilter
-from ..sites.placing import PlacingError, SitePlacing
+from ..sites.placing import SitePlacing
 from ..sites.shapes import shapes_of
 from .errors import ParameterError
 from .export_plan import ObstaclePlan, obstacle_plan_of
@@ -34,12 +34,13 @@ FOLDER, INDEX, SKIP_EMPTY = "OUTPUT", "INDEX", "SKIP_EMPTY"
 class TilePlan(ObstaclePlan):
     """Everything that is needed of the parameters and layers to export tiles.
 
-    ``index`` is the file that the index is to be, None where it is none.
+    ``index`` is the file that the index is to be, None where it is none; ``warnings`` are about the route.
     """
 
     tiles: list[Tile]
     folder: Path
     index: Path | None
+    warnings: list[str]
 
 
 def tiles_problem(parameters: Parameters) -> str:
@@ -67,8 +68,9 @@ def tile_plan_of(
         algorithm.parameterAsDouble(parameters, n, context) for n in (TILE_WIDTH, TILE_HEIGHT, OVERLAP)
     )
     size = TileSize(*numbers)
+    warnings: list[str] = []
     if parameters.get(ROUTE) not in (None, ""):
-        tiles = route_tiles(_routes(algorithm, parameters, context, plan.site), size)
+        tiles = route_tiles(_routes(algorithm, parameters, context, plan.site, warnings), size)
     else:
         area = map_window(algorithm, parameters, context, plan.site.crs, plan.site.frame)
         tiles = grid_tiles(area.border, size)
@@ -79,7 +81,7 @@ def tile_plan_of(
     if index is not None and index.parent != folder:
         # It comes after the tiles are there.
         check_target(index, tr("The index"))
-    return TilePlan(**vars(plan), tiles=tiles, folder=folder, index=index)
+    return TilePlan(**vars(plan), tiles=tiles, folder=folder, index=index, warnings=warnings)
 
 
 def _index_file(parameters: Parameters) -> Path | None:
@@ -97,8 +99,9 @@ def _routes(
     parameters: Parameters,
     context: QgsProcessingContext,
     site: SitePlacing,
+    warnings: list[str],
 ) -> list[np.ndarray]:
-    """Return each line of ROUTE as (n, 2) metres in the site frame."""
+    """Return each line of ROUTE as (n, 2) metres in the site frame; ``warnings`` get what is left out."""
     source = algorithm.parameterAsSource(parameters, ROUTE, context)
     if source is None:
         raise ParameterError(
@@ -108,20 +111,15 @@ def _routes(
     counted = filter_in(algorithm, parameters, ROUTE, context)
     routes = []
     for feature in source.getFeatures():
-        if feature.geometry().isNull() or not _counts(feature, source.sourceName(), counted):
+        if not _counts(feature, source.sourceName(), counted):
             continue
-        try:
-            shapes = shapes_of(placing.to_metres(feature.geometry())).shapes
-        except PlacingError as error:
-            raise ParameterError(
-                tr(
-                    "ROUTE: feature {id} of {sourcename} has no place in the site's CRS ({error}): correct "
-                    "its geometry or the CRS.",
-                    id=feature.id(),
-                    sourcename=source.sourceName(),
-                    error=error,
-                )
-            ) from error
+        notes: list[str] = []
+        geometry = placing.of_feature(feature, notes)
+        shapes, odd = ([], []) if geometry is None else shapes_of(geometry)
+        warnings += [
+            tr("Layer {layer}, feature {id}: {note}", layer=source.sourceName(), id=feature.id(), note=note)
+            for note in (*notes, *odd)
+        ]
         routes += [placing.to_site(shape.points) for shape in shapes]
     return routes
 

@@ -219,7 +219,7 @@ def test_cancelling_leaves_older_tiles_as_they_were(tiles, wall, tmp_path, cance
 def test_a_folder_that_cannot_be_written_is_named_and_nothing_is_left(tiles, wall, tmp_path):
     (tmp_path / "out").mkdir()
     (tmp_path / "out" / "tile_r001_c002.txt").mkdir()
-    with pytest.raises(QgsProcessingException, match="is a folder: choose another folder"):
+    with pytest.raises(QgsProcessingException, match="is a folder, where a file is to be written"):
         tiles(wall, EXTENT=EXTENT, TILE_WIDTH=50)
     assert names(tmp_path / "out") == ["tile_r001_c002.txt"]
     (tmp_path / "file").write_text("")
@@ -308,6 +308,16 @@ def test_the_choice_of_area_is_checked_before_anything_is_read(tiles, wall):
 def test_a_route_without_a_line_is_refused(tiles, wall, make_layer):
     with pytest.raises(QgsProcessingException, match="ROUTE holds no line"):
         tiles(wall, ROUTE=make_layer("empty", features=[]))
+
+
+def test_what_is_left_out_of_a_route_is_warned_of(tiles, wall, make_layer, listener):
+    drive = "LineString(600010 5100030, 600090 5100030)"
+    route = make_layer(
+        "drive", features=[(drive, 0.0), (None, 0.0), ("LineString(600010 5100030, 600010 5100030)", 0.0)]
+    )
+    tiles(wall, ROUTE=route, feedback=listener)
+    assert "Layer drive, feature 2: has no geometry; it is left out" in listener.warnings
+    assert any("feature 3: line 1 has fewer than two different points" in text for text in listener.warnings)
 
 
 def test_no_obstacle_anywhere_is_said(tiles, wall, listener):

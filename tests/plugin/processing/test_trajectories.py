@@ -89,6 +89,18 @@ def test_each_drive_is_a_line_with_time_length_and_speed(run, positions, listene
     assert listener.warnings == ["2 features have no place, robot or time; they are left out."]
 
 
+def test_a_feature_of_several_points_is_no_position(run, make_layer, listener):
+    rows = [
+        ("MultiPoint((0 0))", "r1", 1.0),
+        ("MultiPoint((1 0),(9 9))", "r1", 2.0),
+        ("MultiPoint((4 0))", "r1", 3.0),
+    ]
+    layer = make_layer("seen", "MultiPoint", "&field=robot:string&field=time:double", rows, crs="EPSG:32633")
+    told, _ = run(INPUT=layer)
+    assert (told["POSITION_COUNT"], told["TOTAL_LENGTH"]) == (2, 4.0)
+    assert listener.warnings == ["1 feature has no place, robot or time; it is left out."]
+
+
 def test_a_longer_gap_joins_drives_and_steps_part_them(run, positions):
     _, joined = run(INPUT=positions, GAP=200)
     assert [one["count"] for one, _ in joined] == [5, 2]
