@@ -7204,6 +7204,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/tile_plan.py" />
+            <source>Layer {layer}, feature {id}: {note}</source>
+            <translation>Capa {layer}, entitat {id}: {note}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/tile_plan.py" />
             <source>Neither EXTENT nor ROUTE is given: give an extent for a grid, or a layer of lines to follow.</source>
             <translation>No s'ha donat ni EXTENT ni ROUTE: doneu una extensió per a una graella, o una capa de línies a seguir.</translation>
         </message>
@@ -7221,11 +7226,6 @@
             <location filename="../../plugin/processing/tile_plan.py" />
             <source>ROUTE: feature {id} of {layer}: {doubts}. Correct the filter of the layer.</source>
             <translation>ROUTE: entitat {id} de {layer}: {doubts}. Corregiu el filtre de la capa.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/tile_plan.py" />
-            <source>ROUTE: feature {id} of {sourcename} has no place in the site's CRS ({error}): correct its geometry or the CRS.</source>
-            <translation>ROUTE: l'entitat {id} de {sourcename} no té lloc al SRC del recinte ({error}): corregiu-ne la geometria o el SRC.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/tile_windows.py" />
@@ -7911,11 +7911,6 @@
             <location filename="../../plugin/sites/feature_values.py" />
             <source>the estimate is used</source>
             <translation>es fa servir l'estimació</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/sites/ground_reading.py" />
-            <source>Layer {layer}, feature {id}: {note}</source>
-            <translation>Capa {layer}, entitat {id}: {note}</translation>
         </message>
         <message>
             <location filename="../../plugin/sites/ground_reading.py" />

@@ -7204,6 +7204,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/tile_plan.py" />
+            <source>Layer {layer}, feature {id}: {note}</source>
+            <translation>Capa {layer}, objeto espacial {id}: {note}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/tile_plan.py" />
             <source>Neither EXTENT nor ROUTE is given: give an extent for a grid, or a layer of lines to follow.</source>
             <translation>No se ha dado ni EXTENT ni ROUTE: dé una extensión para una rejilla, o una capa de líneas que seguir.</translation>
         </message>
@@ -7221,11 +7226,6 @@
             <location filename="../../plugin/processing/tile_plan.py" />
             <source>ROUTE: feature {id} of {layer}: {doubts}. Correct the filter of the layer.</source>
             <translation>ROUTE: objeto {id} de {layer}: {doubts}. Corrija el filtro de la capa.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/tile_plan.py" />
-            <source>ROUTE: feature {id} of {sourcename} has no place in the site's CRS ({error}): correct its geometry or the CRS.</source>
-            <translation>ROUTE: el objeto {id} de {sourcename} no tiene lugar en el SRC del recinto ({error}): corrija su geometría o el SRC.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/tile_windows.py" />
@@ -7911,11 +7911,6 @@
             <location filename="../../plugin/sites/feature_values.py" />
             <source>the estimate is used</source>
             <translation>se usa la estimación</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/sites/ground_reading.py" />
-            <source>Layer {layer}, feature {id}: {note}</source>
-            <translation>Capa {layer}, objeto espacial {id}: {note}</translation>
         </message>
         <message>
             <location filename="../../plugin/sites/ground_reading.py" />

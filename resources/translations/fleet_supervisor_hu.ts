@@ -7161,6 +7161,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/tile_plan.py" />
+            <source>Layer {layer}, feature {id}: {note}</source>
+            <translation>{layer} réteg, {id}. elem: {note}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/tile_plan.py" />
             <source>Neither EXTENT nor ROUTE is given: give an extent for a grid, or a layer of lines to follow.</source>
             <translation>Sem EXTENT, sem ROUTE nincs megadva: adjon meg kiterjedést a rácshoz, vagy követendő vonalak rétegét.</translation>
         </message>
@@ -7178,11 +7183,6 @@
             <location filename="../../plugin/processing/tile_plan.py" />
             <source>ROUTE: feature {id} of {layer}: {doubts}. Correct the filter of the layer.</source>
             <translation>ROUTE: {layer} {id}. eleme: {doubts}. Javítsa ki a réteg szűrőjét.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/tile_plan.py" />
-            <source>ROUTE: feature {id} of {sourcename} has no place in the site's CRS ({error}): correct its geometry or the CRS.</source>
-            <translation>ROUTE: {sourcename} {id}. elemének nincs helye a telephely vetületében ({error}): javítsa ki a geometriáját vagy a vetületet.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/tile_windows.py" />
@@ -7858,11 +7858,6 @@
             <location filename="../../plugin/sites/feature_values.py" />
             <source>the estimate is used</source>
             <translation>a becslés érvényes</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/sites/ground_reading.py" />
-            <source>Layer {layer}, feature {id}: {note}</source>
-            <translation>{layer} réteg, {id}. elem: {note}</translation>
         </message>
         <message>
             <location filename="../../plugin/sites/ground_reading.py" />
