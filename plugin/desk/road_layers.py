@@ -12,7 +12,7 @@ from qgis.core import (
     QgsSingleSymbolRenderer,
     QgsVectorLayer,
 )
-from qgis.PyQt.QtCore import QObject, QTimer
+from qgis.PyQt.QtCore import QObject
 
 from ...robot_bridge.messages import ClosureReport, ConflictReport
 from ..language import tr
@@ -28,10 +28,7 @@ CONFLICT_FIELDS = (
 
 
 class RoadLayers(QObject):
-    """A layer of each, made when there is something to show and taken out with the plugin.
-
-    They are written in a piece of their own after the news: hundreds of features take as long as a frame.
-    """
+    """A layer of each, made when there is something to show and taken out with the plugin."""
 
     def __init__(self, desk: Desk, parent: QObject | None = None):
         super().__init__(parent)
@@ -43,15 +40,12 @@ class RoadLayers(QObject):
         self._conflicts = RowLayer(
             project, "conflicts", tr("Conflicts"), "Point", CONFLICT_FIELDS, _style_conflicts
         )
-        self._soon = QTimer(self)
-        self._soon.setSingleShot(True)
-        self._soon.timeout.connect(self._show)
-        for changed in (desk.roads.closures_changed, desk.roads.conflicts_changed, desk.site_changed):
-            changed.connect(self._soon.start)
+        desk.roads.closures_changed.connect(self._show_closures)
+        desk.roads.conflicts_changed.connect(self._show_conflicts)
+        desk.site_changed.connect(self._show)
 
     def remove(self) -> None:
         """Take both out of the project."""
-        self._soon.stop()
         self._closures.remove()
         self._conflicts.remove()
 

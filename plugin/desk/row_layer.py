@@ -10,12 +10,14 @@ from qgis.core import (
     QgsCoordinateReferenceSystem,
     QgsFeature,
     QgsGeometry,
+    QgsLineString,
     QgsPalLayerSettings,
-    QgsPointXY,
+    QgsPoint,
     QgsProject,
     QgsVectorLayer,
     QgsVectorLayerSimpleLabeling,
 )
+from qgis.PyQt.QtCore import QTimer
 from qgis.PyQt.QtGui import QColor
 
 from ...robot_bridge.messages import SiteReport
@@ -27,11 +29,15 @@ from .live_layers import give_style, make_live
 Row = tuple[Sequence[tuple[float, float]], Sequence[Any]]
 """Points in the site frame, one for a point layer, and the values of the fields."""
 
+AT_ONCE = 100
+"""Features written in one go: more take several, so that the window does not wait for them."""
+
 
 class RowLayer:
     """A layer of one kind of geometry in the site's CRS; made when there is a row to show.
 
     It goes with its project, and comes anew in the next one: what it shows is the desk's, not the project's.
+    It is written in pieces of its own, between which the window looks for events.
     """
 
     def __init__(
@@ -49,9 +55,14 @@ class RowLayer:
         self._frame: SiteFrame | None = None
         self._written: dict[tuple[Any, ...], list[tuple[Sequence[tuple[float, float]], int]]] = {}
         """The points and the id of each feature, by its values."""
+        self._has_changed = False
+        """Whether it was written since it was painted."""
         self._shown: tuple[Sequence[Row], SiteReport | None] = ((), None)
+        self._soon = QTimer()
+        self._soon.setSingleShot(True)
+        self._soon.timeout.connect(self._go_on)
         self._watch = ProjectWatch(project)
-        self._watch.opened.connect(self._show_again)
+        self._watch.opened.connect(self._soon.start)
 
     @property
     def layer(self) -> QgsVectorLayer | None:
@@ -59,8 +70,25 @@ class RowLayer:
         return self._project.mapLayer(self._id) if self._id is not None else None
 
     def show(self, rows: Sequence[Row], site: SiteReport | None) -> None:
-        """Have a feature for each of ``rows``; those that are there already are left as they are."""
+        """Have a feature for each of ``rows`` soon; those that are there already are left as they are."""
         self._shown = rows, site
+        self._soon.start(0)
+
+    def finish(self) -> None:
+        """Write at once all that is left to be: somebody is about to take the layer as it is."""
+        while self._soon.isActive():
+            self._soon.stop()
+            self._go_on()
+
+    def remove(self) -> None:
+        """Take the layer out of the project, and show nothing in the next one."""
+        self._soon.stop()
+        self._shown = (), None
+        self._take_out()
+
+    def _go_on(self) -> None:
+        """Write some of what is not there yet, or make the layer for it."""
+        rows, site = self._shown
         layer = self.layer
         if self._watch.is_reading or site is None or (not rows and layer is None):
             return
@@ -69,21 +97,19 @@ class RowLayer:
             self._take_out()
             layer = None
         if layer is None:
-            layer, self._frame, self._written = self._make(site.crs), frame, {}
+            self._frame, self._written = frame, {}
+            self._make(site.crs)
+            self._soon.start(0)
+            return
         if frame != self._frame:
             layer.dataProvider().truncate()
             self._frame, self._written = frame, {}
-        if self._write(layer, rows, frame):
+        if not self._write(layer, rows, frame):
+            self._soon.start(0)
+        elif self._has_changed:
+            self._has_changed = False
             layer.updateExtents()
             layer.triggerRepaint()
-
-    def remove(self) -> None:
-        """Take the layer out of the project, and show nothing in the next one."""
-        self._shown = (), None
-        self._take_out()
-
-    def _show_again(self) -> None:
-        self.show(*self._shown)
 
     def _take_out(self) -> None:
         if self.layer is not None:
@@ -94,7 +120,7 @@ class RowLayer:
         self._id = None
 
     def _write(self, layer: QgsVectorLayer, rows: Sequence[Row], frame: SiteFrame) -> bool:
-        """Delete the features whose rows are gone, add those of new rows, and tell whether there were any."""
+        """Delete features whose rows are gone, add some of the new rows, and tell whether all of them are."""
         before, after = self._written, {}
         new: list[Row] = []
         for points, values in rows:
@@ -107,13 +133,15 @@ class RowLayer:
         gone = [number for features in before.values() for _, number in features]
         provider = layer.dataProvider()
         provider.deleteFeatures(gone)
-        _, added = provider.addFeatures(_features(layer, new, frame))
-        for (points, values), feature in zip(new, added, strict=True):
+        some = new[:AT_ONCE]
+        _, added = provider.addFeatures(_features(layer, some, frame))
+        for (points, values), feature in zip(some, added, strict=True):
             after.setdefault(tuple(values), []).append((points, feature.id()))
         self._written = after
-        return bool(gone or new)
+        self._has_changed = self._has_changed or bool(gone or new)
+        return len(some) == len(new)
 
-    def _make(self, crs: str) -> QgsVectorLayer:
+    def _make(self, crs: str) -> None:
         dirty = self._project.isDirty()
         fields = "&".join(f"field={field}" for field in self._fields.split(","))
         layer = QgsVectorLayer(f"{self._kind}?{fields}", self._name, "memory")
@@ -125,7 +153,6 @@ class RowLayer:
         fleet_group(self._project).addLayer(layer)
         self._id = layer.id()
         self._project.setDirty(dirty)
-        return layer
 
 
 def _features(layer: QgsVectorLayer, rows: Sequence[Row], frame: SiteFrame) -> list[QgsFeature]:
@@ -133,15 +160,13 @@ def _features(layer: QgsVectorLayer, rows: Sequence[Row], frame: SiteFrame) -> l
         return []
     fields = layer.fields()
     # All at once: to take each row's few points to the map takes longer than all else.
-    placed = iter(frame.to_crs(np.concatenate([np.array(points) for points, _ in rows])).tolist())
+    placed = frame.to_crs(np.concatenate([np.array(points) for points, _ in rows]))
+    ends = np.cumsum([len(points) for points, _ in rows])[:-1]
     features = []
-    for points, values in rows:
-        line = [QgsPointXY(*next(placed)) for _ in points]
-        is_point = len(line) == 1
+    for (_, values), line in zip(rows, np.split(placed, ends), strict=True):
+        x, y = line.T.tolist()
         feature = QgsFeature(fields)
-        feature.setGeometry(
-            QgsGeometry.fromPointXY(line[0]) if is_point else QgsGeometry.fromPolylineXY(line)
-        )
+        feature.setGeometry(QgsGeometry(QgsPoint(x[0], y[0]) if len(x) == 1 else QgsLineString(x, y)))
         feature.setAttributes(list(values))
         features.append(feature)
     return features

@@ -161,6 +161,8 @@ class LiveView(QObject):
         if not self._project.is_reading:
             self.layer.show_site(self._desk.site)
         if self.shown[0] != self._desk.picture.generation:
+            # Not for a moment does the map show what another gateway told.
+            self.overlay.show_scene(None)
             self.layer.clear()
             self._trails.clear()
         self._placement = None

@@ -48,7 +48,9 @@ class ScenePainter:
             self._viewed = None
             return
         self._trails.extend(placed.robots, screen, placed.to_map, placed.scene.now)
-        self._circles = circles(placed, self._view(placed, screen))
+        view = self._view(placed, screen)
+        self._circles = circles(placed, view)
+        self.robots.prepare(placed, view, screen)
 
     def paint(self, painter: QPainter, placed: PlacedScene, screen: Screen) -> None:
         """Paint the scene that was prepared last."""

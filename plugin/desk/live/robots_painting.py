@@ -73,6 +73,14 @@ class RobotsPainter:
             self._marks[size] = Sprites(mark_atlas(ratio, size), cell(ratio, MARK_SIZE * size), ratio)
         return self._marks[size]
 
+    def prepare(self, placed: PlacedScene, view: InView, screen: Screen) -> None:
+        """Make the drawings that are missing for :meth:`paint`: that takes as long as all else in it."""
+        self.marks(screen.ratio, self.magnification)
+        size = _size(view)
+        states = np.bincount(placed.scene.robots.state.take(view.rows))
+        for state in np.flatnonzero(states).tolist() if self.arrows else []:
+            self._sprites(_worth(state, size), state)
+
     def paint(
         self,
         painter: QPainter,
@@ -83,7 +91,7 @@ class RobotsPainter:
         """Paint those that are in view."""
         marks = self.marks(screen.ratio, self.magnification)
         robots, scene = placed.scene.robots, placed.scene
-        size = next(size for most, size in SIZES if len(view.rows) <= most)
+        size = _size(view)
         known = np.isfinite(robots.theta.take(view.rows))
         speed = robots.v.take(view.rows)
         _velocities(painter, view, speed, known, NOSE * size * self.magnification + SHORTEST_VELOCITY)
@@ -125,6 +133,11 @@ class RobotsPainter:
             atlas = robot_atlas(ratio, drawn, STATES[state])
             self._drawings[size, state] = Sprites(atlas, cell(ratio, drawn), ratio)
         return self._drawings[size, state]
+
+
+def _size(view: InView) -> float:
+    """Return the size in which robots are drawn where so many are in view."""
+    return next(size for most, size in SIZES if len(view.rows) <= most)
 
 
 def _worth(state: int, size: float) -> float:

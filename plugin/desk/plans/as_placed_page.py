@@ -48,6 +48,8 @@ class AsPlacedPage(QWidget):
     collect_wanted = pyqtSignal(object)
     """Ask for a plan that collects a layout (its name), or all that stands (None)."""
     shown = pyqtSignal()
+    layer_wanted = pyqtSignal()
+    """Somebody is about to take the layer of what is shown, and needs it whole."""
     place_wanted = pyqtSignal(float, float)
 
     def __init__(self, desk: Desk, parent: QWidget | None = None):
@@ -152,6 +154,7 @@ class AsPlacedPage(QWidget):
     def _open_report(self) -> None:
         # The user may have taken the layer out of the project.
         self.show_placed()
+        self.layer_wanted.emit()
         try:
             open_report_dialog(self._desk.project)
         except ReportError as error:

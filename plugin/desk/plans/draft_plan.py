@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 from qgis.core import QgsApplication
+from qgis.PyQt import sip
 from qgis.PyQt.QtCore import QObject, pyqtSignal
 
 from ....robot_bridge.assignment import editing
@@ -104,9 +105,12 @@ class DraftPlan(QObject):
     def cancel(self) -> None:
         """Give up what is being made; the plan of before stays."""
         task, self.task = self.task, None
-        if task is not None:
+        if task is None:
+            return
+        # QGIS deletes a task that is done; what it made may still be held against roads closed meanwhile.
+        if not sip.isdeleted(task):
             task.cancel()
-            self.changed.emit()
+        self.changed.emit()
 
     def shut_down(self) -> None:
         """Give up what is being made and wait until its thread has left it."""
@@ -114,7 +118,7 @@ class DraftPlan(QObject):
         self._look.stop()
         self._look_at_made.stop()
         self.cancel()
-        if task is not None and task.isActive():
+        if task is not None and not sip.isdeleted(task) and task.isActive():
             task.left.wait(10.0)
 
     def look_at_closures(self) -> None:

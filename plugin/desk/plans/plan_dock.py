@@ -139,7 +139,7 @@ class PlanDock(ActionDock):
         if self.isVisible() and self._turn.has_come():
             self._show_robots()
         if self.drafts.task is not None:
-            self.progress.setValue(round(self.drafts.task.progress()))
+            self.progress.setValue(round(100.0 * self.drafts.task.share))
 
     def _shown(self, is_visible: bool) -> None:
         if is_visible:
@@ -246,6 +246,7 @@ class PlanDock(ActionDock):
         self.placed.refresh_wanted.connect(self._ask_for_placements)
         self.placed.collect_wanted.connect(self.collect)
         self.placed.shown.connect(self._show_placed_layer)
+        self.placed.layer_wanted.connect(self.layers.placed.finish)
         desk.placements_changed.connect(self._placements_changed)
         desk.pulled.connect(self._pulled)
         self.visibilityChanged.connect(self._shown)

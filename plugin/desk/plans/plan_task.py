@@ -30,6 +30,8 @@ class PlanTask(QgsTask):
         self._work = work
         self._draft: Draft | None = None
         self._why = ""
+        self.share = 0.0
+        """How much is done, 0 to 1; known when QGIS has deleted the task, too."""
         self.left = threading.Event()
         """Set once the worker has left :meth:`run`."""
 
@@ -59,6 +61,7 @@ class PlanTask(QgsTask):
 
     def told(self, share: float) -> bool:
         """Show that ``share`` of the work, 0 to 1, is done; return whether to go on."""
+        self.share = share
         self.setProgress(100.0 * share)
         return self.goes_on()
 

@@ -22,6 +22,17 @@ from ..state_words import COMMAND_STATES, ROBOT_STATES
 from .columns import COLUMNS, POSITION, TITLES, number_in_words, short_link
 from .fleet_rows import FleetRows, Rows, Which, fleet_rows
 
+ROLES = frozenset(
+    {
+        Qt.ItemDataRole.DisplayRole,
+        Qt.ItemDataRole.DecorationRole,
+        Qt.ItemDataRole.ForegroundRole,
+        Qt.ItemDataRole.ToolTipRole,
+        Qt.ItemDataRole.TextAlignmentRole,
+    }
+)
+"""What there is to be told of a cell; a view asks for as much again, of each one that it paints."""
+
 
 class RobotModel(QAbstractTableModel):
     """One row for each robot that is listed. ``rows`` are looked at afresh by :meth:`show`."""
@@ -54,6 +65,8 @@ class RobotModel(QAbstractTableModel):
         return COLUMNS[section].tip if role == Qt.ItemDataRole.ToolTipRole else None
 
     def data(self, index: QModelIndex, role: int = 0) -> object:
+        if role not in ROLES:
+            return None
         row = int(self._order[index.row()])
         column = COLUMNS[index.column()]
         if role == Qt.ItemDataRole.DisplayRole:

@@ -46,6 +46,16 @@ def test_after_a_blocked_window_the_newest_position_is_shown_first(at_desk, gate
     assert shown[0] == 99.0
 
 
+def test_what_follows_on_the_news_is_a_piece_of_its_own(at_desk, wait):
+    told = []
+    at_desk.desk._timer.stop()
+    QCoreApplication.processEvents()
+    at_desk.desk.pulled.connect(lambda: told.append(True))
+    at_desk.desk.pull()
+    assert told == []
+    wait(lambda: told, what="the signal")
+
+
 def test_a_text_is_not_repeated_while_it_is_shown_and_is_when_it_was_closed(plugin, iface):
     notices = plugin.window.notices
     for _ in range(5):

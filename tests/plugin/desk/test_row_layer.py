@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 from fleet_supervisor.plugin.desk.live_layers import MARK
-from fleet_supervisor.plugin.desk.row_layer import RowLayer
+from fleet_supervisor.plugin.desk.row_layer import AT_ONCE, RowLayer
 from fleet_supervisor.plugin.sites.fleet_group import GROUP, fleet_group
 from qgis.core import QgsProject
 from qgis.PyQt.QtWidgets import QApplication
@@ -23,6 +23,12 @@ def project(qgis_app):
 @pytest.fixture
 def points(project):
     return RowLayer(project, "rows", "Rows", "Point", "name:string,number:integer", lambda layer: None)
+
+
+def show(points, rows, site):
+    """Have the rows shown and written to the last."""
+    points.show(rows, site)
+    points.finish()
 
 
 def features(points):
@@ -43,63 +49,62 @@ def repaints(points, act):
 
 
 def test_nothing_is_made_for_nothing(points, project, site):
-    points.show([], site)
-    points.show(TWO, None)
+    show(points, [], site)
+    show(points, TWO, None)
     assert points.layer is None and project.mapLayers() == {}
 
 
 def test_each_row_is_a_feature_where_it_is(points, site):
-    points.show(TWO, site)
+    show(points, TWO, site)
     assert points.layer.customProperty(MARK) == "rows"
     assert {name: at for name, (at, _) in features(points).items()} == {"a": (1, 2), "b": (3, 4)}
 
 
 def test_rows_that_are_there_already_are_left_alone_and_nothing_is_painted(points, site):
-    points.show(TWO, site)
+    show(points, TWO, site)
     before = features(points)
-    assert repaints(points, lambda: points.show([TWO[1], TWO[0]], site)) == 0
+    assert repaints(points, lambda: show(points, [TWO[1], TWO[0]], site)) == 0
     assert features(points) == before
 
 
 def test_only_what_changed_is_written(points, site):
-    points.show(TWO, site)
+    show(points, TWO, site)
     stays = features(points)["a"]
-    assert repaints(points, lambda: points.show([TWO[0], ([(3.0, 4.5)], ["b", None])], site)) == 1
+    assert repaints(points, lambda: show(points, [TWO[0], ([(3.0, 4.5)], ["b", None])], site)) == 1
     assert features(points)["a"] == stays and features(points)["b"][0] == (3, 4.5)
-    points.show([TWO[0], ([(9.0, 9.0)], ["c", 3])], site)
+    show(points, [TWO[0], ([(9.0, 9.0)], ["c", 3])], site)
     assert features(points)["a"] == stays and set(features(points)) == {"a", "c"}
 
 
 def test_of_two_rows_that_are_alike_each_has_a_feature(points, site):
-    points.show([TWO[0], TWO[0]], site)
+    show(points, [TWO[0], TWO[0]], site)
     assert points.layer.featureCount() == 2
-    points.show([TWO[0]], site)
+    show(points, [TWO[0]], site)
     assert points.layer.featureCount() == 1
 
 
 def test_a_site_that_is_moved_takes_its_features_along_and_another_crs_is_another_layer(points, site):
-    points.show(TWO, site)
+    show(points, TWO, site)
     layer = points.layer.id()
-    points.show(TWO, replace(site, origin=(E + 100, N)))
+    show(points, TWO, replace(site, origin=(E + 100, N)))
     assert {name: at for name, (at, _) in features(points).items()} == {"a": (101, 2), "b": (103, 4)}
     assert points.layer.id() == layer and points.layer.featureCount() == 2
-    points.show(TWO, replace(site, crs="EPSG:32634"))
+    show(points, TWO, replace(site, crs="EPSG:32634"))
     assert points.layer.crs().authid() == "EPSG:32634" and points.layer.featureCount() == 2
 
 
 def test_a_layer_that_the_user_took_out_comes_back_whole(points, project, site):
-    points.show(TWO, site)
+    show(points, TWO, site)
     project.removeMapLayer(points.layer.id())
-    points.show(TWO, site)
+    show(points, TWO, site)
     assert points.layer.featureCount() == 2
 
 
 def test_it_comes_again_in_a_new_project(points, project, site, wait):
-    points.show(TWO, site)
+    show(points, TWO, site)
     project.clear()
     assert points.layer is None
-    wait(lambda: points.layer is not None)
-    assert set(features(points)) == {"a", "b"}
+    wait(lambda: points.layer is not None and set(features(points)) == {"a", "b"})
 
 
 def test_it_comes_again_in_a_project_that_is_opened_and_not_before_that_is_read(
@@ -109,7 +114,7 @@ def test_it_comes_again_in_a_project_that_is_opened_and_not_before_that_is_read(
     other = QgsProject()
     other.addMapLayer(make_layer("walls"))
     assert other.write(file)
-    points.show(TWO, site)
+    show(points, TWO, site)
     seen = []
 
     def meanwhile(*_):
@@ -120,13 +125,41 @@ def test_it_comes_again_in_a_project_that_is_opened_and_not_before_that_is_read(
     project.readMapLayer.connect(meanwhile)
     assert project.read(file)
     assert seen == [None]
-    wait(lambda: points.layer is not None)
-    assert set(features(points)) == {"a"}
+    wait(lambda: points.layer is not None and set(features(points)) == {"a"})
     assert {layer.name() for layer in project.mapLayers().values()} == {"walls", "Rows"}
 
 
+def test_many_are_written_bit_by_bit_after_the_news_and_painted_once(points, site, wait, monkeypatch):
+    written, painted = [], []
+    rows = [([(float(k), 0.0)], [f"r{k}", k]) for k in range(2 * AT_ONCE + 1)]
+    write = RowLayer._write
+
+    def watched(self, layer, *given):
+        if not written:
+            layer.repaintRequested.connect(lambda *_: painted.append(layer.featureCount()))
+        is_whole = write(self, layer, *given)
+        written.append(layer.featureCount())
+        return is_whole
+
+    monkeypatch.setattr(RowLayer, "_write", watched)
+    points.show(rows, site)
+    assert points.layer is None
+    wait(lambda: painted)
+    assert written == [AT_ONCE, 2 * AT_ONCE, len(rows)] and painted == [len(rows)]
+
+
+def test_what_comes_while_it_is_written_is_what_is_shown_in_the_end(points, site):
+    points.show([([(float(k), 0.0)], [f"old{k}", k]) for k in range(2 * AT_ONCE)], site)
+    points._soon.stop()
+    points._go_on()
+    points._go_on()
+    assert points.layer.featureCount() == AT_ONCE
+    show(points, TWO, site)
+    assert set(features(points)) == {"a", "b"}
+
+
 def test_removed_it_does_not_come_again(points, project, site):
-    points.show(TWO, site)
+    show(points, TWO, site)
     points.remove()
     project.clear()
     QApplication.processEvents()
@@ -134,13 +167,15 @@ def test_removed_it_does_not_come_again(points, project, site):
 
 
 def test_nobody_edits_it(points, site):
-    points.show(TWO, site)
+    show(points, TWO, site)
     assert not points.layer.startEditing()
 
 
 def test_lines_are_written_as_lines(project, site):
     lines = RowLayer(project, "ways", "Ways", "LineString", "name:string", lambda layer: None)
-    lines.show([(((0.0, 0.0), (10.0, 0.0)), ["way"]), (((0.0, 0.0), (0.0, 5.0), (5.0, 5.0)), ["bend"])], site)
+    show(
+        lines, [(((0.0, 0.0), (10.0, 0.0)), ["way"]), (((0.0, 0.0), (0.0, 5.0), (5.0, 5.0)), ["bend"])], site
+    )
     assert sorted(one.geometry().length() for one in lines.layer.getFeatures()) == [10, 10]
     assert {one["name"]: one.geometry().constGet().numPoints() for one in lines.layer.getFeatures()} == {
         "way": 2,
@@ -149,7 +184,7 @@ def test_lines_are_written_as_lines(project, site):
 
 
 def test_removed_it_leaves_neither_layer_nor_group_nor_a_changed_project(points, project, site):
-    points.show(TWO, site)
+    show(points, TWO, site)
     points.remove()
     assert project.mapLayers() == {} and project.layerTreeRoot().findGroup(GROUP) is None
     assert not project.isDirty()
@@ -157,7 +192,7 @@ def test_removed_it_leaves_neither_layer_nor_group_nor_a_changed_project(points,
 
 def test_a_group_that_the_user_moved_into_another_is_filled_and_emptied_there(points, project, site):
     root = project.layerTreeRoot()
-    points.show(TWO, site)
+    show(points, TWO, site)
     group = fleet_group(project)
     root.addGroup("Mine").addChildNode(group.clone())
     root.removeChildNode(group)

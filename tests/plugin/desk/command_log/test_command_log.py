@@ -250,6 +250,20 @@ def test_a_full_book_lets_go_of_what_is_over_first():
     assert book.get("command-1") is None
 
 
+def test_a_full_log_lets_go_of_the_oldest_and_leaves_what_is_chosen(log, gateway, wait, monkeypatch):
+    monkeypatch.setattr("fleet_supervisor.plugin.desk.command_book.MOST_COMMANDS", 4)
+    log.view.setCurrentIndex(log.view.model().index(2, 0))
+    gateway._queue("command-5", "r1", "SetPosEnd", {"x": 1.0, "y": 2.0})
+    gateway.step("command-5", CommandState.DELIVERED, "gateway")
+    wait(lambda: rows(log)[0] == ("r1 · target at 1.00, 2.00", "delivered"), what="the newest")
+    assert [what for what, _ in rows(log)][1:] == [
+        "r2 · target at 20.00, 30.00",
+        "r1 · abort",
+        "r2 · route of 2 points",
+    ]
+    assert log.view.currentIndex().siblingAtColumn(1).data() == "r2 · route of 2 points"
+
+
 def test_the_tree_is_what_qt_expects_of_a_model(log, gateway, wait):
     from qgis.PyQt.QtTest import QAbstractItemModelTester
 

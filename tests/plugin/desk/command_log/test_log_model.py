@@ -8,7 +8,7 @@ import pytest
 from fleet_supervisor.plugin.desk.command_log.entries import Filter, Which
 from fleet_supervisor.plugin.desk.command_log.log_model import COMMAND_ROLE, PAGE, LogModel
 from fleet_supervisor.robot_bridge.messages import CommandReport, CommandState, CommandStep
-from qgis.PyQt.QtCore import QModelIndex
+from qgis.PyQt.QtCore import QModelIndex, QPersistentModelIndex
 from qgis.PyQt.QtTest import QAbstractItemModelTester
 
 ROOT = QModelIndex()
@@ -117,6 +117,20 @@ def test_a_step_that_comes_is_a_row_beneath_its_command(held_to_qt):
     assert held_to_qt.parent(step) == top and held_to_qt.report_at(step).state is REACHED
     held_to_qt.merge([report(3)])
     assert held_to_qt.parent(step).row() == 2, "a step keeps to its command when that moves down"
+
+
+def test_what_is_kept_no_more_goes_and_the_others_stay_as_they_are(held_to_qt):
+    model = held_to_qt
+    model.show_all([report(n, REACHED) for n in range(6)], Filter())
+    opened = QPersistentModelIndex(model.index(1, 0, model.index(2, 0)))
+    resets = []
+    model.modelReset.connect(lambda: resets.append(True))
+    model.keep({"c1", "c2", "c3", "c5"})
+    assert told(model) == ["c5", "c3", "c2", "c1"] and not resets
+    assert model.report_at(QModelIndex(opened)).command == "c3"
+    model.keep({"c5"})
+    assert told(model) == ["c5"] and not opened.isValid()
+    assert list(model._by_number.values()) == list(model._numbers) and "c3" not in model._numbers
 
 
 def test_a_view_is_made_short_again_only_when_it_was_told_of_much(model):

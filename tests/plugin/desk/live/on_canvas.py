@@ -35,9 +35,7 @@ def scene_of(*robots, chosen=(), plans=(), draft=None, now=100.0, **more) -> Sce
 
 
 def plan(robot, *points, cone=False) -> Plan:
-    points = np.array(points, dtype=float)
-    along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
-    return Plan(f"command-{robot}", robot, points, along, cone)
+    return Plan(f"command-{robot}", robot, np.array(points, dtype=float), cone)
 
 
 def placement_of(canvas, site) -> Placement:

@@ -8,6 +8,7 @@ import math
 import numpy as np
 import pytest
 from fleet_supervisor.plugin.desk.colours import SELECTED, STATE_COLOURS
+from fleet_supervisor.plugin.desk.live import robots_painting
 from fleet_supervisor.plugin.desk.picture import STATES
 from fleet_supervisor.robot_bridge.messages import RobotState
 from qgis.PyQt.QtCore import QSize
@@ -50,6 +51,16 @@ def test_a_robot_is_painted_where_it_is_and_points_where_it_points(
 def test_each_state_has_its_colour_and_its_own_shape(canvas, site, state):
     show(canvas, site, scene_of((60, 50, 0.0, state), age=5.0))
     assert len(spots(canvas, STATE_COLOURS[state])) > 20
+
+
+def test_drawings_are_made_before_robots_are_painted(canvas, site, monkeypatch):
+    made, make = [], robots_painting.robot_atlas
+    monkeypatch.setattr(robots_painting, "robot_atlas", lambda *of: (made.append(of[-1]), make(*of))[1])
+    overlay = show(canvas, site, scene_of((60, 50, 0.0, RobotState.FRESH), (70, 50, 0.0, RobotState.LOST)))
+    overlay.show_scene(overlay._placed)
+    assert made == [RobotState.FRESH, RobotState.LOST]
+    canvas.grab()
+    assert len(made) == 2
 
 
 def test_states_differ_without_their_colours(qgis_app):

@@ -27,7 +27,7 @@ def same(xy):
 def placed(*heights, to_map=same):
     """A scene with a way from left to right at each of these pixels from the top."""
     ways = [np.array([(0.0, -y), (WIDTH, -y)]) for y in heights]
-    plans = [Plan(f"c{k}", f"r{k}", way, np.array([0.0, WIDTH]), False) for k, way in enumerate(ways)]
+    plans = [Plan(f"c{k}", f"r{k}", way, False) for k, way in enumerate(ways)]
     scene = Scene(RobotPicture().arrays(0.0), plans=plans)
     return PlacedScene(scene, NOWHERE, NOWHERE, ways, NOWHERE, NOWHERE, to_map)
 

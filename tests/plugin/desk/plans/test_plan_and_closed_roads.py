@@ -7,6 +7,7 @@ import threading
 import pytest
 from fleet_supervisor.plugin.desk.drafting import slices
 from fleet_supervisor.plugin.desk.plans.closed_ways import closed_ways
+from qgis.PyQt import sip
 
 from tests.plugin.desk.plans.panel_parts import (
     SHORT,
@@ -166,6 +167,21 @@ def test_a_plan_is_not_there_before_it_was_held_against_a_road_that_was_closed_m
     wait(lambda: not drafts.busy, 5)
     (made,) = told
     assert [one.stop for one in made.closed] == ["far-1"]
+
+
+def test_the_panel_outlives_a_task_that_qgis_deleted_while_its_plan_is_held_against_roads(
+    far_cones, held, gateway, wait
+):
+    plan = planned(far_cones, wait)
+    drafts, go_on = far_cones.drafts, threading.Event()
+    drafts.run("a plan", drafts.draft, lambda task: (go_on.wait(60.0), plan)[1], lambda made: None)
+    close_road(far_cones, gateway, wait)
+    go_on.set()
+    wait(lambda: drafts.task is not None and sip.isdeleted(drafts.task), 15, "the end of the task")
+    far_cones._pulled()
+    far_cones.cancel.click()
+    assert not drafts.busy
+    held.let_go()
 
 
 def test_nothing_is_looked_at_once_the_plugin_is_unloaded(far_cones, held, gateway, wait, plugin):

@@ -63,6 +63,8 @@ def test_what_speaks_against_a_plan_is_found_beside_the_windows_thread(panel, wa
 
 def test_the_plan_is_on_the_map_with_numbers_times_and_a_colour_for_each_robot(panel, wait):
     plan = planned(panel, wait)
+    for written in (panel.layers.stops, panel.layers.ways):
+        written.finish()
     stops, ways = panel.layers.stops.layer, panel.layers.ways.layer
     assert stops.featureCount() == 6 and ways.featureCount() == 6
     found = {f["id"]: f for f in stops.getFeatures()}

@@ -106,8 +106,13 @@ def test_what_is_done_is_counted_and_off_the_map_in_every_language(under_way, ga
     wait(lambda: first in under_way.driven.progress.done, 5)
     cone = child(under_way, "r1", first)
     assert cone.text(2) == "«done»" and cone.parent().text(2) == "1 of 3 cones"
-    stops = {one["id"]: one["state"] for one in under_way.layers.stops.layer.getFeatures()}
-    assert [stops[one] for one in (first, *others)] == ["done", "failed", "waiting"]
+
+    def stops():
+        return {one["id"]: one["state"] for one in under_way.layers.stops.layer.getFeatures()}
+
+    shown = ["done", "failed", "waiting"]
+    wait(lambda: [stops().get(one) for one in (first, *others)] == shown, what="the stops on the map")
+    under_way.layers.ways.finish()
     drawn = {one["to_stop"] for one in under_way.layers.ways.layer.getFeatures()}
     assert first not in drawn and set(others) <= drawn
 
