@@ -37,6 +37,9 @@ from .queue_book import QueueBook
 from .road_board import RoadBoard
 from .route_preview import RoutePreview
 
+LATE_S = 0.1
+"""Seconds after which what was pulled is not passed on without a look for what is newer."""
+
 
 class Desk(QObject):
     """Pulls the newest state twenty times a second and passes it on; nothing in it waits for the network."""
@@ -111,6 +114,7 @@ class Desk(QObject):
         self._timer = QTimer(self)
         self._timer.setInterval(PULL_EVERY_MS)
         self._timer.timeout.connect(self.pull)
+        self._pulled_at = clock()
         self._after_pull = QTimer(self)
         self._after_pull.setSingleShot(True)
         self._after_pull.timeout.connect(self._pass_on)
@@ -148,6 +152,11 @@ class Desk(QObject):
 
         ``pulled`` follows in a piece of its own: the window looks for the operator's events in between.
         """
+        self._take_in()
+        self._after_pull.start(0)
+
+    def _take_in(self) -> None:
+        self._pulled_at = self.clock()
         news = self.connection.take()
         if news.link != self.link:
             self.link = news.link
@@ -158,9 +167,11 @@ class Desk(QObject):
             self._take_site(news.site, news.is_greeting)
         self._take_news(news)
         self.orders.watch()
-        self._after_pull.start(0)
 
     def _pass_on(self) -> None:
+        if self.clock() - self._pulled_at > LATE_S:
+            # The window stood still meanwhile: what it shows first is what is so now.
+            self._take_in()
         self.beat.pulls += 1
         self.pulled.emit()
 
@@ -168,8 +179,8 @@ class Desk(QObject):
         if site == self.site and not self._is_other_gateway:
             return
         if self.site is not None and site.id != self.site.id and not self._is_other_gateway:
-            # Nobody at this desk asked for it.
-            self.complained.emit(
+            # Nobody at this desk asked for it, and it comes with alarms that would hide what goes by itself.
+            self.failed.emit(
                 tr(
                     "Another site is served now: {site}, no longer {before}. Open its project.",
                     site=site.name,
