@@ -28,6 +28,7 @@ from qgis.core import (
 
 from ...robot_bridge.roads.surfaces.surface import Surface
 from ..language import tr, tr_count, tr_page
+from ..sites.placing import SitePlacing
 from ..sites.roles import ROAD_SURFACE, layers_with_role
 from ..sites.surface_map import SurfaceMap, read_surface_map, surface_sources
 from .errors import ParameterError, shown_by_processing
@@ -110,6 +111,9 @@ class SurfaceAtPoint(FleetAlgorithm):
             surfaces = read_surface_map(self._sources, feedback)
             if surfaces is None:
                 return {}
+            # Refuses points whose place is not known: QGIS would take them for degrees.
+            site = SitePlacing.in_crs(surfaces.crs, surfaces.transforms)
+            site.of_layer(points.sourceName(), points.sourceCrs())
             for warning in surfaces.warnings:
                 feedback.pushWarning(warning)
             fields = QgsProcessingUtils.combineFields(points.fields(), self._fields)

@@ -201,6 +201,13 @@ def test_without_surfaces_it_takes_those_of_the_project(run, make_layer, grounds
     assert told(run("surfaceatpoint", POINTS=points)["OUTPUT"]) == ["ASPHALT"]
 
 
+def test_points_whose_place_is_not_known_are_refused(run, make_layer, grounds):
+    points = make_layer("points", "Point", "", [("POINT(1 1)",)])
+    points.setCrs(QgsCoordinateReferenceSystem())
+    with pytest.raises(QgsProcessingException, match="The layer points has no CRS, so its place is not"):
+        run("surfaceatpoint", POINTS=points, SURFACES=[grounds])
+
+
 def test_a_field_that_is_there_already_stays(run, make_layer, grounds):
     points = make_layer("points", "Point", "&field=surface:string", [("POINT(50 50)", "mine")])
     layer = run("surfaceatpoint", POINTS=points, SURFACES=[grounds])["OUTPUT"]
