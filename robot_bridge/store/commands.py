@@ -10,7 +10,7 @@ from sqlalchemy import Connection, Select, bindparam, delete, insert, select, up
 
 from ..command_life.states import is_open
 from ..messages import CommandReport, CommandState, CommandStep
-from .ageing import delete_oldest
+from .ageing import beside_the_time, delete_oldest
 from .schema import command_steps, commands
 
 
@@ -117,9 +117,8 @@ def of_kind_since(connection: Connection, op: str, since: float) -> list[Command
 def forget(connection: Connection, before: float, limit: int) -> int:
     """Delete at most ``limit`` ended commands from before a time, with their steps; return how many."""
     ended = [state.value for state in CommandState if not is_open(state)]
-    gone = delete_oldest(
-        connection, commands.c.id, commands.c.created_at, before, limit, commands.c.state.in_(ended)
-    )
+    has_ended = beside_the_time(commands.c.state).in_(ended)
+    gone = delete_oldest(connection, commands.c.id, commands.c.created_at, before, limit, has_ended)
     if gone:
         connection.execute(delete(command_steps).where(command_steps.c.command.in_(gone)))
     return len(gone)

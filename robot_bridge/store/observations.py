@@ -8,9 +8,10 @@ from typing import Any, NamedTuple
 
 from sqlalchemy import ColumnElement, Connection, func, insert, select, update
 
+from ..counting import counted
 from ..errors import RefusedError
 from ..messages import GetObservations, ObservationReport, ObservationState, SendImage, SetObject
-from .ageing import delete_oldest
+from .ageing import beside_the_time, delete_oldest
 from .schema import observations as table
 
 _REPORTED = [
@@ -114,19 +115,15 @@ def review(
 
 def forget_rejected(connection: Connection, before: float, limit: int) -> int:
     """Delete at most ``limit`` objects that were told and rejected before a time; return how many."""
-    rejected = _state.in_([ObservationState.REJECTED.value])
+    rejected = beside_the_time(table.c.state).in_([ObservationState.REJECTED.value])
     return _forget(connection, before, limit, table.c.kind == SetObject.__name__, rejected)
 
 
 def forget_images(connection: Connection, before: float, limit: int) -> int:
     """Delete at most ``limit`` images that were told and reviewed before a time; return how many."""
-    reviewed = _state.in_([ObservationState.ACCEPTED.value, ObservationState.REJECTED.value])
+    ends = [ObservationState.ACCEPTED.value, ObservationState.REJECTED.value]
+    reviewed = beside_the_time(table.c.state).in_(ends)
     return _forget(connection, before, limit, table.c.kind == SendImage.__name__, reviewed)
-
-
-# Joined to nothing, so that SQLite goes by the index of received_at: by that of the state it would have to
-# read every image to see how old it is.
-_state = table.c.state.concat("")
 
 
 def _forget(connection: Connection, before: float, limit: int, *only: ColumnElement[bool]) -> int:
@@ -138,8 +135,8 @@ def _check_room(connection: Connection, robot: str, most_pending: int) -> None:
     pending = select(func.count()).where(table.c.robot == robot, table.c.state == "pending")
     if (waiting := connection.scalar(pending) or 0) >= most_pending:
         raise RefusedError(
-            f"{waiting} observations of robot {robot!r} wait for review, and no more may ([observations] "
-            "most_pending); try again when an operator has reviewed some"
+            f"{counted(waiting, 'observation')} of robot {robot!r} to be reviewed, and no more may wait "
+            "([observations] most_pending); try again when an operator has reviewed some"
         )
 
 

@@ -13,7 +13,7 @@ from ..errors import RefusedError
 from ..messages import QueueState, QueueTask, TaskState, to_json
 from ..queues.edits import Whereabouts
 from ..queues.queue import ENDS, Queue, QueuedTask
-from .ageing import delete_oldest
+from .ageing import beside_the_time, delete_oldest
 from .schema import queue_tasks, queues
 
 _ENDED = [state.value for state in ENDS]
@@ -36,7 +36,7 @@ class Hold(NamedTuple):
 def load(connection: Connection, robots: Sequence[str] | None = None) -> dict[str, Queue]:
     """Return the queues of some robots, or of all, with their open tasks."""
     wanted = select(queues)
-    open_tasks = select(queue_tasks).where(queue_tasks.c.state.not_in(_ENDED))
+    open_tasks = select(queue_tasks).where(queue_tasks.c.state.in_(_OPEN))
     if robots is not None:
         wanted = wanted.where(queues.c.robot.in_(robots))
         open_tasks = open_tasks.where(queue_tasks.c.robot.in_(robots))
@@ -60,7 +60,7 @@ def load(connection: Connection, robots: Sequence[str] | None = None) -> dict[st
 def newest_ended(connection: Connection, robot: str, limit: int) -> list[QueuedTask]:
     """Return the tasks of a robot that ended, newest first."""
     c = queue_tasks.c
-    query = select(queue_tasks).where(c.robot == robot, c.state.in_(_ENDED))
+    query = select(queue_tasks).where(c.robot == robot, beside_the_time(c.state).in_(_ENDED))
     return _tasks(connection, query.order_by(c.ended_at.desc(), c.place.desc()).limit(limit))
 
 
@@ -125,7 +125,8 @@ def hold(connection: Connection, holds: Sequence[Hold]) -> None:
 def forget(connection: Connection, before: float, limit: int) -> int:
     """Delete at most ``limit`` tasks that ended before a time; return how many."""
     c = queue_tasks.c
-    return len(delete_oldest(connection, c.id, c.ended_at, before, limit, c.state.in_(_ENDED)))
+    has_ended = beside_the_time(c.state).in_(_ENDED)
+    return len(delete_oldest(connection, c.id, c.ended_at, before, limit, has_ended))
 
 
 def _save_queue(connection: Connection, before: Queue, after: Queue) -> None:

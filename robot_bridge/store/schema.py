@@ -88,7 +88,7 @@ commands = Table(
     "commands",
     metadata,
     Column("id", String(64), primary_key=True),
-    _robot(),
+    _robot(index=False),
     Column("op", String(32), nullable=False),
     Column("params", _LongText, nullable=False),
     Column("operator", String(128), nullable=False),
@@ -101,6 +101,8 @@ commands = Table(
     Column("sa_id", BigInteger, nullable=False),
     Column("created_at", Double, nullable=False, index=True),
     Column("expires_at", Double, nullable=True),
+    Index("ix_commands_robot_sa_id", "robot", "sa_id"),
+    Index("ix_commands_robot_created_at", "robot", "created_at"),
 )
 
 command_steps = Table(
@@ -171,7 +173,7 @@ queue_tasks = Table(
     "queue_tasks",
     metadata,
     Column("id", String(64), primary_key=True),
-    _robot(),
+    _robot(index=False),
     Column("place", Integer, nullable=False),
     Column("state", String(16), nullable=False, index=True),
     Column("content", _LongText, nullable=False),
@@ -184,6 +186,7 @@ queue_tasks = Table(
     Column("ended_at", Double, nullable=True, index=True),
     Column("reason", Text, nullable=True),
     Column("deviation", Double, nullable=True),
+    Index("ix_queue_tasks_robot_ended_at", "robot", "ended_at"),
 )
 
 # Cones that robots put down; ``task`` is unique, so that none is written twice.
@@ -205,7 +208,7 @@ placements = Table(
     Column("theta", Double, nullable=False),
     Column("deviation", Double, nullable=False),
     Column("placed_at", Double, nullable=False, index=True),
-    Column("collected_at", Double, nullable=True),
+    Column("collected_at", Double, nullable=True, index=True),
     Column("collected_by", String(63), nullable=True),
     sqlite_autoincrement=True,
 )

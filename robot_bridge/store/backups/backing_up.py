@@ -11,6 +11,7 @@ from typing import Protocol
 
 from sqlalchemy import URL, Connection, delete, func, inspect, select
 
+from ...counting import counted
 from ...errors import BridgeError, StoreError
 from .. import facts, revisions
 from ..address import shown
@@ -143,7 +144,7 @@ def _held(connection: Connection) -> str | None:
         table = metadata.tables[name]
         count = connection.scalar(select(func.count()).select_from(table)) or 0
         if count:
-            return f"{count} rows in {name}"
+            return f"{counted(count, 'row')} in {name}"
     return None
 
 
