@@ -34,6 +34,7 @@ from .fleet import Fleet
 from .links.sql import SqlLink
 from .links.websocket import WebSocketLink
 from .messages import MessageError, check_robot_name
+from .monitoring.garbage import Leavings
 from .monitoring.metrics import Metrics
 from .monitoring.tasks import Work, every, keep_all_going
 from .retention import Retention
@@ -56,6 +57,7 @@ log = logging.getLogger(__name__)
 
 AGE_INTERVAL = 0.25
 SAVE_INTERVAL = 1.0
+GARBAGE_INTERVAL = 1.0
 STUCK_INTERVAL = 5.0
 PRUNE_INTERVAL = 60.0
 ROADS_INTERVAL = 1.0
@@ -101,6 +103,7 @@ class Gateway:
         fleet.database.observe = metrics.database.observe
         self._status = StatusPages(fleet, metrics)
         self._clock_watch = ClockWatch(time.time)
+        self._leavings = Leavings()
         self.retention = Retention(fleet.database, lambda: fleet.site.settings, time.time)
 
     async def serve(self, host: str, port: int) -> Server:
@@ -120,6 +123,7 @@ class Gateway:
             "roads": lambda: every(ROADS_INTERVAL, fleet.watch_roads, "roads", tally),
             "accounts": self._gate.watch,
             "audit log": self._gate.journal.run,
+            "garbage": lambda: every(GARBAGE_INTERVAL, self._clear_away, "garbage", tally),
         }
         if has_accounts(fleet.database.dialect.name):
             works["stuck robots"] = lambda: every(
@@ -128,6 +132,9 @@ class Gateway:
         if self._tls is not None:
             works["certificates"] = self._tls.watch
         return works
+
+    async def _clear_away(self) -> None:
+        self._leavings.clear_away(self._gate.gone)
 
     async def _age(self) -> None:
         if (step := self._clock_watch.look()) is not None:

@@ -57,6 +57,8 @@ class Gate:
         self.journal = Journal(database, clock)
         self.book = AccountBook(database)
         self._guests = Guests(limits, self.journal)
+        self.gone = 0
+        """Connections that have gone since the start."""
         self._database = database
         self._may_be_open = may_be_open
         self._clock = clock
@@ -113,6 +115,7 @@ class Gate:
 
     def left(self, visitor: Visitor) -> None:
         """Count a connection that is gone."""
+        self.gone += 1
         self._guests.left(visitor)
 
     def name_desk(self, visitor: Visitor, operator: str) -> str:

@@ -8,7 +8,7 @@ import weakref
 import pytest
 
 from robot_bridge.messages import SendPos
-from robot_bridge.monitoring.garbage import YOUNG, spare_what_lasts
+from robot_bridge.monitoring.garbage import MOST_GONE, YOUNG, Leavings, spare_what_lasts
 from robot_bridge.store.trajectories import Fix
 
 
@@ -53,3 +53,15 @@ def test_what_holds_itself_is_found(looks):
 
 def test_what_was_loaded_is_not_looked_at(looks):
     assert gc.get_freeze_count() > 10_000
+
+
+def test_what_many_connections_left_is_looked_for_at_once_and_only_once(looks):
+    leavings, old = Leavings(), weakref.ref(Ring())
+    leavings.clear_away(MOST_GONE - 1)
+    assert looks == [] and old() is not None
+    leavings.clear_away(MOST_GONE)
+    assert looks == [2] and old() is None
+    leavings.clear_away(2 * MOST_GONE - 1)
+    assert looks == [2]
+    leavings.clear_away(2 * MOST_GONE)
+    assert looks == [2, 2]

@@ -1,0 +1,64 @@
+"""What connections leave behind in a gateway goes, though Python looks at old objects rarely."""
+
+from __future__ import annotations
+
+import asyncio
+import gc
+
+import pytest
+from websockets.asyncio.client import connect
+
+from robot_bridge import gateway
+from robot_bridge.access.gate import Gate
+from robot_bridge.access.visitor import Visitor
+from robot_bridge.fleet import Fleet
+from robot_bridge.monitoring import garbage
+from robot_bridge.site_maps import SiteMaps
+from robot_bridge.sites.limit_settings import LimitSettings
+from robot_bridge.sites.publication import read_site
+from robot_bridge.store.database import Database
+
+COMINGS = 12
+
+
+@pytest.fixture
+async def running(sample_site, tmp_path):
+    """A gateway that serves the sample site, and its port."""
+    database = Database(f"sqlite:///{tmp_path}/fleet.db")
+    await database.open()
+    gate = Gate(database, LimitSettings(), may_be_open=True)
+    made = gateway.Gateway(Fleet(SiteMaps(read_site(sample_site)), database), gate)
+    server = await made.serve("127.0.0.1", 0)
+    yield made, server.sockets[0].getsockname()[1]
+    server.close()
+    await server.wait_closed()
+    await database.close()
+
+
+@pytest.fixture
+def no_looks():
+    """Python looks for garbage only when it is told to, and there is none to begin with."""
+    gc.collect()
+    gc.disable()
+    yield
+    gc.enable()
+
+
+async def test_of_robots_that_come_and_go_nothing_is_left(running, no_looks, monkeypatch):
+    monkeypatch.setattr(gateway, "GARBAGE_INTERVAL", 0.05)
+    monkeypatch.setattr(garbage, "MOST_GONE", COMINGS)
+    made, port = running
+    before = connections()
+    for number in range(COMINGS):
+        async with connect(f"ws://127.0.0.1:{port}/robot?robot=r{number}") as robot:
+            await robot.recv()
+    assert connections() > before, "they hold themselves: this tests nothing otherwise"
+    clearing = asyncio.create_task(made.works()["garbage"]())
+    async with asyncio.timeout(60):
+        while connections() > before:
+            await asyncio.sleep(0.05)
+    clearing.cancel()
+
+
+def connections() -> int:
+    return sum(isinstance(one, Visitor) for one in gc.get_objects())
