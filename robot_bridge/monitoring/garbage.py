@@ -12,8 +12,8 @@ own it was one of 140 ms every five. What connections leave behind that are gone
 which comes after ten thousand of them: see :class:`Leavings`."""
 MOST_GONE = 200
 """Connections that go before the next look at all objects, whatever else there is to do. Each leaves 90
-objects that hold each other, 15 kB: twelve thousand, after which Python would look by itself, left 250 MB, and
-everybody would have waited for seconds while it cleared them away."""
+objects that hold each other, 15 kB: twelve thousand, after which Python would look by itself, left 250 MB,
+and everybody would have waited for seconds while it cleared them away."""
 
 
 def spare_what_lasts() -> None:
