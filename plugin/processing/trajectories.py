@@ -29,7 +29,7 @@ from qgis.core import (
 )
 
 from ..language import tr, tr_count, tr_page
-from ..sites.site_crs import is_mercator
+from ..sites.site_crs import is_mercator, stated_crs
 from .drives import Drive, Positions, drives
 from .errors import shown_by_processing
 from .fleet_algorithm import FleetAlgorithm, Parameters, fields_of
@@ -184,6 +184,8 @@ class Metres:
     """Measures steps: in the CRS where its units are metres on the ground, else on its ellipsoid."""
 
     def __init__(self, crs: QgsCoordinateReferenceSystem, transforms: QgsCoordinateTransformContext) -> None:
+        # Without a CRS places are the site's metres, and a GeoPackage would have them in degrees.
+        crs = stated_crs(crs)
         true = crs.mapUnits() == QgsUnitTypes.DistanceUnit.DistanceMeters and not crs.isGeographic()
         self._measure = None
         if crs.isValid() and (not true or is_mercator(crs)):

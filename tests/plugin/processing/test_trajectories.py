@@ -11,7 +11,14 @@ import time
 import pytest
 from fleet_supervisor.robot_bridge.messages import SendPos
 from osgeo import ogr
-from qgis.core import QgsProcessingContext, QgsProcessingException, QgsProject, QgsVectorLayer
+from qgis.core import (
+    QgsCoordinateTransformContext,
+    QgsProcessingContext,
+    QgsProcessingException,
+    QgsProject,
+    QgsVectorFileWriter,
+    QgsVectorLayer,
+)
 from qgis.PyQt.QtCore import QDateTime, Qt
 
 from robot_bridge.store import trajectories
@@ -99,6 +106,15 @@ def test_a_feature_of_several_points_is_no_position(run, make_layer, listener):
     told, _ = run(INPUT=layer)
     assert (told["POSITION_COUNT"], told["TOTAL_LENGTH"]) == (2, 4.0)
     assert listener.warnings == ["1 feature has no place, robot or time; it is left out."]
+
+
+def test_positions_without_a_crs_are_in_metres_in_a_geopackage_too(run, make_layer, tmp_path):
+    rows = [("Point(0 0)", "r1", 1.0), ("Point(3 4)", "r1", 2.0)]
+    layer = make_layer("seen", "Point", "&field=robot:string&field=time:double", rows, crs="")
+    file, context = str(tmp_path / "seen.gpkg"), QgsCoordinateTransformContext()
+    QgsVectorFileWriter.writeAsVectorFormatV3(layer, file, context, QgsVectorFileWriter.SaveVectorOptions())
+    for given in (layer, file):
+        assert run(INPUT=given)[0]["TOTAL_LENGTH"] == pytest.approx(5.0)
 
 
 def test_a_longer_gap_joins_drives_and_steps_part_them(run, positions):
