@@ -7,6 +7,7 @@ import logging
 from collections import Counter
 from collections.abc import Iterator
 
+from ..counting import counted
 from ..sites.limit_settings import LimitSettings
 from .journal import Journal
 from .tokens import TokenKind
@@ -50,13 +51,14 @@ class Guests:
         robots, limits = identity.kind is TokenKind.ROBOT, self._limits
         most = limits.robots if robots else limits.desks
         if self._counts[identity.kind] >= most:
-            return (
-                f"{most} {'robots' if robots else 'desks'} are connected, and no more are taken; try later."
-            )
+            room = counted(most, "robot" if robots else "desk")
+            return f"there is room for {room}, and it is taken; try later."
         if self._counts["from", visitor.address] >= limits.per_address:
-            return f"{limits.per_address} connections from {visitor.address} are open; close some."
+            open_ones = counted(limits.per_address, "connection")
+            return f"{visitor.address} has {open_ones} open, and gets no more; close some."
         if not robots and self._counts["of", identity.token] >= limits.desks_per_account > 0:
-            return f"{limits.desks_per_account} desks of {identity.name} are open; close one."
+            open_ones = counted(limits.desks_per_account, "desk")
+            return f"{identity.name} has {open_ones} open, and gets no more; close one."
         return None
 
     def enter(self, visitor: Visitor, identity: Identity, largest_message: int) -> None:

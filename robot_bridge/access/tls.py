@@ -12,6 +12,7 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
+from ..counting import counted
 from .certificates import valid_until
 from .errors import AccessError
 
@@ -91,7 +92,7 @@ class ServerTls:
             log.warning(
                 "certificate %s %s; 'robot-bridge tls renew' makes a new one",
                 self._files.certificate,
-                f"holds for {left.days} days more" if left.days >= 0 else "has expired",
+                f"holds for {counted(left.days, 'day')} more" if left.days >= 0 else "has expired",
             )
 
 

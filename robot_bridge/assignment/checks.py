@@ -7,6 +7,7 @@ from collections import Counter
 from collections.abc import Iterator
 from itertools import pairwise
 
+from ..counting import counted
 from .job import COLLECT, PLACE, Target
 from .plan import HOME, STORE, Plan, RobotPlan, Stop
 
@@ -38,7 +39,7 @@ def _served_once(plan: Plan) -> Iterator[str]:
         if target.id in left_out and count:
             yield f"Cone {target.id} is left out and served nevertheless."
         elif target.id not in left_out and count != 1:
-            yield f"Cone {target.id} is served {count} times."
+            yield f"Cone {target.id} is served {counted(count, 'time')}."
     for name in served:
         yield f"Cone {name} is served and not asked for."
 
@@ -67,7 +68,7 @@ def _load_faults(one: RobotPlan, targets: dict[str, Target]) -> Iterator[str]:
         if aboard + collected > robot.capacity:
             yield f"{where}: {aboard + collected} are on it, and there is room for {robot.capacity}."
     if collected and one.stops:
-        yield f"Robot {robot.id} ends with {collected} collected cones that it has not unloaded."
+        yield f"Robot {robot.id} ends with {counted(collected, 'collected cone')} not unloaded."
 
 
 def _time_faults(one: RobotPlan, targets: dict[str, Target]) -> Iterator[str]:

@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from itertools import pairwise
 
+from ..counting import counted
 from .days import Day, Days
 from .errors import EditError
 from .job import Job, Target
@@ -142,7 +143,7 @@ def _check_room(job: Job, days: Days, rows: Sequence[Day]) -> None:
                 continue
             names = ", ".join(job.target(place).id for place in row)
             if number == 0:
-                what = f"before its first visit to a store: it has {one.aboard} cones aboard"
+                what = f"before its first visit to a store: it has {counted(one.aboard, 'cone')} aboard"
             else:
                 what = f"on trip {number}: it has room for {one.capacity}"
             raise EditError(f"Robot {one.id} cannot serve {names} {what}. Give it fewer, or another trip.")

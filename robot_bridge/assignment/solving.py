@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
+from ..counting import counted
 from .days import Day, Days
 from .errors import CancelledError, JobError, UnservedError
 from .job import Job
@@ -118,8 +119,8 @@ def _refuse_unreachable(days: Days) -> None:
         bad = [place for place in _places(days.job) if not reachable(days, place)]
         if bad:
             raise UnservedError(
-                f"{len(bad)} cones cannot be served; {reason} {_named(days.job, bad)}: {what_to_do}, or "
-                "leave the cones out.",
+                f"{counted(len(bad), 'cone')} cannot be served; {reason} {_named(days.job, bad)}: "
+                f"{what_to_do}, or leave the cones out.",
                 tuple(days.job.target(place).id for place in bad),
             )
 

@@ -9,6 +9,7 @@ from typing import Annotated
 
 import typer
 
+from ..counting import counted
 from ..errors import BridgeError
 from ..known_names import told
 from ..messages import GetPlacements, PlacementReport
@@ -80,7 +81,7 @@ def export(
     found = asyncio.run(work())
     write(rows(found, frame), frame, file)
     worst = max((one.deviation for one in found), default=0.0)
-    typer.echo(f"{file}: {len(found)} cones, {worst:.3f} m off their places at most")
+    typer.echo(f"{file}: {counted(len(found), 'cone')}, {worst:.3f} m off their places at most")
 
 
 async def _check_named(database: Database, wanted: GetPlacements) -> None:

@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from ..counting import counted
 from ..errors import BridgeError
 from ..messages import check_robot_name
 from ..sites.settings import SETTINGS_FILE, read_settings
@@ -66,7 +67,8 @@ def export(
             await opened.close()
 
     written = asyncio.run(work())
-    typer.echo(f"{file}: {written.positions} positions, {written.tracks} tracks")
+    positions, tracks = counted(written.positions, "position"), counted(written.tracks, "track")
+    typer.echo(f"{file}: {positions}, {tracks}")
 
 
 def _bounds(text: str | None) -> tuple[float, float, float, float] | None:

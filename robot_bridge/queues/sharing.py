@@ -6,6 +6,7 @@ import dataclasses
 from collections import Counter
 from collections.abc import Mapping
 
+from ..counting import counted
 from ..errors import RefusedError
 from ..messages import Share, TakeOver, TaskKind
 from ..messages.queues import check_path
@@ -43,14 +44,14 @@ def takes_current(giver: Queue, request: TakeOver) -> QueuedTask | None:
 def _check_complete(shared: list[str], pool: Mapping[str, object]) -> None:
     counts = Counter(shared)
     for what, tasks in (
-        ("are in no share and would be lost", [task for task in pool if task not in counts]),
-        ("are in more than one place and would be done twice", [t for t, n in counts.items() if n > 1]),
-        ("do not wait in any of these queues", [task for task in counts if task not in pool]),
+        ("in no share, to be lost", [task for task in pool if task not in counts]),
+        ("in more than one place, to be done twice", [t for t, n in counts.items() if n > 1]),
+        ("not waiting in any of these queues", [task for task in counts if task not in pool]),
     ):
         if tasks:
             raise RefusedError(
-                f"shares: {len(tasks)} tasks {what}, such as {tasks[0]}; look at the queues again, and share "
-                "every task that waits once"
+                f"shares: {counted(len(tasks), 'task')} {what}, such as {tasks[0]}; look at the queues "
+                "again, and share every task that waits once"
             )
 
 

@@ -8,6 +8,7 @@ from enum import Enum
 
 import numpy as np
 
+from ..counting import counted
 from .ends import Breaks, Gap, breaks_of, loose_ends
 from .network import Network
 from .strong_parts import strong_parts
@@ -119,7 +120,7 @@ def _parts(network: Network) -> list[Finding]:
             network,
             int(first[k]),
             Kind.PART,
-            f"{count[k]} edges with {metres[k]:.1f} m are connected with one another only.",
+            f"Connected with no other road: {counted(int(count[k]), 'edge')} of {metres[k]:.1f} m.",
         )
         for k in range(len(part))
         if k != main

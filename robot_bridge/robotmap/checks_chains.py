@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..counting import counted
 from .checks_boxes import overlapping_boxes
 from .checks_finding import Finding, Kind, Limits, Severity
 from .checks_table import SAME_PLACE, TOUCHING, SegmentTable, place
@@ -27,7 +28,7 @@ def broken_chains(table: SegmentTable, limits: Limits) -> Iterator[Finding]:
             Kind.ORIENTATION,
             Severity.ERROR,
             table.obstacles[row].id,
-            f"{joints.sum()} joints where two segments run against each other, the first at "
+            f"{counted(int(joints.sum()), 'joint')} where two segments run against each other, the first at "
             f"{place(table.b[before[joints][0]])}: turn one of the two round",
             table.lines(segments),
         )

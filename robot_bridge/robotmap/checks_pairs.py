@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..counting import counted
 from .checks_boxes import overlapping_boxes
 from .checks_finding import Finding, Kind, Limits, Severity
 from .checks_table import SAME_PLACE, TOUCHING, SegmentTable
@@ -119,7 +120,7 @@ def _finding(
 ) -> Finding:
     id, other = table.obstacles[second].id, table.obstacles[first].id
     length = np.hypot(*(lines[::2, 1] - lines[::2, 0]).T).sum()
-    times = "1 place" if count == 1 else f"{count} places"
+    times = counted(count, "place")
     if first == second:
         return _with_itself(id, what, times, length, lines)
     if what == _CROSSING:

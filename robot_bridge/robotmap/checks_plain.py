@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..counting import counted
 from .checks_finding import Finding, Kind, Limits, Severity
 from .checks_table import SAME_PLACE, SegmentTable, mark, place
 from .model import ShapeType
@@ -42,7 +43,8 @@ def outside_border(table: SegmentTable, limits: Limits) -> Iterator[Finding]:
             Kind.OUTSIDE,
             Severity.ERROR,
             table.obstacles[row].id,
-            f"{_count(segments)} outside the border of the map: clip the map to its border or widen it",
+            f"{counted(len(segments), 'segment')} outside the border of the map: clip the map to its border "
+            "or widen it",
             table.lines(segments),
         )
 
@@ -55,7 +57,7 @@ def without_length(table: SegmentTable, limits: Limits) -> Iterator[Finding]:
             Kind.SLIVER,
             Severity.WARNING,
             table.obstacles[row].id,
-            f"{_count(segments)} without length, the first at {place(first)}: leave it out",
+            f"{counted(len(segments), 'segment')} without length, the first at {place(first)}: leave it out",
             mark(first),
         )
 
@@ -84,7 +86,7 @@ def wrong_heights(table: SegmentTable, limits: Limits) -> Iterator[Finding]:
 
 def _height(table: SegmentTable, row: int, segments: NDArray[Any], text: str) -> Finding:
     id = table.obstacles[row].id
-    said = f"{_count(segments)} with {text}"
+    said = f"{counted(len(segments), 'segment')} with {text}"
     return Finding(Kind.HEIGHT, Severity.WARNING, id, said, table.lines(segments))
 
 
@@ -93,10 +95,6 @@ def _by_obstacle(table: SegmentTable, odd: NDArray[Any]) -> Iterator[tuple[int, 
     indices = np.flatnonzero(odd)
     for row in np.unique(table.row[indices]):
         yield int(row), indices[table.row[indices] == row]
-
-
-def _count(segments: NDArray[Any]) -> str:
-    return "1 segment" if len(segments) == 1 else f"{len(segments)} segments"
 
 
 def _of_all(table: SegmentTable, rows: list[int]) -> NDArray[Any]:

@@ -9,6 +9,7 @@ from typing import Any, NoReturn
 import numpy as np
 from numpy.typing import NDArray
 
+from ..counting import counted
 from .errors import TextError
 from .labels import read_ext, unescape
 from .model import Border, Obstacle, RobotMap, ShapeType
@@ -87,7 +88,8 @@ class _Reader:
             self._line(f"the first of {declared} segments")
         if len(segments) != declared:
             self._warnings.append(
-                f"line {line_number}: obstacle {id} declares {declared} segments and {len(segments)} follow"
+                f"line {line_number}: obstacle {id} declares {counted(declared, 'segment')}, and "
+                f"{len(segments)} came"
             )
         obstacle = _obstacle(id, shape_type, semantics, ext, segments)
         object.__setattr__(obstacle, "text", "".join(self._lines[start : self._next]))

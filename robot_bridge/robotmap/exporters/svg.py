@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
+from ...counting import counted
 from ..model import RobotMap, ShapeType
 from .lines import Points, lines_of
 from .palette import FACE, INK, Colours, colours_of, colours_of_labels, deepened
@@ -149,14 +150,8 @@ def _title(robot_map: RobotMap) -> str:
 def _subtitle(robot_map: RobotMap) -> str:
     border = robot_map.border
     size = f"{border.x_max - border.x_min:.10g} m × {border.y_max - border.y_min:.10g} m"
-    counts = (
-        f"{_counted(len(robot_map.obstacles), 'obstacle')}, {_counted(robot_map.segment_count, 'segment')}"
-    )
+    counts = f"{counted(len(robot_map.obstacles), 'obstacle')}, {counted(robot_map.segment_count, 'segment')}"
     return " · ".join(part for part in (size, counts, robot_map.meta.get("crs", "")) if part)
-
-
-def _counted(count: int, noun: str) -> str:
-    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
 
 
 def _north(robot_map: RobotMap) -> float | None:

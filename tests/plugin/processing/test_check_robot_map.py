@@ -68,7 +68,7 @@ def test_each_finding_has_kind_severity_obstacle_text_and_place(check, listener)
 
 def test_what_reading_found_odd_is_said_too(check, listener, fig_2):
     results = check(fig_2)
-    assert any("declares 4 segments and 1 follow" in warning for warning in listener.warnings)
+    assert any("declares 4 segments, and 1 came" in warning for warning in listener.warnings)
     kinds = [f["kind"] for f in results["FINDINGS"].getFeatures()]
     assert kinds == ["gap"]
 

@@ -331,7 +331,7 @@ def test_an_expression_that_is_none_is_refused(export, robot_map, areas):
 def test_warnings_of_the_map_are_passed_on(export, robot_map):
     robot_map.write_text(MAP.replace("2;2;1;kerb", "2;2;9;kerb"))
     _, _, warnings = export(robot_map)
-    assert len(warnings) == 1 and "obstacle 2 declares 9 segments and 1 follow" in warnings[0]
+    assert len(warnings) == 1 and "obstacle 2 declares 9 segments, and 1 came" in warnings[0]
 
 
 def test_a_cancelled_export_writes_nothing(export, robot_map, cancels_at, tmp_path):

@@ -295,7 +295,8 @@ def export_campus(data, export_by_process):
 
 def shaped_as_said(done):
     """Return how many segments there were before and after, as the log says it and the outputs agree."""
-    counts = re.search(r"(\d+) obstacles, (\d+) segments became (\d+) obstacles, (\d+) segments", done.said).groups()
+    told = r"(\d+) obstacles, (\d+) segments became (\d+) obstacles, (\d+) segments"
+    counts = re.search(told, done.said).groups()
     before, obstacles, after = (int(count) for count in counts[1:])
     assert (obstacles, after) == (done.result("OBSTACLE_COUNT"), done.result("SEGMENT_COUNT"))
     return before, after

@@ -164,7 +164,7 @@ def test_the_papers_sample_is_loaded_and_its_short_obstacle_named(load, listener
     made = load(fig_2)
     assert rows(made["LINES"], "id", "semantics") == [(1, "column,A5"), (110, "wall,A4")]
     assert made["WARNING_COUNT"] == 1
-    assert "line 6: obstacle 1 declares 4 segments and 1 follow" in listener.warnings
+    assert "line 6: obstacle 1 declares 4 segments, and 1 came" in listener.warnings
 
 
 def test_what_was_exported_comes_back_where_it_was(load, export, make_layer):

@@ -153,10 +153,10 @@ def test_only_the_web_pages_that_the_site_names_may_connect(bridge, refused, pat
 def test_robots_and_desks_have_places_of_their_own(bridge, refused):
     robots = [bridge.robot(f"r{n}") for n in range(6)]
     status, text = refused(lambda: bridge.robot("r7"))
-    assert (status, text) == (503, "6 robots are connected, and no more are taken; try later.\n")
+    assert (status, text) == (503, "there is room for 6 robots, and it is taken; try later.\n")
     desks = [bridge.desk() for _ in range(8)]
     status, text = refused(bridge.desk)
-    assert (status, text) == (503, "8 desks are connected, and no more are taken; try later.\n")
+    assert (status, text) == (503, "there is room for 8 desks, and it is taken; try later.\n")
     robots[0].connection.close()
     desks[0].connection.close()
     time.sleep(0.2)
@@ -255,7 +255,7 @@ def test_one_operator_has_so_many_desks_and_no_more(bridge, accounts_of, refused
     ada = accounts_of(bridge).operator("Ada", "viewer")
     desks = [bridge.desk(**ada) for _ in range(2)]
     status, text = refused(lambda: bridge.desk(**ada))
-    assert (status, text) == (503, "2 desks of Ada are open; close one.\n")
+    assert (status, text) == (503, "Ada has 2 desks open, and gets no more; close one.\n")
     desks[0].connection.close()
     time.sleep(0.2)
     bridge.desk(**ada)

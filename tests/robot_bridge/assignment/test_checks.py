@@ -112,4 +112,4 @@ def test_collected_cones_that_stay_aboard_are_found() -> None:
     job = replace(job, targets=tuple(replace(target, kind=COLLECT) for target in job.targets))
     plan = assign(job, StraightTravel(job), Wanted(method=PREVIEW))
     faults = check_plan(changed(plan, is_kind(STORE), lambda stop: None))
-    assert faults == ["Robot R1 ends with 3 collected cones that it has not unloaded."]
+    assert faults == ["Robot R1 ends with 3 collected cones not unloaded."]

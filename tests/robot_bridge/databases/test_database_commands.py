@@ -118,7 +118,7 @@ def test_whatever_is_done_to_the_database_is_in_its_audit_log(told, empty_url, t
     refusal(robot_bridge("database", "create", **told))
     robot_bridge("operators", "add", "Ada", "--role", "viewer", **told)
     said = refusal(robot_bridge("database", "restore", file, **told))
-    assert "is not empty: it has 1 rows in operators" in said
+    assert "is not empty: it has 1 row in operators" in said
     entries = log_of(empty_url)
     assert [entry[:4] for entry in entries] == [
         (me, "database create", where, True),
@@ -129,7 +129,7 @@ def test_whatever_is_done_to_the_database_is_in_its_audit_log(told, empty_url, t
         (me, "database restore", where, False),
     ]
     assert entries[2][4] == str(file)
-    assert "it has 1 rows in operators" in entries[5][4]
+    assert "it has 1 row in operators" in entries[5][4]
     done = robot_bridge("database", "restore", file, "--replace", **told)
     assert (done.returncode, done.stderr) == (0, "")
     # The log is that of the backup now, and says where it comes from.

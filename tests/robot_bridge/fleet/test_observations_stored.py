@@ -106,7 +106,7 @@ async def test_what_is_told_while_too_much_waits_is_refused_until_something_is_r
     monkeypatch.setattr(type(ready.site), "settings", property(lambda _: settings))
     for number in (1, 2):
         await tell(ready, CONE, number)
-    with pytest.raises(RefusedError, match=r"2 observations of robot 'r1' wait for review, and no more may"):
+    with pytest.raises(RefusedError, match="2 observations of robot 'r1' to be reviewed, and no more"):
         await tell(ready, CONE, 3)
     await tell(ready, CONE, 2)
     (first, _) = await told(ready)

@@ -55,9 +55,9 @@ async def test_what_a_robot_is_doing_may_stay_with_it(line):
 @pytest.mark.parametrize(
     ("ids", "said"),
     [
-        (["b"], "1 tasks are in no share and would be lost"),
-        (["b", "c", "b"], "would be done twice"),
-        (["b", "c", "d"], "1 tasks do not wait in any of these queues"),
+        (["b"], "1 task in no share, to be lost"),
+        (["b", "c", "b"], "to be done twice"),
+        (["b", "c", "d"], "1 task not waiting in any of these queues"),
     ],
 )
 async def test_a_split_that_loses_or_doubles_a_task_changes_nothing(line, ids, said):

@@ -79,7 +79,7 @@ def test_every_cut_inside_a_line_is_called_one(fig_2):
 
 def test_a_cut_between_two_segments_shows_in_their_number(fig_2):
     text = fig_2.replace("110;2;1", "110;2;2")
-    assert "declares 2 segments and 1 follow" in read_text(text).warnings[-1]
+    assert "declares 2 segments, and 1 came" in read_text(text).warnings[-1]
 
 
 def test_an_extra_may_hold_commas(fig_2):
