@@ -91,6 +91,7 @@ def test_a_road_is_closed_by_a_click_the_robot_on_it_sent_round_and_opened_again
     first = operator.wait_for_state("r1", "SetPath", CommandState.ACKNOWLEDGED)
     close_road(operator, *SOUTH, "tree on the road")
     operator.wait("another way", lambda: len(operator.sent_to("r1")) == 2, 10)
+    operator.wait("the closed road", lambda: layer("Closed roads").featureCount() == 1, 10)
     (row,) = layer("Closed roads").getFeatures()
     assert (row["reason"], row["closed_by"], row["edges"]) == ("tree on the road", "anna", 1)
     assert row["until"] != ""
