@@ -63,6 +63,9 @@ class LiveView(QObject):
         self._frame.setSingleShot(True)
         self._frame.setInterval(FRAME_MS)
         self._frame.timeout.connect(self.show_now)
+        self._after_frame = QTimer(self)
+        self._after_frame.setSingleShot(True)
+        self._after_frame.timeout.connect(self._write_layer)
         desk.pulled.connect(self._pulled)
         desk.site_changed.connect(self._site_changed)
         desk.selection_changed.connect(self._selection_changed)
@@ -77,6 +80,7 @@ class LiveView(QObject):
     def remove(self) -> None:
         """Take the overlay and the card off the canvas and the layer out of the project."""
         self._frame.stop()
+        self._after_frame.stop()
         self._desk.canvas.destinationCrsChanged.disconnect(self._way_changed)
         self._desk.project.transformContextChanged.disconnect(self._way_changed)
         self._desk.canvas.extentsChanged.disconnect(self._frame.start)
@@ -153,7 +157,8 @@ class LiveView(QObject):
             self.show_now()
         if self._pulls % EVERY_HALF == 0:
             self._hovering.refresh()
-        self._write_layer()
+        # In a piece of its own: it takes as long as the frame.
+        self._after_frame.start(0)
         if self._pulls % EVERY_SECOND == 0:
             self._go_after()
 

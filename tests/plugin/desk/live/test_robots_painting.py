@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from fleet_supervisor.plugin.desk.colours import SELECTED, STATE_COLOURS
 from fleet_supervisor.plugin.desk.live import robots_painting
+from fleet_supervisor.plugin.desk.live.scene import Placer
 from fleet_supervisor.plugin.desk.picture import STATES
 from fleet_supervisor.robot_bridge.messages import RobotState
 from qgis.PyQt.QtCore import QSize
@@ -16,6 +17,7 @@ from qgis.PyQt.QtGui import QColor, QImage, QPainter
 
 from tests.plugin.desk.live.on_canvas import (
     expected,
+    placement_of,
     scene_of,
     show,
     spots,
@@ -54,13 +56,14 @@ def test_each_state_has_its_colour_and_its_own_shape(canvas, site, state):
 
 
 def test_drawings_are_made_before_robots_are_painted(canvas, site, monkeypatch):
+    overlay = show(canvas, site, scene_of((60, 50, 0.0, RobotState.FRESH)))
     made, make = [], robots_painting.robot_atlas
     monkeypatch.setattr(robots_painting, "robot_atlas", lambda *of: (made.append(of[-1]), make(*of))[1])
-    overlay = show(canvas, site, scene_of((60, 50, 0.0, RobotState.FRESH), (70, 50, 0.0, RobotState.LOST)))
-    overlay.show_scene(overlay._placed)
-    assert made == [RobotState.FRESH, RobotState.LOST]
+    scene = scene_of((60, 50, 0.0, RobotState.FRESH), (70, 50, 0.0, RobotState.LOST))
+    overlay.show_scene(Placer().placed(scene, placement_of(canvas, site)))
+    assert made == [RobotState.LOST]
     canvas.grab()
-    assert len(made) == 2
+    assert made == [RobotState.LOST]
 
 
 def test_states_differ_without_their_colours(qgis_app):
