@@ -50,7 +50,7 @@ WARM_UP = 60.0
 MEASURED = 2 / 3
 """The last part of the time, over which memory may not grow."""
 FLAT = 40.0
-"""MB an hour by which what is in use may seem to grow: pictures of maps come and go meanwhile."""
+"""MB an hour by which what is in use may grow, beyond what pictures of maps that come and go leave open."""
 HIGHER = 60.0
 """MB by which the most that the process has may be higher in the last third of the time than in the first."""
 RASTER_CACHE = 16
@@ -236,14 +236,19 @@ def complaints_in(log: Path) -> list[str]:
     return [line for line in lines if any(word in line for word in words)]
 
 
-def growth(samples: Sequence[Sample], seconds: float, what: str) -> float:
-    """Return by how much ``what`` grew in an hour over the last part of the time: the slope of a line."""
+def growth(samples: Sequence[Sample], seconds: float, what: str) -> tuple[float, float]:
+    """Return by how much ``what`` grew in an hour over the last part of the time, and the error of that.
+
+    It is the slope of a line and its standard error: pictures of maps come and go by tens of megabytes, and
+    of half an hour a slope is not known better. NaN for too few samples to tell.
+    """
     begin = max(WARM_UP, seconds * (1 - MEASURED))
     counted = [(sample.at / 3600, getattr(sample, what)) for sample in samples if sample.at >= begin]
     if len(counted) < 3:
-        return float("nan")
+        return float("nan"), float("nan")
     hours, values = np.array(counted).T
-    return float(np.polyfit(hours, values, 1)[0])
+    line, covariance = np.polyfit(hours, values, 1, cov=True)
+    return float(line[0]), float(np.sqrt(covariance[0, 0]))
 
 
 def grown(samples: Sequence[Sample], seconds: float) -> list[str]:
@@ -253,9 +258,10 @@ def grown(samples: Sequence[Sample], seconds: float) -> list[str]:
     two things that are still in use, so that it goes up in steps and hardly down.
     """
     found = []
-    slope, rise = growth(samples, seconds, "in_use"), peak(samples, seconds, 2) - peak(samples, seconds, 0)
-    if not slope <= FLAT:
-        found.append(f"what is in use grew by {slope:.0f} MB an hour, {FLAT:.0f} at most")
+    slope, error = growth(samples, seconds, "in_use")
+    rise = peak(samples, seconds, 2) - peak(samples, seconds, 0)
+    if not slope - error <= FLAT:
+        found.append(f"what is in use grew by {slope:.0f} ± {error:.0f} MB an hour, {FLAT:.0f} at most")
     if not rise <= HIGHER:
         found.append(f"the process had {rise:.0f} MB more at the end than at the begin, {HIGHER:.0f} at most")
     return found
@@ -301,7 +307,8 @@ def report(run: Run, minutes: float, wrong: Sequence[str]) -> str:
         third=minutes / 3,
         begin=peak(run.samples, minutes * 60, 0),
         end=peak(run.samples, minutes * 60, 2),
-        **{what: growth(run.samples, minutes * 60, what) for what in ("in_use", "blocks")},
+        in_use=growth(run.samples, minutes * 60, "in_use"),
+        blocks=growth(run.samples, minutes * 60, "blocks"),
         first=run.unloaded[0],
         last=run.unloaded[-1],
         kept=_kept_in_words(kept_of_a_version(run.unloaded)),
@@ -396,9 +403,10 @@ machine: {load:.1f}.
 {table}
 
 Over the last {counted:.0f} of {minutes:.0f} minutes what was in use, and not free to be used again, grew by
-{in_use:+.0f} MB an hour, and what Python had for its objects by {blocks:+,.0f} pieces an hour. The process
-had {begin:.0f} MB at most in the first {third:.0f} minutes and {end:.0f} MB in the last: the C library keeps
-what was freed between two things that are still in use, so that it goes up in steps. With the plugin unloaded
+{in_use[0]:+.0f} ± {in_use[1]:.0f} MB an hour, and what Python had for its objects by {blocks[0]:+,.0f} ±
+{blocks[1]:,.0f} pieces an hour: what comes and goes leaves it as open as that. The process had {begin:.0f} MB
+at most in the first {third:.0f} minutes and {end:.0f} MB in the last: the C library keeps what was freed
+between two things that are still in use, so that it goes up in steps. With the plugin unloaded
 {first.megabytes:.0f} MB were in use after the first time, {first.rasters:.0f} of them GDAL's, and
 {last.megabytes:.0f} MB after the last, {last.rasters:.0f} of them GDAL's; {kept}.
 
@@ -411,7 +419,8 @@ What grows, as a heap profiler tells by comparing two moments some minutes apart
   {raster_cache} MB here (`GDAL_CACHEMAX`), and whatever else grows shows.
 - **Pictures of maps.** QGIS draws the map and its neighbours ahead of time: up to 50 MB come and go, and with
   them the figures above go up and down from one moment to the next.
-- **Commands and alarms** as the shift goes on, at most some thousands of each; unloading frees them.
+- **Commands, alarms and names** as the shift goes on: at most 2 000 commands of 1.5 kB, 5 000 lines of alarms
+  (2 MB) and 600 pictures of names (6 MB); unloading frees them.
 - **Classes.** PyQt does not give back all of a class that is derived from Qt's: 0.1 MB and 1 450 pieces for
   each loading of the plugin, though no class, function or object of it stays
   (`tests/plugin/desk/test_reloads.py`).
@@ -419,7 +428,16 @@ What grows, as a heap profiler tells by comparing two moments some minutes apart
   the names of drawn buttons (0.3 MB).
 
 QGIS 3.22 also leaves the mark of each layer in memory in its layer panel when such a layer goes, with or
-without this plugin: one small object for each reload.
+without this plugin, and a separator in its menu of plugins: small objects for each reload and each replay,
+and up to 0.1 MB for each attribute table, each round of dialogs and each look into its locator.
+
+One thing at a time, on the parts of this run on 2026-11-22, with other programs beside: a thousand robots and
+nobody at the desk, 16 minutes without a drop or a reload, went from 125 to 129 MB in use, which are alarms
+and names as above; 190 drops within a quarter of an hour, with sixty robots, from 122 to 127 MB; 38 reloads
+with nothing between them from 71 to 76 MB, 2 of them once. The gateway of the thousand robots had 152 MB
+after three minutes and 153 MB after sixteen. When all of them were cut off and came back, four times, it
+stayed between 155 and 157 MB; before it cleared away what connections leave, it had 175 MB after three times
+and went on.
 
 {wrong}
 
