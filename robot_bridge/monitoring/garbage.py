@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import gc
+import math
+import time
+from collections.abc import Callable
 
 YOUNG, MIDDLE, OLD = 50_000, 5, 4
 """Objects, and rounds, before the next look (see :func:`gc.set_threshold`). A thousand robots that send ten
@@ -10,10 +13,11 @@ thousand positions a second have up to 20 000 objects waiting to be stored, whos
 look. With fewer YOUNG than that there was one every two seconds, and one of 30 ms every ten; with Python's
 own it was one of 140 ms every five. What connections leave behind that are gone waits for a look at the OLD,
 which comes after ten thousand of them: see :class:`Leavings`."""
-MOST_GONE = 200
+MOST_GONE = 1000
 """Connections that go before the next look at all objects, whatever else there is to do. Each leaves 90
-objects that hold each other, 15 kB: twelve thousand, after which Python would look by itself, left 250 MB,
-and everybody would have waited for seconds while it cleared them away."""
+objects that hold each other, 12 kB in all."""
+REST = 50.0
+"""How many times as long as such a look took none follows: with much to be stored it takes up to a second."""
 
 
 def spare_what_lasts() -> None:
@@ -24,13 +28,22 @@ def spare_what_lasts() -> None:
 
 
 class Leavings:
-    """Sees to what connections leave behind: by the time they go it is old, and looks at the old are rare."""
+    """Sees to what connections leave behind: by the time they go it is old, and looks at the old are rare.
 
-    def __init__(self) -> None:
+    ``clock`` returns seconds that only ever go on.
+    """
+
+    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
+        self._clock = clock
         self._looked_at = 0
+        self._rests_until = -math.inf
 
     def clear_away(self, gone: int) -> None:
         """Look at all objects when ``gone``, connections since the start, has grown by MOST_GONE since."""
-        if gone - self._looked_at >= MOST_GONE:
-            self._looked_at = gone
-            gc.collect()
+        began = self._clock()
+        if gone - self._looked_at < MOST_GONE or began < self._rests_until:
+            return
+        self._looked_at = gone
+        gc.collect()
+        now = self._clock()
+        self._rests_until = now + REST * (now - began)
