@@ -47,6 +47,9 @@ class DraftPanel(QWidget):
         rows.addLayout(_row([_button(one) for one in (actions.send, actions.enqueue, actions.cancel)]))
         self._actions = actions
         self._changes.hide()
+        for action in (actions.undo, actions.redo, actions.override):
+            # They are told of a draft after this panel is.
+            action.changed.connect(self._show_changes)
         desk.drafts.changed.connect(self._show)
         desk.checks.progressed.connect(self._show)
         desk.remarked.connect(self._remarked)
@@ -59,10 +62,13 @@ class DraftPanel(QWidget):
     def _show(self) -> None:
         draft = self._desk.drafts.draft
         self._text.setText(self._told(draft) if draft is not None else self._remark or NOTHING)
-        changes = (self._actions.undo, self._actions.redo, self._actions.override)
-        self._changes.setVisible(any(action.isEnabled() for action in changes))
+        self._show_changes()
         is_wrong = draft is not None and draft.findings.faults
         self._text.setStyleSheet(WRONG_STYLE if is_wrong else "")
+
+    def _show_changes(self) -> None:
+        changes = (self._actions.undo, self._actions.redo, self._actions.override)
+        self._changes.setVisible(any(action.isEnabled() for action in changes))
 
     def _told(self, draft: Draft) -> str:
         checks = self._desk.checks

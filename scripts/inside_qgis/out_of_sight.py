@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from qgis.gui import QgsMessageBarItem
 from qgis.PyQt.QtCore import QSize, Qt
 from qgis.PyQt.QtWidgets import (
     QAbstractButton,
@@ -15,7 +14,6 @@ from qgis.PyQt.QtWidgets import (
     QLabel,
     QStyle,
     QTableView,
-    QTextEdit,
     QWidget,
 )
 from qgis.utils import iface
@@ -30,8 +28,6 @@ SLACK = 1
 def what_is_out_of_sight() -> list[str]:
     """Return what is wrong with the window and each visible part of the plugin; an empty list for nothing."""
     found = [*_beyond_the_screen(iface.mainWindow())]
-    for item in iface.messageBar().findChildren(QgsMessageBarItem):
-        found += _cut_message(item)
     for top in filter(_is_top, QApplication.allWidgets()):
         found += cut_off(top)
         for part in [top, *top.findChildren(QWidget)]:
@@ -63,13 +59,6 @@ def _beyond_the_screen(window: QWidget) -> Iterator[str]:
     screen = QApplication.primaryScreen().geometry()
     if not screen.contains(window.frameGeometry()):
         yield f"the window is {_size(window.size())}, beyond the screen of {_size(screen.size())}"
-
-
-def _cut_message(item: QgsMessageBarItem) -> Iterator[str]:
-    for text in item.findChildren(QTextEdit):
-        if text.isVisible() and text.document().size().height() > text.viewport().height() + SLACK:
-            room = _size(text.viewport().size())
-            yield f"message bar: {text.toPlainText()!r} does not fit into {room}"
 
 
 def _cut_cells(table: QTableView) -> Iterator[str]:

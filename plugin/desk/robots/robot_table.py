@@ -11,6 +11,7 @@ from qgis.PyQt.QtCore import (
     Qt,
     pyqtSignal,
 )
+from qgis.PyQt.QtGui import QShowEvent
 from qgis.PyQt.QtWidgets import QAbstractItemView, QHeaderView, QTableView, QWidget
 
 from ...errors import PlacementError
@@ -26,6 +27,8 @@ MANY = 500
 """With more robots the table is renewed half as often, with ten times as many four times as seldom."""
 HIDDEN_KEY = "fleet_supervisor/robot_table/hidden"
 TASK_WIDTH = 70
+ROWS_AT_LEAST = 4
+"""Robots that are seen at once however low the panel is: what else it shows is scrolled then."""
 
 
 class RobotTable(QTableView):
@@ -106,6 +109,13 @@ class RobotTable(QTableView):
         # The column that takes what is left keeps room for its head.
         header.setMinimumSectionSize(max(24, metrics.horizontalAdvance(COLUMNS[TASK].head) + 9))
         header.setSectionResizeMode(TASK, QHeaderView.ResizeMode.Stretch)
+
+    def showEvent(self, event: QShowEvent) -> None:
+        super().showEvent(event)
+        # Only now it has the style of QGIS's theme.
+        rows = ROWS_AT_LEAST * self.verticalHeader().defaultSectionSize()
+        beside = self.horizontalScrollBar().sizeHint().height() + 2 * self.frameWidth()
+        self.setMinimumHeight(self.horizontalHeader().sizeHint().height() + rows + beside)
 
     def _pulled(self) -> None:
         count = len(self._desk.picture)

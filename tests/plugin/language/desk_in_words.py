@@ -23,6 +23,7 @@ from qgis.core import QgsApplication, QgsProject, QgsSettings
 from qgis.PyQt.QtCore import QCoreApplication, QEvent, QSettings, QSize, Qt
 from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import (
+    QApplication,
     QDialog,
     QDialogButtonBox,
     QDockWidget,
@@ -43,6 +44,8 @@ LAYERS_WIDTH = 200
 """Pixels of QGIS's panel at the left, in which the names of layers can be read."""
 MAP_AT_LEAST = 400
 """Pixels of width that are left for the map between that and the fleet panel."""
+ROWS_AT_LEAST = 4
+"""Robots that are seen at once, whatever else there is to be told."""
 PANELS = ("observation_dock", "replay_dock", "plan_dock")
 
 
@@ -107,6 +110,7 @@ def main() -> None:
     parser.add_argument("language")
     parser.add_argument("result", type=Path)
     parser.add_argument("--theme")
+    parser.add_argument("--points", type=int, help="size of the font")
     parser.add_argument("--pictures", type=Path)
     wanted = parser.parse_args()
     if wanted.pictures is not None:
@@ -119,6 +123,10 @@ def main() -> None:
         application.initQgis()
         if wanted.theme:
             QgsApplication.setUITheme(wanted.theme)
+        if wanted.points:
+            font = QApplication.font()
+            font.setPointSize(wanted.points)
+            QApplication.setFont(font)
         tests = loaded("fleet_tests", ROOT / "tests" / "conftest.py")
         tests.register_plugin_package()
         language = speak(wanted.language)
@@ -196,8 +204,9 @@ def yard():
         rotation=0.0,
         bounds=(0.0, 0.0, 200.0, 160.0),
         reached_tolerance=0.2,
-        stale_after=3.0,
-        lost_after=10.0,
+        # Else the alarm of silent robots is back before all is looked at, and its bar with it.
+        stale_after=3600.0,
+        lost_after=7200.0,
     )
 
 
@@ -230,8 +239,36 @@ def look_at_panel(show: Show, window, desk_window, gateway, desk_tests) -> None:
     gateway.stand(in_force=True, stop="s1", at=time.time(), by="anna", robots=5, waiting=["r1"])
     desk_tests.wait_until(lambda: not dock.banner.isHidden(), what="the banner")
     show.look("panel_emergency", window)
+    crowd(gateway)
+    desk_tests.wait_until(lambda: len(desk.roads.conflicts.conflicts) == 4, 15, what="four conflicts")
+    show.look("panel_crowded", window)
+    count_rows(show, dock)
+    gateway.tell("conflicts", {"t": time.time(), "conflicts": [], "waiting": []})
+    desk_tests.wait_until(lambda: not desk.roads.conflicts.conflicts, what="the end of the conflicts")
     gateway.stand(in_force=False)
     desk_tests.wait_until(lambda: dock.banner.isHidden(), what="the end of the banner")
+
+
+def crowd(gateway) -> None:
+    """Put more conflicts before the operator than are listed, with robots that wait."""
+    now = time.time()
+    times = {"begins": now + 5, "nearest_at": now + 7, "ends": now + 9}
+    meeting = {"kind": "head-on", "metres": 0.4, "x": 60.0, "y": 50.0, **times}
+    conflicts = [{**meeting, "robot": f"r{k}", "other": f"r{k + 1}"} for k in range(1, 5)]
+    waiting = [
+        {"robot": "r5", "other": "r1", "x": 50.0, "y": 40.0, "until": now + 30, "by": "eve", "command": "c9"}
+    ]
+    gateway.tell("conflicts", {"t": now, "conflicts": conflicts, "waiting": waiting})
+
+
+def count_rows(show: Show, dock) -> None:
+    """Take down when too few robots are seen, whatever else the panel has to say."""
+    table, view = dock.table, dock.table.viewport()
+    seen = view.visibleRegion().boundingRect()
+    rows = range(table.model().rowCount())
+    whole = [row for row in rows if seen.contains(table.visualRect(table.model().index(row, 0)))]
+    if len(whole) < ROWS_AT_LEAST:
+        show.faults["rows"] = [f"only {len(whole)} robots are seen beside a banner and conflicts"]
 
 
 def alarm_bar(window) -> QWidget | None:

@@ -41,12 +41,21 @@ def beside():
 
 
 @pytest.mark.parametrize(
-    ("language", "theme"),
-    [("stretched", None), ("hu", "Night Mapping"), ("ca", "Blend of Gray"), ("es", None)],
+    ("language", "points", "theme"),
+    [
+        ("stretched", 12, None),
+        ("hu", 12, "Night Mapping"),
+        ("ca", 12, "Blend of Gray"),
+        ("es", 12, None),
+        ("en", 10, None),
+        ("hu", 10, None),
+        ("ca", 10, None),
+        ("es", 10, None),
+    ],
 )
-def test_nothing_is_cut_off_on_the_smallest_screen(language, theme, tmp_path, root):
+def test_nothing_is_cut_off_on_the_smallest_screen(language, points, theme, tmp_path, root):
     result = tmp_path / "faults.json"
-    command = [sys.executable, str(HERE / "desk_in_words.py"), language, str(result)]
+    command = [sys.executable, str(HERE / "desk_in_words.py"), language, str(result), "--points", str(points)]
     command += ["--theme", theme] if theme else []
     env = {**os.environ, "PYTHONPATH": str(root / "scripts")}
     ran = subprocess.run(command, env=env, capture_output=True, text=True)
