@@ -91,6 +91,7 @@ def test_a_road_is_closed_by_a_click_the_robot_on_it_sent_round_and_opened_again
     first = operator.wait_for_state("r1", "SetPath", CommandState.ACKNOWLEDGED)
     close_road(operator, *SOUTH, "tree on the road")
     operator.wait("another way", lambda: len(operator.sent_to("r1")) == 2, 10)
+    operator.wait("the layer", lambda: layer("Closed roads"), 10)
     operator.wait("the closed road", lambda: layer("Closed roads").featureCount() == 1, 10)
     (row,) = layer("Closed roads").getFeatures()
     assert (row["reason"], row["closed_by"], row["edges"]) == ("tree on the road", "anna", 1)
@@ -103,7 +104,7 @@ def test_a_road_is_closed_by_a_click_the_robot_on_it_sent_round_and_opened_again
     assert operator.desk.roads.closures == box_before
     QTest.mouseClick(part(operator, QPushButton, "fleet_open_road_confirm"), Qt.MouseButton.LeftButton)
     operator.wait("the road open", lambda: operator.desk.roads.closures == (), 10)
-    assert layer("Closed roads").featureCount() == 0
+    operator.wait("no closed road", lambda: layer("Closed roads").featureCount() == 0, 10)
 
 
 def test_a_route_keeps_off_the_road_of_another_robot_where_the_operator_wants_it(loop, operator):
