@@ -56,6 +56,7 @@ TEXTS = {
     "Connect call failed": "what Python says, to be told better",
     "fleet road_surface ": "a key of a cache",
     "traffic cone": "a label that robots read on their maps",
+    **dict.fromkeys(("PyVRP", "RoutingKit", "SciPy", "QGIS", "GeoJSON", "GeoPackage"), "a proper name"),
     **dict.fromkeys(
         ("too close", "outside the site", "off the road", "stopped unasked", "low battery"),
         "the value that a kind of alarm is kept under; plugin/desk/alarms/words.py has its words",
