@@ -13,6 +13,8 @@ from qgis.PyQt.QtWidgets import QComboBox, QWidget
 
 MODELER = "ModelerParametersDialog"
 """The class of the dialog for a step of a model."""
+ROOM = 30
+"""Letters that a list has room for at least."""
 
 
 class ChoiceWidget(WidgetWrapper):
@@ -40,6 +42,9 @@ class ChoiceWidget(WidgetWrapper):
                 box.addItemWithCheckState(names[value], Qt.CheckState.Unchecked, value)
             else:
                 box.addItem(names[value], value)
+        # QGIS scrolls its dialog sideways for what is wider; the list that opens shows each name whole.
+        box.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
+        box.setMinimumContentsLength(ROOM)
         changed = box.checkedItemsChanged if self._several else box.currentIndexChanged
         changed.connect(lambda *_: self.widgetValueHasChanged.emit(self))
         return box
