@@ -59,14 +59,17 @@ class RoadPlanner:
     def path(self, start: Point, goal: Point) -> Planned:
         """Return the path, a straight line with a note where the site has no roads near both places.
 
-        :raises RefusedError: when roads are near and no way leads along them, or a place is on a closed one.
+        :raises RefusedError: when roads are near and no way leads along them, a place is on a closed one, or
+            what is not along roads leads through a keepout.
         """
         try:
             with self._in_use() as roads:
-                found = self._found(roads, start, goal)
+                site, found = roads.site, self._found(roads, start, goal)
         except NoWayError as error:
             raise RefusedError(f"GetPath: {error}") from error
-        return self._planned(found, start, goal)
+        planned = self._planned(found, start, goal)
+        _check_keepouts(site, planned)
+        return planned
 
     def path_with_open(self, closure: str, start: Point, goal: Point) -> Planned | None:
         """Return the path that there would be if the road of ``closure`` were open; None without a way."""
@@ -222,6 +225,18 @@ def refusals() -> Iterator[None]:
             f"no ways can be found: the gateway lacks Python package {error.name or error}; install it there "
             "with: pip install 'fleet-supervisor-robot-bridge[routes]'"
         ) from error
+
+
+def _check_keepouts(site: Site, planned: Planned) -> None:
+    """Raise RefusedError for a keepout between the ends: roads lead around them, straight lines do not."""
+    number = site.keepout_index.between_ends(planned.points) if site.keepouts else None
+    if number is not None:
+        x, y = planned.points[-1]
+        keepout = site.keepouts[number].label
+        why = f": {planned.note}" if planned.note else ""
+        raise RefusedError(
+            f"GetPath: the way to ({x:.2f}, {y:.2f}) leads through the keepout {keepout!r}{why}"
+        )
 
 
 def _straight(start: Point, goal: Point, note: str) -> RouteReport:

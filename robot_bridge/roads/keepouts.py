@@ -39,6 +39,19 @@ class KeepoutIndex:
         found = self._entries([shapely.LineString(t) if len(t) > 1 else shapely.Point(t[0]) for t in tracks])
         return min((Entry(*pair) for pair in found.T.tolist()), default=None)
 
+    def between_ends(self, path: Track) -> int | None:
+        """Return the number of an area that ``path`` comes into and that holds neither end of it, or None.
+
+        Whoever is in an area has to come out of it, and whoever was sent into one has to come there.
+        """
+        import numpy as np
+        import shapely
+
+        through = self._entries([shapely.LineString(path)])[1]
+        of_ends = self._entries([shapely.Point(path[0]), shapely.Point(path[-1])])[1]
+        crossed = np.setdiff1d(through, of_ends)
+        return int(crossed[0]) if len(crossed) else None
+
     def edges_through(self, network: Network) -> Ints:
         """Return the edges of ``network`` that come into an area, each once."""
         import numpy as np

@@ -79,6 +79,30 @@ def test_keepouts_are_driven_round_and_where_no_way_is_left_the_question_is_refu
         RoadPlanner(lambda: with_roads(sample, *sides, keepouts=[south, north])).path(*there)
 
 
+BASIN = [(20.0, -5.0), (30.0, -5.0), (30.0, 5.0), (20.0, 5.0), (20.0, -5.0)]
+
+
+@pytest.mark.parametrize("roads", [[], [[(0.0, 200.0), (50.0, 200.0)]]])
+def test_a_straight_line_through_a_keepout_is_refused_with_its_name(sample, roads):
+    planner = RoadPlanner(lambda: with_roads(sample, *roads, keepouts=[BASIN]))
+    says = r"^GetPath: the way to \(50\.00, 0\.00\) leads through the keepout 'keepout'"
+    with pytest.raises(RefusedError, match=says):
+        planner.path((0.0, 0.0), (50.0, 0.0))
+    assert planner.path((0.0, 5.0), (50.0, 5.0)).points == [(0.0, 5.0), (50.0, 5.0)]
+
+
+def test_the_way_from_a_road_to_a_place_beside_it_keeps_out_too(sample):
+    planner = RoadPlanner(lambda: with_roads(sample, [(0.0, -10.0), (50.0, -10.0)], keepouts=[BASIN]))
+    with pytest.raises(RefusedError, match="leads through the keepout"):
+        planner.path((0.0, -10.0), (25.0, 6.0))
+
+
+@pytest.mark.parametrize("ends", [((25.0, 0.0), (50.0, 0.0)), ((0.0, 0.0), (25.0, 0.0))])
+def test_who_is_in_a_keepout_is_led_out_of_it_and_who_was_sent_there_in(sample, ends):
+    planner = RoadPlanner(lambda: with_roads(sample, keepouts=[BASIN]))
+    assert planner.path(*ends).points == list(ends)
+
+
 def test_a_new_publication_is_planned_on_at_once(sample):
     sites = [with_roads(sample, [(0, 0), (50, 0)])]
     planner = RoadPlanner(lambda: sites[-1])
