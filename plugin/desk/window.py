@@ -23,6 +23,7 @@ from .live.following import Whom
 from .live.live_view import LiveView
 from .live.select_tool import SelectTool
 from .notices import Notices
+from .project_match import ProjectMatch
 from .queues.queue_edits import QueueEdits
 from .queues.queue_marks import QueueMarks
 from .road_layers import RoadLayers
@@ -48,6 +49,7 @@ class DeskWindow(QObject):
         self.actions = Actions(self)
         self._key = EmergencyKey(self.actions.emergency, self)
         self.notices = Notices(iface.messageBar(), self)
+        self._project_match = ProjectMatch(self.desk, self)
         self.view = LiveView(self.desk, self)
         self.queue_edits = QueueEdits(self.desk, self)
         self.queue_marks = QueueMarks(self.desk)
@@ -126,6 +128,8 @@ class DeskWindow(QObject):
         desk.failed.connect(self.notices.error)
         desk.settled.connect(self.notices.take_down)
         desk.complained.connect(self.notices.warning)
+        self._project_match.differs.connect(self.notices.error)
+        self._project_match.over.connect(self.notices.take_down)
         desk.link_changed.connect(self._show_link)
 
     def _follow(self, whom: Whom, on: bool) -> None:

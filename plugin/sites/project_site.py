@@ -15,9 +15,17 @@ ROTATION_VARIABLE = "fleet_rotation_deg"
 
 def frame_in_project(project: QgsProject, crs: QgsCoordinateReferenceSystem) -> SiteFrame | None:
     """Return the frame in the project's variables, None unless it is whole and in ``crs``."""
+    frame = own_frame(project)
+    if frame is None or not crs.isValid() or QgsCoordinateReferenceSystem(frame.crs) != crs:
+        return None
+    return frame
+
+
+def own_frame(project: QgsProject) -> SiteFrame | None:
+    """Return the frame in the project's variables in whatever CRS, None unless it is whole."""
     variables = project.customVariables()
     named = str(variables.get(CRS_VARIABLE) or "")
-    if not crs.isValid() or not named or QgsCoordinateReferenceSystem(named) != crs:
+    if not named:
         return None
     try:
         x, y = (float(variables[name]) for name in ORIGIN_VARIABLES)

@@ -3242,6 +3242,11 @@
             <translation>seleccionats</translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/project_match.py" />
+            <source>This project is not that of site {site}: its variables have another origin, CRS or rotation. Checks and alarms go by the layers of this project: open the site's.</source>
+            <translation>Aquest projecte no és el del recinte {site}: les seves variables tenen un altre origen, SRC o rotació. Les comprovacions i les alarmes segueixen les capes d’aquest projecte: obriu el del recinte.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/queues/queue_edits.py" />
             <source>A task of {robot} first</source>
             <translation>Una tasca de {robot} primer</translation>

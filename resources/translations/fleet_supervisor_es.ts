@@ -3242,6 +3242,11 @@
             <translation>seleccionados</translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/project_match.py" />
+            <source>This project is not that of site {site}: its variables have another origin, CRS or rotation. Checks and alarms go by the layers of this project: open the site's.</source>
+            <translation>Este proyecto no es el del recinto {site}: sus variables tienen otro origen, SRC o rotación. Las comprobaciones y las alarmas siguen las capas de este proyecto: abra el del recinto.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/queues/queue_edits.py" />
             <source>A task of {robot} first</source>
             <translation>Una tarea de {robot} primero</translation>

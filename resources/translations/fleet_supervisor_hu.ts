@@ -3223,6 +3223,11 @@
             <translation>kijelölt</translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/project_match.py" />
+            <source>This project is not that of site {site}: its variables have another origin, CRS or rotation. Checks and alarms go by the layers of this project: open the site's.</source>
+            <translation>Ez a projekt nem a(z) {site} telephelyé: változóiban más az origó, a CRS vagy az elforgatás. Az ellenőrzések és a riasztások ennek a projektnek a rétegei szerint mennek: nyissa meg a telephelyét.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/queues/queue_edits.py" />
             <source>A task of {robot} first</source>
             <translation>{robot} egyik feladatának előrehozása</translation>
