@@ -197,7 +197,8 @@ class _Fleet:
 def _vehicle(days: Days, robot: int, day: Day) -> _Vehicle | None:
     """Return the vehicle that ``robot`` is after ``day``; None where nothing is aboard for other targets."""
     one = days.job.robots[robot]
-    room = one.aboard - sum(days.demand[place] for place in day[0])
+    # What it collects takes none of what it has aboard to place.
+    room = one.aboard - sum(days.demand[place] for place in day[0] if days.places_cone[place])
     if len(day) > 1 or room < 1:
         return None
     way = [robot, *day[0]]

@@ -40,7 +40,8 @@ def without_short_segments(row: OutlineRow, shortest: float) -> OutlineRow:
     """Return ``row`` without corners nearer than ``shortest`` metres to the one kept before.
 
     Ends of lines stay, a ring keeps three corners, and so a small thing stays whatever its size. An outline
-    that would cross itself stays as it is, and so do stairs. Raises MissingGeometryError without shapely.
+    that would cross itself, or be farther than ``shortest`` from the drawn one, stays as it is, and so do
+    stairs. Raises MissingGeometryError without shapely.
     """
     closed = row.shape_type in CLOSED_TYPES
     if not _may_change(row, closed):
@@ -53,7 +54,11 @@ def without_short_segments(row: OutlineRow, shortest: float) -> OutlineRow:
     while len(kept) > (3 if closed else 1) and _distance(points[-1], points[kept[-1]]) < shortest:
         kept.pop()
     fewer = points[[*kept, len(points) - 1]]
-    return replace(row, points=fewer) if _sound(fewer, closed) else row
+    if not _sound(fewer, closed):
+        return row
+    shapely = shapely_module()
+    off = shapely.hausdorff_distance(shapely.LineString(fewer), shapely.LineString(points))
+    return replace(row, points=fewer) if off <= shortest else row
 
 
 def _may_change(row: OutlineRow, closed: bool) -> bool:

@@ -7,7 +7,7 @@ from dataclasses import replace
 from itertools import pairwise, permutations, product
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from robot_bridge.assignment.checks import check_plan
@@ -265,6 +265,16 @@ def test_whatever_the_job_the_checker_finds_nothing(job: Job, objective: str) ->
     planned(job, objective, seconds=0.3)
 
 
+COLLECTED_ON_THE_WAY = Job(
+    (Target("c0", 0, 0, stage=1), *(Target(f"c{k}", 0, 0) for k in (1, 2)), Target("c3", 0, 0, kind=COLLECT)),
+    (Robot("R0", 0, 0, 3, 0.5, 20_000.0, aboard=3),),
+    (Store("s0", 0, 0),),
+    "store",
+)
+"""The robot still has a cone of those it began with when it has collected another."""
+
+
+@example(job=COLLECTED_ON_THE_WAY)
 @settings(max_examples=8, deadline=None)
 @given(job=jobs())
 def test_whatever_the_job_pyvrp_keeps_to_it(job: Job) -> None:

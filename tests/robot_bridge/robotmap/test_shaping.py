@@ -203,6 +203,8 @@ coordinate = st.integers(0, 300).map(lambda n: n / 100)
 corners = st.lists(st.tuples(coordinate, coordinate), min_size=3, max_size=14, unique=True)
 
 
+# A line back to its beginning: what comes off its end is farther from it than from the corner before.
+@example([(0.0, 0.0), (0.03, 0.0), (0.04, 0.0), (0.01, 0.01)], False, 0.03)
 # A ring whose first corner GEOS moves farther than it was told to.
 @example([(0.01, 0.02), (0.0, 0.03), (0.0, 0.0), (0.03, 0.0), (0.01, 0.01)], True, 0.02)
 @settings(max_examples=200, deadline=None)
