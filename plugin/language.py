@@ -63,7 +63,8 @@ class Language:
         self.found = file.load(QLocale(locale or QgsApplication.locale()), FILES, "", str(folder))
         self._translator = QTranslator()
         if self.found:
-            # Out of memory: Qt maps a file that it loads, and ends QGIS when somebody writes into that.
+            # Out of memory: Qt maps a file that it loads, and ends QGIS when somebody writes into that. The
+            # translator reads from these very bytes as long as it is there.
             self._texts = Path(file.filePath()).read_bytes()
             self._translator.loadFromData(self._texts)
             QCoreApplication.installTranslator(self._translator)

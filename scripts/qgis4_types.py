@@ -54,6 +54,7 @@ _WORKS = (
     '"drawLines" of "QPainter" matches argument type "list[QLineF]"',
     '"__rshift__" of "QDataStream" matches argument type "QPainterPath"',
     '"QImage" matches argument types "memoryview[int]"',
+    '"loadFromData" of "QTranslator" has incompatible type "bytes"',
 )
 
 

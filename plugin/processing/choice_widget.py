@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from processing.gui.wrappers import WidgetWrapper
@@ -23,7 +23,7 @@ class ChoiceWidget(WidgetWrapper):
     Processing makes it from the metadata of the parameter (``widget_wrapper``).
     """
 
-    def __new__(cls, parameter: QgsProcessingParameterEnum, dialog: QWidget, *_: Any, **__: Any) -> Any:
+    def __new__(cls, parameter: QgsProcessingParameterEnum, dialog: Any, *_: Any, **__: Any) -> Any:
         if type(dialog).__name__ == MODELER:
             # There a value can be that of another step, too, which only QGIS's own widget offers.
             registry = QgsGui.processingGuiRegistry()
@@ -34,19 +34,27 @@ class ChoiceWidget(WidgetWrapper):
 
     def createWidget(self, names: Mapping[str, str]) -> QWidget:
         parameter = self.parameterDefinition()
-        self._several = parameter.allowMultiple()
-        box = QgsCheckableComboBox() if self._several else QComboBox()
         # Not in the order of the names: metadata comes back from QGIS sorted by its keys.
-        for value in parameter.options():
-            if self._several:
-                box.addItemWithCheckState(names[value], Qt.CheckState.Unchecked, value)
-            else:
-                box.addItem(names[value], value)
+        values = parameter.options()
+        self._several = parameter.allowMultiple()
+        box = self._to_tick(values, names) if self._several else self._to_choose(values, names)
         # QGIS scrolls its dialog sideways for what is wider; the list that opens shows each name whole.
         box.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
         box.setMinimumContentsLength(ROOM)
-        changed = box.checkedItemsChanged if self._several else box.currentIndexChanged
-        changed.connect(lambda *_: self.widgetValueHasChanged.emit(self))
+        return box
+
+    def _to_tick(self, values: Sequence[str], names: Mapping[str, str]) -> QComboBox:
+        box = QgsCheckableComboBox()
+        for value in values:
+            box.addItemWithCheckState(names[value], Qt.CheckState.Unchecked, value)
+        box.checkedItemsChanged.connect(lambda *_: self.widgetValueHasChanged.emit(self))
+        return box
+
+    def _to_choose(self, values: Sequence[str], names: Mapping[str, str]) -> QComboBox:
+        box = QComboBox()
+        for value in values:
+            box.addItem(names[value], value)
+        box.currentIndexChanged.connect(lambda *_: self.widgetValueHasChanged.emit(self))
         return box
 
     def setValue(self, value: Any) -> None:

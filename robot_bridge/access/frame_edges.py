@@ -28,6 +28,9 @@ def short_text(data: bytes, start: int) -> tuple[bytes, int] | None:
     length, mask_at = data[start + 1] - _MASKED, start + 2
     if length == _TWO_BYTES:
         length, mask_at = data[start + 2] << 8 | data[start + 3], start + 4
+    elif length == _EIGHT_BYTES:
+        # Taken for a length, it would now and then find 127 bytes of ASCII in a long text.
+        return None
     begin = mask_at + 4
     end = begin + length
     if not 0 < length <= LONGEST or end > len(data):

@@ -6,8 +6,10 @@ from datetime import datetime
 from typing import Annotated
 
 import typer
+from sqlalchemy import Connection
 
 from ..access import audit as audit_log
+from ..access.accounts import grants
 from ..errors import BridgeError
 from ..known_names import told
 from .database_option import DEFAULT, DatabaseOption, PasswordFileOption, database_address
@@ -28,9 +30,9 @@ def audit(
     address = database_address(database, database_password_file)
     found = read(address, lambda c: audit_log.newest(c, limit, since=at, who=who))
     if not found and who is not None:
-        known = read(address, audit_log.accounts)
+        known = read(address, _known)
         if who not in known:
-            raise BridgeError(f"{who!r} stands nowhere in this audit log; accounts that do: {told(known)}")
+            raise BridgeError(f"nobody called {who!r} is known here; known are: {told(known)}")
     for entry in reversed(found):
         row = (
             moment(entry.at),
@@ -44,6 +46,12 @@ def audit(
         )
         # A line break in what somebody sent must not look like an entry of its own.
         typer.echo("\t".join("".join(c if c.isprintable() else "?" for c in text) for text in row))
+
+
+def _known(connection: Connection) -> list[str]:
+    """Return who has an account, and who stands in the log without one, sorted."""
+    owners = [grant.owner for grant in grants(connection)]
+    return sorted({*owners, *audit_log.accounts(connection)})
 
 
 def _seconds(text: str | None) -> float | None:

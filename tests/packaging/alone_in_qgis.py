@@ -8,6 +8,7 @@ import json
 import pkgutil
 import sys
 import time
+from pathlib import Path
 
 FOREIGN = {
     "cbor2",
@@ -82,6 +83,8 @@ def main():
 
     application = QgsApplication([], False)
     application.initQgis()
+    # Processing comes with every QGIS, beside the plugins that users install.
+    sys.path.append(str(Path(QgsApplication.pkgDataPath()) / "python" / "plugins"))
     count = import_everything()
     from fleet_supervisor.plugin.websocket_library import websocket_library
 

@@ -90,10 +90,11 @@ def test_what_is_there_is_not_named(found, name):
     assert [line for line in found if Path(line.split(":")[0]).stem == name] == []
 
 
-def test_what_the_stubs_do_not_know_works():
+def test_what_the_stubs_do_not_know_works(root):
     """Run on PyQt6 in a process of its own: what the check lets pass though the stubs do not have it."""
     program = """
-from PyQt6.QtCore import QByteArray, QDataStream, QIODevice, QLineF
+from pathlib import Path
+from PyQt6.QtCore import QByteArray, QDataStream, QIODevice, QLineF, QTranslator
 from PyQt6.QtGui import QColor, QImage, QPainter, QPainterPath
 
 pixels = bytearray(4 * 8 * 8)
@@ -109,7 +110,13 @@ path.lineTo(3, 4)
 QDataStream(data, QIODevice.OpenModeFlag.WriteOnly) << path
 QDataStream(data) >> copy
 assert copy == path
+
+translator, texts = QTranslator(), Path(TEXTS).read_bytes()
+assert translator.loadFromData(texts)
+assert translator.translate("FleetSupervisor", "Connect") == "Kapcsolódás"
 """
+    texts = root / "resources" / "translations" / "fleet_supervisor_hu.qm"
+    program = program.replace("TEXTS", repr(str(texts)))
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
 

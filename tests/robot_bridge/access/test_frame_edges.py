@@ -51,6 +51,11 @@ def test_every_way_of_stating_the_length_is_read(size):
     assert all(short_text(frame[:cut], 0) is None for cut in range(len(frame)))
 
 
+def test_a_long_text_is_left_to_them_whatever_its_mask_makes_of_it():
+    header = b"\x81\xff" + (70_000).to_bytes(8, "big") + b"mask"
+    assert short_text(header + b"x" * 70_000, 0) is None
+
+
 @pytest.mark.parametrize(
     ("frame", "masked"),
     [

@@ -267,4 +267,4 @@ def test_an_account_that_did_nothing_is_told_from_one_that_is_unknown(accounts, 
     assert accounts.do("audit", "--who", "Ada", "--since", "2100-01-01") == ""
     done = accounts.run("audit", "--who", "Adda")
     assert done.returncode == 1
-    assert "'Adda' stands nowhere in this audit log; accounts that do: " in done.stderr
+    assert "nobody called 'Adda' is known here; known are: " in done.stderr

@@ -174,7 +174,7 @@ def test_a_part_of_its_own_is_found_with_its_length() -> None:
     found = find(build_network(centrelines([EAST, [(0.0, 50.0), (4.0, 50.0)]])), 0.5)
     part = only(found, Kind.PART)
     assert (part.x, part.y) == (2.0, 50.0)
-    assert "1 edges with 4.0 m" in part.text
+    assert "1 edge of 4.0 m" in part.text
 
 
 def test_a_one_way_loop_can_be_driven_round_and_a_one_way_spur_not() -> None:

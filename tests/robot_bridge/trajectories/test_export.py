@@ -135,7 +135,7 @@ def test_a_longer_gap_keeps_a_track_whole(export):
 )
 def test_it_may_be_some_robots_a_time_and_an_area(export, options, count):
     said, dataset = export(*options)
-    assert f"{count} positions" in said
+    assert f"{count} position{'s' * (count != 1)}, " in said
     assert len(rows(dataset, "positions")) == count
     assert dataset.GetLayerByName("tracks") is not None
 
