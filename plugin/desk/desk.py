@@ -103,6 +103,7 @@ class Desk(QObject):
         self._check_targets = TargetCheck(self.book, self.queues)
         self.checks = DraftChecker(self.drafts, self._checked, self)
         self.checks.found.connect(self._found)
+        self.checks.overtaken.connect(self._overtaken)
         self._check_layers.changed.connect(self.checks.begin_anew)
         self.orders.refused.connect(self._refused)
         self.orders.accepted.connect(self.remarked)
@@ -297,6 +298,14 @@ class Desk(QObject):
     def _found(self, draft: Draft) -> None:
         if draft.findings.faults:
             self.complained.emit(in_brief(draft.findings.faults))
+
+    def _overtaken(self, draft: Draft) -> None:
+        self.failed.emit(
+            tr(
+                "{in_words} was not sent: the draft was changed before it had been checked. Send it anew.",
+                in_words=draft.in_words(),
+            )
+        )
 
     # --- what the operator does ---
 

@@ -1587,6 +1587,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/desk.py" />
+            <source>{in_words} was not sent: the draft was changed before it had been checked. Send it anew.</source>
+            <translation>{in_words}: no s'ha enviat, perquè l'esborrany ha canviat abans d'acabar la comprovació. Torneu-lo a enviar.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/desk.py" />
             <source>{in_words} was not sent: {error}</source>
             <translation>{in_words} no s'ha enviat: {error}</translation>
         </message>

@@ -1587,6 +1587,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/desk.py" />
+            <source>{in_words} was not sent: the draft was changed before it had been checked. Send it anew.</source>
+            <translation>{in_words}: no se envió, porque el borrador cambió antes de terminar la comprobación. Envíelo de nuevo.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/desk.py" />
             <source>{in_words} was not sent: {error}</source>
             <translation>{in_words} no se envió: {error}</translation>
         </message>

@@ -1581,6 +1581,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/desk.py" />
+            <source>{in_words} was not sent: the draft was changed before it had been checked. Send it anew.</source>
+            <translation>{in_words}: nem lett elküldve, mert a vázlat az ellenőrzés vége előtt megváltozott. Küldje el újra.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/desk.py" />
             <source>{in_words} was not sent: {error}</source>
             <translation>{in_words} nem lett elküldve: {error}</translation>
         </message>

@@ -24,6 +24,8 @@ class DraftChecker(QObject):
 
     progressed = pyqtSignal()
     """A check has begun, gone on, or come to its end."""
+    overtaken = pyqtSignal(object)
+    """Another draft is on the board before something could be done with this one: the Draft."""
     found = pyqtSignal(object)
     """The draft that was put on the map has been looked at: the Draft, with its findings."""
 
@@ -61,7 +63,7 @@ class DraftChecker(QObject):
 
         :raises FleetError: when it cannot be checked; what was on the board stays then.
         """
-        before = self._draft, self._afresh, self._is_put, self._then
+        before, ordered = (self._draft, self._afresh, self._is_put, self._then), self._ordered
         self._draft, self._afresh, self._is_put, self._then = draft, False, True, None
         try:
             checked = self._begin()
@@ -73,6 +75,7 @@ class DraftChecker(QObject):
         self._board.put(self._draft)
         if checked is not None:
             self._end(checked)
+        self._tell_of(ordered)
         self.progressed.emit()
 
     def again(self, then: Callable[[Draft], None]) -> None:
@@ -112,12 +115,23 @@ class DraftChecker(QObject):
         draft = self._board.draft
         if draft is self._draft:
             return
+        # Who takes a draft away needs not be told that it is not sent.
+        ordered = self._ordered if draft is not None else None
         self._give_up()
+        self._tell_of(ordered)
         if draft is not None and not draft.is_checked and not self._board.is_dragged:
             # Taken back to one whose check was not finished.
             self._draft = draft
             self._anew.start()
         self.progressed.emit()
+
+    @property
+    def _ordered(self) -> Draft | None:
+        return self._draft if self.has_order else None
+
+    def _tell_of(self, ordered: Draft | None) -> None:
+        if ordered is not None:
+            self.overtaken.emit(ordered)
 
     def _begin(self) -> Draft | None:
         self._anew.stop()

@@ -79,6 +79,7 @@ def test_a_draft_that_was_moved_meanwhile_has_nothing_of_the_check_before(slow, 
     slow.key(ENTER)
     slow.click((20, 20))
     assert not slow.window.desk.checks.has_order
+    assert slow.complained("was not sent: the draft was changed before it had been checked")
     settle(slow)
     assert slow.nothing_sent()
     assert slow.drafts.draft.findings.faults == ()
@@ -96,6 +97,20 @@ def test_a_cancelled_draft_is_not_sent_by_its_check(slow, layer_of):
     assert not slow.window.desk.checks.is_under_way
     assert slow.nothing_sent()
     assert slow.points is None
+    assert not slow.is_told("was not sent")
+
+
+def test_who_sets_a_cone_for_another_robot_before_the_first_is_checked_is_told(slow, layer_of):
+    layer_of("Polygon", SQUARE, role="keepout", names=["Bay"])
+    slow.take("cone").click((20, 20))
+    first = slow.drafts.draft.in_words()
+    slow.key(ENTER)
+    slow.window.desk.select("r2")
+    assert not slow.is_told("was not sent")
+    slow.click((20, 40))
+    assert slow.complained(f"{first} was not sent: the draft was changed")
+    settle(slow)
+    assert slow.nothing_sent()
 
 
 @pytest.mark.parametrize("how", ["abort", "abort_all", "emergency"])

@@ -112,6 +112,8 @@ class Operator(OperatorAtDesk):
         self.choose("fleet_cone_target")
         self.click_site(x, y)
         self.press("fleet_send")
+        # Who goes on to another robot before it was checked is told that nothing was sent.
+        self.wait("the check of the target", lambda: not self.desk.checks.is_under_way, 20)
 
     def sent_to(self, robot):
         return [command for command in self._reports.values() if command.robot == robot]

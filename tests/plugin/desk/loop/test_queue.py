@@ -72,6 +72,7 @@ def test_an_override_stands_in_the_log_that_everybody_sees(loop, operator, plugi
     operator.choose("fleet_cone_target")
     operator.click_site(32, 8)
     operator.press("fleet_send")
+    operator.wait("the check", lambda: not operator.desk.checks.is_under_way, 20)
     QTest.qWait(500)
     assert operator.sent_to("r1") == []
     draft = operator.desk.drafts.draft
