@@ -431,14 +431,6 @@ QGIS 3.22 also leaves the mark of each layer in memory in its layer panel when s
 without this plugin, and a separator in its menu of plugins: small objects for each reload and each replay,
 and up to 0.1 MB for each attribute table, each round of dialogs and each look into its locator.
 
-One thing at a time, on the parts of this run on 2026-11-22, with other programs beside: a thousand robots and
-nobody at the desk, 16 minutes without a drop or a reload, went from 125 to 129 MB in use, which are alarms
-and names as above; 190 drops within a quarter of an hour, with sixty robots, from 122 to 127 MB; 59 reloads
-with nothing between them from 71 to 78 MB, 2 of them once. The gateway of the thousand robots had 152 MB
-after three minutes and 153 MB after sixteen. When all of them were cut off and came back, it had 154 MB after
-the first time and 161 MB after the fourth; before it cleared away what connections leave, 157 MB after the
-first and 175 MB after the third.
-
 {wrong}
 
 The plugin told the operator of lost links and alarms, as it should: {told}.
