@@ -7,6 +7,8 @@ from stage.errors import StageError
 from .scene import ROBOTS, Scene
 
 LAYER = "Robots (live)"
+EXPRESSION_EDITOR = "QgsCodeEditorExpression"
+"""By its class: QGIS 3.44 gives it no name."""
 NEAR = "robot_state(\"robot\") = 'fresh' and distance_to_robot('r3') < 60"
 LABEL = "robot_state(\"robot\") || ', ' || round(distance_to_robot('r3')) || ' m to r3'"
 
@@ -48,10 +50,10 @@ def select(scene: Scene) -> None:
     """Select the robots near r3 by an expression; they are selected at the desk, too."""
     operator = scene.operator
     operator.press("Ctrl+F3")
-    operator.wait_for_dialog("txtExpressionString")
+    operator.wait_for_dialog(EXPRESSION_EDITOR)
     operator.write("txtSearchEdit", "distance_to")
     operator.click_row("mExpressionTreeView", "Fleet", "distance_to_robot")
-    operator.click("txtExpressionString")
+    operator.click(EXPRESSION_EDITOR)
     operator.type(NEAR)
     operator.click("mButtonSelect")
     near = [robot for robot in ROBOTS if scene.distance(robot, "r3") < 60]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .robot_layer import LAYER
+from .robot_layer import EXPRESSION_EDITOR, LAYER
 from .scene import Scene
 from .toolbox import CONE_COUNT
 
@@ -50,11 +50,11 @@ def ask_for_surfaces(scene: Scene) -> None:
     operator = scene.operator
     operator.click_row("Layers", "Cones")
     operator.press("Ctrl+F3")
-    operator.wait_for_dialog("txtExpressionString")
+    operator.wait_for_dialog(EXPRESSION_EDITOR)
     operator.write("txtSearchEdit", "road_surf")
     operator.click_row("mExpressionTreeView", "Fleet", "road_surface")
     operator.wait_for_text("txtHelpText", "class of the road surface at a place")
-    operator.click("txtExpressionString")
+    operator.click(EXPRESSION_EDITOR)
     operator.type(ON_ROAD)
     operator.click("mButtonSelect")
     operator.wait("the cones being selected", lambda: operator.layers()["Cones"] == CONE_COUNT)
