@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .robot_layer import EXPRESSION_EDITOR, LAYER
+from .robot_layer import EXPRESSION_EDITOR, LAYER, close_expression
 from .scene import Scene
 from .toolbox import CONE_COUNT
 
@@ -59,4 +59,4 @@ def ask_for_surfaces(scene: Scene) -> None:
     operator.click("mButtonSelect")
     operator.wait("the cones being selected", lambda: operator.layers()["Cones"] == CONE_COUNT)
     scene.film.shoot("road-surface", "cones are selected by the surface they stand on")
-    operator.close_dialog()
+    close_expression(scene)
