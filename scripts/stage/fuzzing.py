@@ -138,6 +138,8 @@ class Conversation:
         self._name = name
         self._method, self._params = method, params
         self._count = 0
+        self._asked: list[Any] = [None]
+        """The ids of what was asked so far: an answer may come after that to what was asked later."""
 
     def say(self, frame: str | bytes) -> None:
         """Send a frame, then ask something right; raise AssertionError for what must not come back."""
@@ -146,7 +148,7 @@ class Conversation:
         self._connection.send(frame)
         right = {"jsonrpc": "2.0", "id": mine, "method": self._method, "params": self._params}
         self._connection.send(json.dumps(right))
-        mine_too = (None, _id_of(frame), mine)
+        self._asked += [_id_of(frame), mine]
         until = time.monotonic() + BUSY * 10
         while True:
             text = self._connection.recv(max(0.01, until - time.monotonic()))
@@ -154,7 +156,7 @@ class Conversation:
             answer = json.loads(text)
             if "method" in answer:
                 continue
-            assert answer.get("id") in mine_too, f"the answer to somebody else's question: {text[:200]}"
+            assert answer.get("id") in self._asked, f"the answer to somebody else's question: {text[:200]}"
             if answer.get("id") == mine and answer.get("result") is not None:
                 return
 
