@@ -22,6 +22,11 @@ from ..sites.many_points import moved_together
 Points = npt.NDArray[np.float64]
 
 
+def frame_of(site: SiteReport) -> SiteFrame:
+    """Return the frame of a site as the gateway tells of it."""
+    return SiteFrame(site.crs, site.origin, site.rotation)
+
+
 class Placement:
     """Site frame → site CRS → a map's CRS, and back.
 
@@ -46,7 +51,7 @@ class Placement:
             )
         self.map_crs = map_crs
         self._context = context
-        self.frame = SiteFrame(site.crs, site.origin, site.rotation)
+        self.frame = frame_of(site)
         self._forward = QgsCoordinateTransform(self.site_crs, map_crs, context)
 
     def leads_to(self, crs: QgsCoordinateReferenceSystem, context: QgsCoordinateTransformContext) -> bool:

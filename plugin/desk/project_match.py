@@ -11,7 +11,8 @@ from ...robot_bridge.sites.frame import SiteFrame
 from ..language import tr
 from ..sites.project_site import own_frame
 from .desk import Desk
-from .live.project_watch import ProjectWatch
+from .placement import frame_of
+from .project_watch import ProjectWatch
 
 SAME_PLACE = 0.01
 """Metres up to which two origins are one."""
@@ -44,7 +45,7 @@ class ProjectMatch(QObject):
             self.over.emit(self._told)
         self._told = ""
         site, mine = self._desk.site, own_frame(self._desk.project)
-        if site is None or mine is None or _is_one(mine, SiteFrame(site.crs, site.origin, site.rotation)):
+        if site is None or mine is None or _is_one(mine, frame_of(site)):
             return
         self._told = tr(
             "This project is not that of site {site}: its variables have another origin, CRS or rotation. "

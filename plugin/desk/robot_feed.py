@@ -6,10 +6,10 @@ import numpy as np
 from qgis.core import QgsCoordinateReferenceSystem
 from qgis.PyQt.QtCore import QObject
 
-from ...robot_bridge.sites.frame import SiteFrame
 from ..expressions.robots_now import FleetNow, RobotsNow
 from .desk import Desk
 from .picture import STATES
+from .placement import frame_of
 
 _NAMES = np.array([state.value for state in STATES], dtype=object)
 
@@ -40,7 +40,7 @@ class RobotFeed(QObject):
         if self._generation != desk.picture.generation or len(self._rows) != len(robots.names):
             self._generation = desk.picture.generation
             self._rows = {name: row for row, name in enumerate(robots.names)}
-        frame = SiteFrame(desk.site.crs, desk.site.origin, desk.site.rotation)
+        frame = frame_of(desk.site)
         self._fleet.robots = RobotsNow(
             crs=QgsCoordinateReferenceSystem(desk.site.crs),
             rows=self._rows,

@@ -23,8 +23,9 @@ from qgis.PyQt.QtGui import QColor
 from ...robot_bridge.messages import SiteReport
 from ...robot_bridge.sites.frame import SiteFrame
 from ..sites.fleet_group import fleet_group, remove_if_empty
-from .live.project_watch import ProjectWatch
 from .live_layers import give_style, make_live
+from .placement import frame_of
+from .project_watch import ProjectWatch
 
 Row = tuple[Sequence[tuple[float, float]], Sequence[Any]]
 """Points in the site frame, one for a point layer, and the values of the fields."""
@@ -92,7 +93,7 @@ class RowLayer:
         layer = self.layer
         if self._watch.is_reading or site is None or (not rows and layer is None):
             return
-        frame = SiteFrame(site.crs, site.origin, site.rotation)
+        frame = frame_of(site)
         if layer is not None and layer.crs() != QgsCoordinateReferenceSystem(site.crs):
             self._take_out()
             layer = None

@@ -14,13 +14,13 @@ from ...language import tr
 from ..beat import PULL_EVERY_MS
 from ..desk import Desk
 from ..placement import Placement
+from ..project_watch import ProjectWatch
 from .following import Whom, keep_in_view, show_places
 from .hover_card import card
 from .hovering import Hovering
 from .overlay import FleetOverlay
 from .plans import Plans
 from .plans_painting import MANY
-from .project_watch import ProjectWatch
 from .robot_layer import RobotLayer
 from .scene import Placer, Scene
 from .trails import Trails

@@ -20,6 +20,7 @@ from ....robot_bridge.sites.frame import SiteFrame
 from ...sites.fleet_group import fleet_group, remove_if_empty
 from ..live_layers import give_style, make_live
 from ..picture import RobotPicture
+from ..placement import frame_of
 from .robot_features import AGE_AT, NAME_AT, STATE_AT, RobotFeature, features_of, geometry_at, made_layer
 
 KIND = "robots"
@@ -60,7 +61,7 @@ class RobotLayer(QObject):
 
     def show_site(self, site: SiteReport) -> None:
         """Make the layer for ``site``, in place of one for another site."""
-        frame = SiteFrame(site.crs, site.origin, site.rotation)
+        frame = frame_of(site)
         if self._layer is not None and frame == self._frame:
             return
         self.remove()

@@ -22,6 +22,7 @@ from ....robot_bridge.messages import PlacementReport, TaskState
 from ....robot_bridge.sites.frame import SiteFrame
 from ...language import tr
 from ..desk import Desk
+from ..placement import frame_of
 from ..row_layer import Row, RowLayer, label
 from .as_placed import utc_in_words
 from .as_placed_pdf import PLACED
@@ -73,7 +74,7 @@ class PlanLayers:
         """Show where cones were put down."""
         site = self._desk.site
         if site is not None:
-            frame = SiteFrame(site.crs, site.origin, site.rotation)
+            frame = frame_of(site)
             self.placed.show(_placed_rows(placements, frame), site)
 
     def remove(self) -> None:

@@ -23,6 +23,7 @@ from ....robot_bridge.sites.frame import SiteFrame
 from ...language import tr
 from ...sites.fleet_group import fleet_group, remove_if_empty
 from ..live_layers import give_style, make_live
+from ..placement import frame_of
 from .clockwork import local
 from .history import SILENT_AFTER, History
 from .replay_map import OWN_LAYER
@@ -70,7 +71,7 @@ class ReplayLayer(QObject):
         if not len(history):
             return
         layer = self._make(QgsCoordinateReferenceSystem(site.crs))
-        frame = SiteFrame(site.crs, site.origin, site.rotation)
+        frame = frame_of(site)
         self._task = LinesTask(history.table, list(history.names), frame, layer.fields())
         self._task.taskCompleted.connect(self._made)
         self._task.taskTerminated.connect(self._gone)
