@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import accumulate
 
 import numpy as np
 import numpy.typing as npt
@@ -10,7 +11,7 @@ from qgis.PyQt.QtCore import QPointF, Qt
 from qgis.PyQt.QtGui import QColor, QImage, QPainter, QPen
 
 from ..colours import PAPER, REFUSED, ROUTE
-from ..drafts import CONE, START, TARGETS
+from ..drafts import CONE, START, TARGETS, Draft
 from ..glyphs import draw_cone
 from .atlases import CONE_TARGET
 from .scene import PlacedScene
@@ -22,8 +23,10 @@ from .strokes import dashes, polygon, ring, route
 Points = npt.NDArray[np.float64]
 Marks = Callable[[float, float], Sprites]
 MANY = 60
-"""With more points lines are thin and targets small, and all of them are painted once into an image."""
+"""With more points targets are small and the line is painted once into an image; more clicks get no rings."""
 SMALL = 0.5
+MANY_LEGS, FAR_PX = 2000, 10000.0
+"""With more legs, or a longer way on the screen, a route is thin: in full width it would take over 10 ms."""
 
 
 class DraftPainter:
@@ -61,8 +64,9 @@ class DraftPainter:
         elif targets:
             _paint_targets(painter, points, colour)
         else:
-            _paint_route(painter, points, colour if is_wrong else ROUTE, colour)
+            route(painter, points, colour if is_wrong else ROUTE)
         if not targets:
+            _paint_clicks(painter, points, draft, colour)
             dashes(painter, np.concatenate([points[-1:], cursor]), colour, Qt.PenStyle.DashLine)
 
     def _paint_many(
@@ -82,6 +86,10 @@ class DraftPainter:
 
 def _drawn(points: Points, screen: Screen, colour: QColor, marks: Marks | None) -> QImage:
     def paint(painter: QPainter) -> None:
+        if marks is None and _is_cheap(points, screen):
+            painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+            route(painter, points, colour)
+            return
         painter.setPen(QPen(colour, 0.0))
         painter.drawPolyline(polygon(points))
         if marks is not None:
@@ -89,6 +97,14 @@ def _drawn(points: Points, screen: Screen, colour: QColor, marks: Marks | None) 
             marks(screen.ratio, SMALL).paint(painter, seen, CONE_TARGET)
 
     return screen_image(screen, paint)
+
+
+def _is_cheap(points: Points, screen: Screen) -> bool:
+    """Tell whether a route through (n, 2) pixels is painted soon: what is off the screen costs nothing."""
+    low, high = np.minimum(points[:-1], points[1:]), np.maximum(points[:-1], points[1:])
+    seen = (high > 0.0).all(axis=1) & (low < (screen.width, screen.height)).all(axis=1)
+    length = np.hypot(*(high - low)[seen].T).sum()
+    return len(points) <= MANY_LEGS and float(length) <= FAR_PX
 
 
 def _paint_targets(painter: QPainter, points: Points, colour: QColor) -> None:
@@ -100,10 +116,12 @@ def _paint_targets(painter: QPainter, points: Points, colour: QColor) -> None:
     painter.setOpacity(1.0)
 
 
-def _paint_route(painter: QPainter, points: Points, line: QColor, rings: QColor) -> None:
-    route(painter, points, line)
-    for point in points:
-        ring(painter, point, 3.5, rings)
+def _paint_clicks(painter: QPainter, points: Points, draft: Draft, colour: QColor) -> None:
+    """Paint a ring at each click of a route; a way along the roads has hundreds of points between two."""
+    if len(draft.legs) > MANY:
+        return
+    for end in accumulate(draft.legs):
+        ring(painter, points[end - 1], 3.5, colour)
 
 
 def _paint_start(painter: QPainter, points: Points, colour: QColor) -> None:

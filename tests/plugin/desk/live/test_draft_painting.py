@@ -5,11 +5,14 @@ from __future__ import annotations
 import dataclasses
 
 import numpy as np
+import pytest
 from fleet_supervisor.plugin.desk.colours import CONE as CONE_COLOUR
-from fleet_supervisor.plugin.desk.colours import REFUSED
+from fleet_supervisor.plugin.desk.colours import PAPER, REFUSED
+from fleet_supervisor.plugin.desk.colours import ROUTE as ROUTE_COLOUR
 from fleet_supervisor.plugin.desk.drafts import CONE, ROUTE, TARGETS, Draft, Findings
 from fleet_supervisor.plugin.desk.live.scene import Placer
 from fleet_supervisor.robot_bridge.messages import RobotState
+from qgis.PyQt.QtGui import QColor
 
 from tests.plugin.desk.live.on_canvas import (
     expected,
@@ -21,8 +24,6 @@ from tests.plugin.desk.live.on_canvas import (
 
 
 def test_a_draft_is_painted_and_a_refused_one_is_red(canvas, site):
-    from fleet_supervisor.plugin.desk.colours import REFUSED
-
     draft = Draft("r1", CONE, ((40.0, 70.0),), Findings(refused=("outside",)))
     show(canvas, site, scene_of((60, 50, 0.0, RobotState.FRESH), draft=draft))
     assert len(spots(canvas, REFUSED)) > 30
@@ -66,3 +67,29 @@ def test_a_draft_of_many_points_is_drawn_once_and_anew_when_the_map_or_the_draft
     overlay.show_scene(placer.placed(scene_of(draft=moved, now=107.0), placement))
     canvas.grab()
     assert len(drawn) == before + 2
+
+
+@pytest.mark.parametrize(("points", "least", "most"), [(40, 2.0, 5.0), (400, 2.0, 5.0), (4000, 0.5, 1.5)])
+def test_a_way_along_the_roads_is_as_wide_as_one_that_was_drawn_unless_that_takes_long(
+    canvas, site, points, least, most
+):
+    along = tuple((20.0 + 80.0 * k / (points - 1), 50.0) for k in range(points))
+    show(canvas, site, scene_of(draft=Draft("r1", ROUTE, along, legs=(points,), is_checked=True)))
+    (left, y), (right, _) = expected(canvas, site, 20, 50), expected(canvas, site, 100, 50)
+    found = spots(canvas, ROUTE_COLOUR, tolerance=40)
+    between = found[(found[:, 0] > left + 10) & (found[:, 0] < right - 10)]
+    assert np.abs(between[:, 1] - y).max() < 4.0
+    assert least <= len(between) / (right - left - 20) <= most
+
+
+def test_a_ring_is_at_each_click_and_none_on_the_way_along_the_roads(canvas, site):
+    # The rings are white, as an empty canvas is.
+    canvas.setCanvasColor(QColor("darkgreen"))
+    straight, along = ((20.0, 20.0), (20.0, 50.0)), tuple((20.0 + 2 * k, 50.0) for k in range(1, 31))
+    show(canvas, site, scene_of(draft=Draft("r1", ROUTE, straight + along, legs=(1, 1, 30), is_checked=True)))
+    rings = spots(canvas, PAPER)
+    clicks = [expected(canvas, site, *click) for click in (*straight, along[-1])]
+    for click in clicks:
+        assert np.hypot(*(rings - click).T).min() < 5.0
+    off = np.min([np.hypot(*(rings - click).T) for click in clicks], axis=0)
+    assert off.max() < 8.0
