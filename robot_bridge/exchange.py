@@ -9,7 +9,7 @@ from sqlalchemy import Connection
 
 from .messages import Answer, OpAck, SetMap, Start
 from .store import answers, requests, trajectories
-from .store.trajectories import Fix
+from .store.trajectories import PackedFix
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,7 @@ def finish(
     outcomes: Sequence[Outcome],
     rows: Sequence[tuple[str, Answer]],
     request_ids: Sequence[int],
-    fixes: Sequence[Fix],
+    fixes: Sequence[PackedFix],
 ) -> None:
     """Write what comes of requests, and where robots were, and delete the requests."""
     for outcome in outcomes:

@@ -44,7 +44,8 @@ class TrajectorySettings:
 
     A position is stored when the robot has moved ``min_distance_m`` or turned ``min_turn_deg`` since the last
     stored one, at most every ``min_interval_s``; and in any case after ``max_interval_s``. It is deleted
-    after ``keep_days``. While the database is away up to ``largest_backlog`` positions wait in memory.
+    after ``keep_days``. While the database is away, or too slow, up to ``largest_backlog`` positions wait in
+    memory.
     """
 
     min_distance_m: float = _number(0.1)

@@ -14,7 +14,7 @@ from ..store import robots as stored_robots
 from ..store import trajectories
 from ..store.database import Database, to_its_end
 from ..store.rows import Row
-from ..store.trajectories import Fix
+from ..store.trajectories import Fix, PackedFix
 from .recorder import Recorder
 
 
@@ -33,7 +33,7 @@ class Saving:
         self._recorder = recorder
         self._clock = clock
         self._unsaved: set[str] = set()
-        self._jotted: list[tuple[int, list[Fix]]] = []
+        self._jotted: list[tuple[int, list[PackedFix]]] = []
         """what a server may still forget, with the session in which it was written."""
         self._writing = asyncio.Lock()
 
@@ -105,6 +105,6 @@ class Saving:
         return bool(forgotten)
 
 
-def _write(connection: Connection, robots: Sequence[Row], fixes: Sequence[Fix]) -> None:
+def _write(connection: Connection, robots: Sequence[Row], fixes: Sequence[PackedFix]) -> None:
     stored_robots.save(connection, robots)
     trajectories.add(connection, fixes)

@@ -24,7 +24,7 @@ from qgis.PyQt.QtCore import QDateTime, Qt
 from robot_bridge.store import trajectories
 from robot_bridge.store.address import read_address
 from robot_bridge.store.database import Database
-from robot_bridge.store.trajectories import Fix
+from robot_bridge.store.trajectories import Fix, pack
 
 ogr.UseExceptions()
 T0 = 1_790_000_000
@@ -195,7 +195,7 @@ async def export(root, tmp_path):
     database = Database(read_address(f"sqlite:///{tmp_path}/fleet.db"))
     await database.open()
     fixes = [Fix("r1", T0 + float(k), SendPos(20.0 + k, 8.0, 0.0, 1.0, t=float(k))) for k in range(11)]
-    await database.run(trajectories.add, fixes)
+    await database.run(trajectories.add, list(map(pack, fixes)))
     await database.close()
     file = tmp_path / "drives.gpkg"
     options = ["trajectories", "export", file, "--site", root / "resources" / "sample_site"]

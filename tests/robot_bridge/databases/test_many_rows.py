@@ -11,7 +11,7 @@ from robot_bridge.store import answers, requests, robots, trajectories
 from robot_bridge.store.database import Database
 from robot_bridge.store.rows import TOGETHER
 from robot_bridge.store.schema import trajectories as stored_positions
-from robot_bridge.store.trajectories import Fix
+from robot_bridge.store.trajectories import Fix, pack
 
 NOW = 1_790_000_000.25
 STATUS = "50 % 'full'; läuft ?"
@@ -64,7 +64,7 @@ async def test_every_position_is_stored_once(database, size):
         Fix(f"r{n % 7}", NOW + n, SendPos(float(n), 0.0, 0.5, 1.0, t=None if n % 2 else NOW, fix_t=None))
         for n in range(size)
     ]
-    await database.run(trajectories.add, fixes)
+    await database.run(trajectories.add, list(map(pack, fixes)))
     x, t = stored_positions.c.x, stored_positions.c.device_time
     found = await database.run(lambda c: list(c.scalars(select(x).order_by(x))))
     assert found == [float(n) for n in range(size)]

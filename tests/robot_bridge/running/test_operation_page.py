@@ -16,7 +16,7 @@ from robot_bridge.sites.settings import TABLES
 from robot_bridge.store import placements, revisions, trajectories
 from robot_bridge.store.database import run_once
 from robot_bridge.store.placements import NewPlacement
-from robot_bridge.store.trajectories import Fix
+from robot_bridge.store.trajectories import Fix, pack
 
 SHELL = ["sh", "-eu"]
 
@@ -37,7 +37,8 @@ def test_the_commands_for_sqlite_do_what_they_say(page, root, sample_site, tmp_p
     # The track of a robot that was never there is refused, and a layout without a cone.
     database = f"sqlite:///{tmp_path}/robot-bridge.db"
     run_once(database, revisions.create)
-    run_once(database, trajectories.add, [Fix("r1", 1_790_000_000.0, SendPos(1.0, 2.0, 0.0, 0.0))])
+    fix = Fix("r1", 1_790_000_000.0, SendPos(1.0, 2.0, 0.0, 0.0))
+    run_once(database, trajectories.add, [pack(fix)])
     place = {"planned_x": 1.0, "planned_y": 2.0, "x": 1.0, "y": 2.0, "theta": 0.0, "deviation": 0.0}
     cone = NewPlacement("task-1", "r1", "command-1", placed_at=1_790_000_000.0, layout="slalom-1", **place)
     run_once(database, placements.add, cone)

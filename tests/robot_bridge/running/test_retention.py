@@ -32,7 +32,7 @@ from robot_bridge.store.schema import (
     observations,
     sessions,
 )
-from robot_bridge.store.trajectories import Fix, Wanted
+from robot_bridge.store.trajectories import Fix, Wanted, pack
 
 NOW = 1_790_000_000.25
 DAY = 86400.0
@@ -258,7 +258,7 @@ async def test_it_goes_in_pieces_between_which_others_have_the_database(database
         retention, "kept", lambda s: [retention.Kept("positions", 7.0, trajectories.forget, 100)]
     )
     fixes = [Fix("r1", at, SendPos(x, 0.0, 0.5, 1.0)) for at, x in times()]
-    await database.run(trajectories.add, fixes)
+    await database.run(trajectories.add, list(map(pack, fixes)))
     pruning = asyncio.create_task(Retention(database, lambda: settings, lambda: NOW).prune())
     counts = set()
     while not pruning.done():

@@ -6,7 +6,7 @@ from robot_bridge.messages import GetTrajectory, MessageError, SendPos
 from robot_bridge.store import trajectories
 from robot_bridge.store.address import read_address
 from robot_bridge.store.database import Database
-from robot_bridge.store.trajectories import Fix
+from robot_bridge.store.trajectories import Fix, pack
 from robot_bridge.trajectories.reading import get_trajectory
 
 NOW = 1_790_000_000.25
@@ -21,7 +21,7 @@ async def database(url):
 
 async def store(database, places):
     fixes = [Fix(robot, at, SendPos(x, y, 0.5, 1.0, fix_t=at - 1)) for robot, at, x, y in places]
-    await database.run(trajectories.add, fixes)
+    await database.run(trajectories.add, list(map(pack, fixes)))
 
 
 async def pages(database, **wanted):

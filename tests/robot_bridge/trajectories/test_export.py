@@ -14,7 +14,7 @@ from robot_bridge.robots import Robot
 from robot_bridge.store import robots as stored_robots
 from robot_bridge.store import trajectories
 from robot_bridge.store.database import Database
-from robot_bridge.store.trajectories import Fix, Mark, Wanted
+from robot_bridge.store.trajectories import Fix, Mark, Wanted, pack
 from robot_bridge.trajectories import exporting
 
 ogr.UseExceptions()
@@ -62,7 +62,8 @@ async def driven(database):
         for at in (BEGIN + n for n in range(5))
         if robot == "r1" or not gap
     ]
-    await database.run(trajectories.add, sorted(fixes, key=lambda one: one.received_at))
+    in_order = sorted(fixes, key=lambda one: one.received_at)
+    await database.run(trajectories.add, list(map(pack, in_order)))
     return database
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import dataclasses
 import threading
 
 import pytest
@@ -16,6 +17,7 @@ from robot_bridge.store import robots as stored_robots
 from robot_bridge.store import trajectories
 from robot_bridge.store.database import Database
 from robot_bridge.store.schema import trajectories as table
+from robot_bridge.store.trajectories import Fix
 from robot_bridge.trajectories.recorder import Recorder
 from robot_bridge.trajectories.saving import Saving
 
@@ -30,18 +32,27 @@ async def database(tmp_path):
     await database.close()
 
 
+def pose_at(t):
+    return SendPos(t, 0.0, 0.0, 0.0, t=t)
+
+
+def told(*times):
+    """Return what waits to be stored of a yard's robot that told where it is at these times."""
+    return [trajectories.pack(Fix("r1", t, pose_at(t))) for t in times]
+
+
 class Yard:
     """One robot whose positions are saved in ``database``."""
 
-    def __init__(self, database):
+    def __init__(self, database, recorder=None):
         self.database = database
         self.robots = Robots()
         self.robots.ready("r1", 1, "sql", 0.0)
-        self.saving = Saving(database, self.robots, Recorder(lambda: EVERY), lambda: 100.0)
+        self.saving = Saving(database, self.robots, recorder or Recorder(lambda: EVERY), lambda: 100.0)
 
     def tell(self, *times):
         for t in times:
-            pose = SendPos(t, 0.0, 0.0, 0.0, t=t)
+            pose = pose_at(t)
             assert self.robots.observe("r1", pose, "sql", t)
             self.saving.observe("r1", t, pose)
 
@@ -146,7 +157,7 @@ async def test_what_a_killed_server_may_have_forgotten_is_stored_again(killed):
     await yard.saving.save()
     server.kill()
     await yard.saving.save()
-    assert [fix.pose.t for fix in server.kept] == [1.0, 2.0, 3.0, 4.0]
+    assert server.kept == told(1.0, 2.0, 3.0, 4.0)
 
 
 async def test_a_server_that_is_killed_while_it_stores_is_told_again_what_it_forgot():
@@ -162,4 +173,20 @@ async def test_a_server_that_is_killed_while_it_stores_is_told_again_what_it_for
     await yard.saving.jot_with(None)
     yard.tell(3.0)
     await yard.saving.save()
-    assert sorted(fix.pose.t for fix in server.kept) == [1.0, 2.0, 3.0]
+    assert sorted(server.kept) == sorted(told(1.0, 2.0, 3.0))
+
+
+async def test_a_store_that_hangs_keeps_no_more_than_may_wait_and_gets_the_newest(database, busy):
+    recorder = Recorder(lambda: dataclasses.replace(EVERY, largest_backlog=1000))
+    yard = Yard(database, recorder)
+    yard.tell(0.0)
+    saving = asyncio.ensure_future(yard.saving.save())
+    await asyncio.sleep(0.05)
+    yard.tell(*map(float, range(1, 1501)))
+    assert (recorder.waiting, recorder.given_up) == (1000, 500)
+    busy.set()
+    await saving
+    await yard.saving.save()
+    times, last = await yard.stored()
+    assert times == [0.0, *map(float, range(501, 1501))]
+    assert (last, recorder.waiting) == (1500.0, 0)

@@ -1,6 +1,8 @@
 """Which positions are stored: where a robot moved, turned or came to stand, and a sign of life."""
 
+import gc
 import math
+import sys
 
 import pytest
 from hypothesis import given
@@ -8,7 +10,7 @@ from hypothesis import strategies as st
 
 from robot_bridge.messages import SendPos
 from robot_bridge.sites.settings import TrajectorySettings
-from robot_bridge.store.trajectories import Fix
+from robot_bridge.store.trajectories import Fix, pack
 from robot_bridge.trajectories import recorder as recording
 from robot_bridge.trajectories.recorder import Recorder
 from robot_bridge.trajectories.thinning import Thinning
@@ -98,18 +100,51 @@ def test_what_could_not_be_stored_waits_in_its_order(recorder):
     recorder.observe(fix(3, x=3.0))
     assert recorder.waiting == 1
     recorder.give_back(taken)
-    assert [one.received_at for one in recorder.take(4.0)] == [0, 1, 2, 3]
+    assert recorder.take(4.0) == [pack(fix(n, x=n)) for n in range(4)]
 
 
 def test_what_waits_is_bounded_and_the_newest_stay(recorder, caplog):
-    for n in range(1200):
+    for n in range(1000):
         recorder.observe(fix(n, x=n))
-    for _ in range(3):
-        recorder.give_back(recorder.take(1200.0))
+    for n in range(1000, 1200):
+        taken = recorder.take(n)
+        recorder.observe(fix(n, x=n))
+        recorder.give_back(taken)
     assert (recorder.waiting, recorder.given_up) == (1000, 200)
-    assert recorder.take(1200.0)[0].received_at == 200
+    assert recorder.take(1200.0)[0] == pack(fix(200, x=200))
     assert [record.levelname for record in caplog.records] == ["ERROR"]
     assert "trajectories.largest_backlog of site.toml" in caplog.text
+
+
+def test_what_waits_is_bounded_where_the_database_is_slow_and_nothing_fails(recorder, caplog):
+    """Nothing is given back by then: it is being written, for however long."""
+    for n in range(1200):
+        recorder.observe(fix(n, x=n))
+    assert (recorder.waiting, recorder.given_up) == (1000, 200)
+    assert recorder.take(1200.0)[0] == pack(fix(200, x=200))
+    assert "takes them more slowly than they come" in caplog.text
+
+
+def test_what_is_given_up_later_is_told_again(recorder, caplog):
+    for begin in (0, 2000):
+        for n in range(begin, begin + 1100):
+            recorder.observe(fix(n, x=n))
+        while recorder.take(begin + 1100.0):
+            continue
+    assert recorder.given_up == 200
+    assert [record.levelname for record in caplog.records] == ["ERROR", "ERROR"]
+
+
+def test_what_waits_is_nothing_that_pythons_search_for_garbage_has_to_look_at(recorder):
+    recorder.observe(fix(0))
+    gc.collect()
+    assert not any(map(gc.is_tracked, recorder.take(1.0)))
+
+
+def test_a_position_that_waits_takes_less_than_200_bytes():
+    """Of 200 000 that may wait, the gateway has 40 MB at most."""
+    robot, stored = pack(fix(0))
+    assert sys.getsizeof((robot, stored)) + sys.getsizeof(stored) < 200
 
 
 def test_a_batch_is_limited(recorder, monkeypatch):
@@ -124,12 +159,12 @@ def test_at_the_end_the_actual_place_is_stored(recorder):
     recorder.observe(fix(1, x=0.3))
     assert len(recorder.take(1.0)) == 1
     recorder.finish()
-    assert [one.pose.x for one in recorder.take(1.0)] == [0.3]
+    assert recorder.take(1.0) == [pack(fix(1, x=0.3))]
 
 
 def test_the_last_place_of_a_silent_robot_is_stored_after_the_longest_interval(recorder):
     recorder.observe(fix(100))
     recorder.observe(fix(101, x=0.3))
-    assert [one.pose.x for one in recorder.take(101.5)] == [0.0]
+    assert recorder.take(101.5) == [pack(fix(100))]
     assert recorder.take(105.9) == []
-    assert [one.pose.x for one in recorder.take(107.0)] == [0.3]
+    assert recorder.take(107.0) == [pack(fix(101, x=0.3))]
