@@ -45,7 +45,7 @@ from .messages import (
 )
 from .monitoring.tally import Tally
 from .observation_book import ObservationBook
-from .places import check_keepouts
+from .places import keepout_refusals
 from .planning import Planner, StraightPlanner
 from .queueing.book import QueueBook
 from .queueing.driving import QueueDriving
@@ -100,7 +100,7 @@ class Fleet:
             self._consider,
         )
         self._book.seen = self.robots.pose
-        self._book.keep_out = lambda message: check_keepouts(site, [message])
+        self._book.fence = lambda messages: keepout_refusals(site, messages)
         self._book.unseen = lambda robot: self.robots.is_unseen(robot, clock())
         self.ways = Ways(self.robots, self._book)
         self.roads = planner if isinstance(planner, RoadPlanner) else None

@@ -25,8 +25,12 @@ class Ground(Protocol):
 class Fenced(Protocol):
     """What is known of where nobody may drive."""
 
-    def keepout_entered(self, tracks: Sequence[Track]) -> tuple[int, str] | None:
-        """Return the number of the first of ``tracks`` that comes into a keepout, and that one's name."""
+    @property
+    def has_keepouts(self) -> bool:
+        """Tell whether there is any place where nobody may drive."""
+
+    def keepouts_entered(self, tracks: Sequence[Track]) -> dict[int, str]:
+        """Return the numbers of those of ``tracks`` that come into a keepout, each with that one's name."""
 
 
 def check_places(site: Ground, points: Iterable[tuple[float, float]]) -> None:
@@ -48,20 +52,31 @@ def places_of(message: Command) -> list[tuple[float, float]]:
 
 
 async def check_keepouts(site: Fenced, messages: Sequence[Command]) -> None:
-    """Raise RefusedError for the first of ``messages`` that sends a robot into a keepout of the site.
+    """Raise RefusedError for the first of ``messages`` that sends a robot into a keepout of the site."""
+    for refusal in await keepout_refusals(site, messages):
+        if refusal is not None:
+            raise refusal
+
+
+async def keepout_refusals(site: Fenced, messages: Sequence[Command]) -> list[RefusedError | None]:
+    """Return for each of ``messages`` why it must not be sent: it sends a robot into a keepout of the site.
 
     Where a robot is told that it stands is not looked at, nor the way that it finds to a target by itself.
     """
-    tracks: list[Track] = []
-    for message in messages:
-        if isinstance(message, (SetPosEnd, SetPath)):
-            tracks.append(places_of(message))
-    entered = await asyncio.to_thread(site.keepout_entered, tracks) if tracks else None
-    if entered is None:
-        return
-    track, name = tracks[entered[0]], entered[1]
+    moving = [number for number, one in enumerate(messages) if isinstance(one, (SetPosEnd, SetPath))]
+    refusals: list[RefusedError | None] = [None] * len(messages)
+    if not moving or not site.has_keepouts:
+        return refusals
+    tracks: list[Track] = [places_of(messages[number]) for number in moving]
+    # All of them in one thread: a hop for each would take a thousand targets a thousand hops.
+    for track, name in (await asyncio.to_thread(site.keepouts_entered, tracks)).items():
+        refusals[moving[track]] = _refusal(tracks[track], name)
+    return refusals
+
+
+def _refusal(track: Track, keepout: str) -> RefusedError:
     x, y = track[-1]
     what = f"({x:.2f}, {y:.2f}) lies in" if len(track) == 1 else f"the path to ({x:.2f}, {y:.2f}) enters"
-    raise RefusedError(
-        f"{what} the keepout {name!r}: choose a place or way outside it, or send it with an override"
+    return RefusedError(
+        f"{what} the keepout {keepout!r}: choose a place or way outside it, or send it with an override"
     )

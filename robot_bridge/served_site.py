@@ -25,8 +25,12 @@ class ServedSite(Protocol):
     def contains(self, x: float, y: float) -> bool:
         """Tell whether (x, y), metres in the site frame, lies on the site."""
 
-    def keepout_entered(self, tracks: Sequence[Track]) -> tuple[int, str] | None:
-        """Return the number of the first of ``tracks`` that comes into a keepout, and that one's name."""
+    @property
+    def has_keepouts(self) -> bool:
+        """Tell whether there is any place where nobody may drive."""
+
+    def keepouts_entered(self, tracks: Sequence[Track]) -> dict[int, str]:
+        """Return the numbers of those of ``tracks`` that come into a keepout, each with that one's name."""
 
     def whole_map(self) -> bytes:
         """Return the map of the whole site."""

@@ -76,15 +76,19 @@ class SiteMaps:
         """Tell whether (x, y), metres in the site frame, lies on the site."""
         return self._site.contains(x, y)
 
-    def keepout_entered(self, tracks: Sequence[Track]) -> tuple[int, str] | None:
-        """Return the number of the first of ``tracks`` that comes into a keepout, and that one's name."""
+    @property
+    def has_keepouts(self) -> bool:
+        """Tell whether there is any place where nobody may drive."""
+        return bool(self._site.keepouts)
+
+    def keepouts_entered(self, tracks: Sequence[Track]) -> dict[int, str]:
+        """Return the numbers of those of ``tracks`` that come into a keepout, each with that one's name."""
         site = self._site
         if not site.keepouts:
-            return None
+            return {}
         with self._indexing:
             index = site.keepout_index
-        entry = index.first_entry(tracks)
-        return None if entry is None else (entry.track, site.keepouts[entry.area].label)
+        return {track: site.keepouts[area].label for track, area in index.entered(tracks).items()}
 
     def whole_map(self) -> bytes:
         """Return the map of the whole site in the binary format."""

@@ -141,6 +141,23 @@ class OpenCommand:
             self.arrival.lose_sight()
 
 
+@dataclass(frozen=True)
+class Recall:
+    """A ``queued`` command whose message is to be taken back from SA, and how it ``ended`` then.
+
+    A robot on SQL may have fetched it without the gateway having seen that yet: then it goes on, and may be
+    done already.
+    """
+
+    queued: OpenCommand
+    ended: OpenCommand
+
+    @property
+    def fetched(self) -> OpenCommand:
+        """The command where its message had been fetched before."""
+        return self.queued.step(CommandState.DELIVERED, self.ended.report.steps[-1].at, GATEWAY)
+
+
 def drafted(order: Order, now: float) -> OpenCommand:
     """Return the command of ``order`` before it is stored, with no row in SA."""
     report = CommandReport(
@@ -156,24 +173,28 @@ def drafted(order: Order, now: float) -> OpenCommand:
     return OpenCommand(report, 0, order.message, expires_at=expires_at, written_at=now)
 
 
-def voided(order: Order, mine: list[OpenCommand], now: float) -> list[OpenCommand]:
-    """Return the ends of those commands of the robot, ``mine``, that ``order`` ends at once.
+def superseded(order: Order, mine: list[OpenCommand], now: float) -> list[OpenCommand]:
+    """Return the ends of those commands of the robot, ``mine``, that ``order`` takes the place of."""
+    reason = f"by command {order.command}"
+    return [
+        command.step(CommandState.SUPERSEDED, now, order.operator, reason)
+        for command in mine
+        if _replaces(order.message, command)
+    ]
 
-    An Abort ends the task that the robot has not fetched. What it has fetched may be done by the time that
-    the Abort comes, so that ends when it acknowledges the Abort.
+
+def recalled(order: Order, mine: list[OpenCommand], now: float) -> list[Recall]:
+    """Return the recalls of those tasks of the robot, ``mine``, that an Abort finds before it fetched them.
+
+    What it has fetched may be done by the time that the Abort comes, so that ends when it acknowledges the
+    Abort.
     """
-    ended = []
-    for command in mine:
-        if isinstance(order.message, Abort) and command.is_motion:
-            if command.report.state is not CommandState.QUEUED:
-                continue
-            # Not "before the robot read it": a robot may have done that without the gateway knowing yet.
-            reason = because("before the robot acknowledged it", order.reason)
-            ended.append(command.step(CommandState.ABORTED, now, order.operator, reason))
-        elif _replaces(order.message, command):
-            reason = f"by command {order.command}"
-            ended.append(command.step(CommandState.SUPERSEDED, now, order.operator, reason))
-    return ended
+    if not isinstance(order.message, Abort):
+        return []
+    # Not "before the robot read it": a robot may have done that without having deleted it yet.
+    reason = because("before the robot acknowledged it", order.reason)
+    queued = [c for c in mine if c.is_motion and c.report.state is CommandState.QUEUED]
+    return [Recall(c, c.step(CommandState.ABORTED, now, order.operator, reason)) for c in queued]
 
 
 def ended_by(abort: OpenCommand, mine: list[OpenCommand], now: float, why: str) -> list[OpenCommand]:

@@ -15,10 +15,12 @@ from ..command_life.open_command import (
     NOTHING,
     OpenCommand,
     Order,
+    Recall,
     drafted,
     ended_by,
     given_up_by,
-    voided,
+    recalled,
+    superseded,
 )
 from ..command_life.open_commands import OpenCommands
 from ..command_life.states import is_open, may_become
@@ -39,6 +41,7 @@ from .writing import (
     write_drafts,
     write_driven,
     write_late,
+    write_recalls,
 )
 
 __all__ = ["GATEWAY", "CommandBook", "OpenCommand", "Order"]
@@ -84,8 +87,8 @@ class CommandBook:
         """Tells where a robot was seen last."""
         self.unseen: Callable[[str], bool] = lambda _robot: False
         """Tells whether a robot may have come further since it was seen last."""
-        self.keep_out: Callable[[Command], Awaitable[None]] = _let_pass
-        """Raises RefusedError for a message that leads into a keepout; for orders that are fenced."""
+        self.fence: Callable[[Sequence[Command]], Awaitable[Sequence[RefusedError | None]]] = _let_pass
+        """Tells of messages of orders that are fenced why each must not be sent, None where it may be."""
         self._open = OpenCommands()
         self._held = HeldRobots(database, self._look_up)
         self._late: set[tuple[str, int]] = set()
@@ -242,11 +245,11 @@ class CommandBook:
     async def _issue(self, orders: list[Order], also: Also | None) -> list[CommandReport]:
         async with self._held.of(order.robot for order in orders):
             # What takes long first: nothing may come between the checks and the transaction.
-            found = [await self._fenced(order) for order in orders]
+            found = await self._considered(orders)
             now = self._clock()
             drafts = [self._draft(order, fault, now) for order, fault in zip(orders, found, strict=True)]
-            issued, ended = await self._held.run(write_drafts, drafts, also)
-            for command in ended:
+            issued, changed = await self._held.run(write_drafts, drafts, also)
+            for command in changed:
                 self._apply(command)
             for command in issued:
                 id = command.report.command
@@ -255,15 +258,12 @@ class CommandBook:
                     self._outbox_changed(command.report.robot)
             return [command.report for command in issued]
 
-    async def _fenced(self, order: Order) -> RefusedError | None:
-        """Find out what takes long about an order; return why it must not be sent, None if it may be."""
-        await self._consider(order.message)
-        try:
-            if order.fenced:
-                await self.keep_out(order.message)
-        except RefusedError as error:
-            return error
-        return None
+    async def _considered(self, orders: Sequence[Order]) -> list[RefusedError | None]:
+        """Find out what takes long about orders; return why each must not be sent, None where it may be."""
+        for order in orders:
+            await self._consider(order.message)
+        refusals = iter(await self.fence([order.message for order in orders if order.fenced]))
+        return [next(refusals) if order.fenced else None for order in orders]
 
     def _draft(self, order: Order, refusal: RefusedError | None, now: float) -> Draft:
         try:
@@ -273,7 +273,8 @@ class CommandBook:
             refusal = refusal or error
         mine = self._open.of(order.robot)
         command = dataclasses.replace(drafted(order, now), handed=self.seen(order.robot))
-        return Draft(order, command, voided(order, mine, now), refusal, self.waits(order.robot))
+        ended, recalls = superseded(order, mine, now), recalled(order, mine, now)
+        return Draft(order, command, ended, recalls, refusal, self.waits(order.robot))
 
     def _check_task(self, order: Order) -> None:
         if order.instead_of is not None and not self._is_open_to(order.robot, order.instead_of):
@@ -381,7 +382,10 @@ class CommandBook:
             found = [command for id in ids if (command := self._open.get(id))]
             late = [command for command in found if command.report.state is CommandState.QUEUED]
             now, reason = self._clock(), "the robot did not fetch it in time"
-            await self._save([c.step(CommandState.EXPIRED, now, GATEWAY, reason) for c in late])
+            recalls = [Recall(c, c.step(CommandState.EXPIRED, now, GATEWAY, reason)) for c in late]
+            if recalls:
+                for command in await self._held.run(write_recalls, recalls):
+                    self._apply(command)
 
     # -------------------------------------------------------------------------------------------------------
 
@@ -452,5 +456,6 @@ class CommandBook:
                 self._outbox_changed(found.report.robot)
 
 
-async def _let_pass(_message: Command) -> None:
+async def _let_pass(messages: Sequence[Command]) -> list[RefusedError | None]:
     """Refuse nothing."""
+    return [None] * len(messages)

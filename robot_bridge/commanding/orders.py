@@ -41,8 +41,11 @@ class Orders:
         self._database = database
 
     async def send(self, send: Send, operator: str) -> CommandReport:
-        """Issue one command."""
-        order = self._order(send.command, send.robot, send.op, send.params, operator)
+        """Issue one command; asked again it is answered as it stands, whatever would be refused by now."""
+        try:
+            order = self._order(send.command, send.robot, send.op, send.params, operator)
+        except RefusedError as refusal:
+            return await self._issued_before(send.command, refusal)
         told = [f"override: {send.override}" if send.override else None, send.reason]
         reason = "; ".join(text for text in told if text) or None
         fenced = send.override is None
@@ -66,16 +69,10 @@ class Orders:
 
     async def abort(self, request: AbortTask, operator: str) -> CommandReport:
         """Tell a robot to abort its task, or to abort one command if that still is its task."""
-        robot = request.robot or self._book.robot_of(request.aborts or "")
-        if robot is None:
-            # Asked again, after what it aborts has ended: answered as it was.
-            known = await self._database.run(commands.find, request.command)
-            if known is not None:
-                return known
-            raise RefusedError(
-                f"command {request.aborts} has ended or was never issued, so there is nothing to abort"
-            )
-        order = self._order(request.command, robot, Abort.__name__, {}, operator)
+        try:
+            order = self._order(request.command, self._robot_of(request), Abort.__name__, {}, operator)
+        except RefusedError as refusal:
+            return await self._issued_before(request.command, refusal)
         order = replace(order, reason=request.reason, aborts=request.aborts)
         return (await self._book.issue([order]))[0]
 
@@ -88,6 +85,24 @@ class Orders:
         return await self._book.issue(
             [Order(str(id), name, Abort(), operator, reason) for name, id in ids.items()]
         )
+
+    async def _issued_before(self, command: str, refusal: RefusedError) -> CommandReport:
+        """Return a command as it stands if it was issued before; raises ``refusal`` otherwise.
+
+        Whoever got no answer asks again, and the site, the robots or the task may be others by now.
+        """
+        known = await self._database.run(commands.find, command)
+        if known is None:
+            raise refusal
+        return known
+
+    def _robot_of(self, request: AbortTask) -> str:
+        robot = request.robot or self._book.robot_of(request.aborts or "")
+        if robot is None:
+            raise RefusedError(
+                f"command {request.aborts} has ended or was never issued, so there is nothing to abort"
+            )
+        return robot
 
     def _order(self, id: str, robot: str, op: str, params: dict[str, object], operator: str) -> Order:
         check_robot_name(robot)

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from sqlalchemy import Connection
 
-from ..command_life.open_command import OpenCommand, Order, because
+from ..command_life.open_command import OpenCommand, Order, Recall, because
 from ..command_life.states import is_open, note
 from ..errors import RefusedError
 from ..messages import Abort, Command, CommandReport, SetPosIni
@@ -22,7 +22,7 @@ from ..wire import decode_answer
 
 
 class Draft(NamedTuple):
-    """An order with the command it makes, the ends of older ones, and why it is refused, if it is.
+    """An order with the command it makes, ends and recalls of older ones, and why it is refused, if it is.
 
     ``ends_waiting`` is true for a robot that waits for another.
 
@@ -32,15 +32,16 @@ class Draft(NamedTuple):
     order: Order
     command: OpenCommand
     ended: list[OpenCommand]
+    recalls: list[Recall]
     refusal: RefusedError | None = None
     ends_waiting: bool = False
 
 
 class Written(NamedTuple):
-    """What was written: commands as they now stand, in the order asked for, and older ones that ended."""
+    """What was written: commands as they now stand, in the order asked for, and older ones that changed."""
 
     issued: list[OpenCommand]
-    ended: list[OpenCommand]
+    changed: list[OpenCommand]
 
 
 Also = Callable[[Connection], None]
@@ -56,8 +57,9 @@ def write_drafts(connection: Connection, drafts: Sequence[Draft], also: Also | N
     for draft in new:
         if draft.refusal is not None:
             raise draft.refusal
-    ended = [command for draft in new for command in draft.ended]
-    write_all(connection, ended)
+    changed = [command for draft in new for command in draft.ended]
+    write_all(connection, changed)
+    changed += write_recalls(connection, [recall for draft in new for recall in draft.recalls])
     ids = answers.add_numbered(connection, [(d.order.robot, d.order.message) for d in new])
     written = {
         draft.order.command: dataclasses.replace(draft.command, sa_id=id)
@@ -71,13 +73,21 @@ def write_drafts(connection: Connection, drafts: Sequence[Draft], also: Also | N
     if also is not None:
         also(connection)
     issued = [written.get(d.order.command) or opened(known[d.order.command], d.order.message) for d in drafts]
-    return Written(issued, ended)
+    return Written(issued, changed)
 
 
 def write_all(connection: Connection, steps: Sequence[OpenCommand]) -> None:
     """Write the newest step of commands; what ended takes its message out of SA."""
     commands.save_all(connection, [_stored(command) for command in steps])
     answers.remove(connection, [c.sa_id for c in steps if not is_open(c.report.state)])
+
+
+def write_recalls(connection: Connection, recalls: Sequence[Recall]) -> list[OpenCommand]:
+    """Take messages back that were not fetched, and write what becomes of their commands; return those."""
+    taken_back = answers.take_back(connection, [recall.queued.sa_id for recall in recalls])
+    steps = [recall.ended if recall.queued.sa_id in taken_back else recall.fetched for recall in recalls]
+    commands.save_all(connection, [_stored(command) for command in steps])
+    return steps
 
 
 def write_acknowledged(

@@ -3,18 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
 
 from ..polyline import Track
 from .centrelines import Floats, Ints
 from .network import Network
-
-
-class Entry(NamedTuple):
-    """The number of what comes into an area, and that of the area."""
-
-    track: int
-    area: int
 
 
 class KeepoutIndex:
@@ -32,12 +24,12 @@ class KeepoutIndex:
             [shapely.make_valid(shapely.Polygon(outer, holes)) for outer, *holes in areas]
         )
 
-    def first_entry(self, tracks: Sequence[Track]) -> Entry | None:
-        """Return the first of ``tracks`` that comes into an area, None where none does."""
+    def entered(self, tracks: Sequence[Track]) -> dict[int, int]:
+        """Return the numbers of those of ``tracks`` that come into an area, each with the area's lowest."""
         import shapely
 
         found = self._entries([shapely.LineString(t) if len(t) > 1 else shapely.Point(t[0]) for t in tracks])
-        return min((Entry(*pair) for pair in found.T.tolist()), default=None)
+        return dict(sorted(found.T.tolist(), reverse=True))
 
     def between_ends(self, path: Track) -> int | None:
         """Return the number of an area that ``path`` comes into and that holds neither end of it, or None.

@@ -24,6 +24,7 @@ _READ = (
 )
 _NAMES = ("robot", "op", "params", "payload", "urgent")
 _REMOVE_OWN = delete(sa).where(sa.c.robot == bindparam("of"), sa.c.id == bindparam("one"))
+_REMOVE_ONE = delete(sa).where(sa.c.id == bindparam("one"))
 _WAITING = select(sa.c.id).where(sa.c.id.in_(bindparam("ids", expanding=True)))
 # Found first, and then deleted by their ids: a deletion that looks for its rows waits at those of others.
 _KINDS = select(sa.c.id).where(sa.c.op.in_(bindparam("ops", expanding=True)))
@@ -87,6 +88,15 @@ def remove(connection: Connection, ids: Sequence[int]) -> None:
 def remove_own(connection: Connection, robot: str, id: int) -> None:
     """Delete answer ``id`` if it is the robot's own."""
     connection.execute(_REMOVE_OWN, {"of": robot, "one": id})
+
+
+def take_back(connection: Connection, ids: Sequence[int]) -> set[int]:
+    """Delete those of some answers that nobody has read and deleted before; return their ids.
+
+    One by one: only of a single deletion does every server tell whether it found its row, after waiting for
+    a robot that is about to commit.
+    """
+    return {id for id in ids if connection.execute(_REMOVE_ONE, {"one": id}).rowcount}
 
 
 def remove_kinds(connection: Connection, robot: str, ops: Sequence[str]) -> None:

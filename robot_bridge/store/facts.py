@@ -8,15 +8,17 @@ from sqlalchemy import Connection, delete, insert, select
 
 from .schema import bridge
 
+ID = "id"
+"""The name of the fact that tells the database from every other."""
 _SITE = "site"
 
 
 def database_id(connection: Connection) -> str:
     """Return what tells this database from every other; one that has none yet is given it."""
-    found = connection.scalar(select(bridge.c.value).where(bridge.c.name == "id"))
+    found = connection.scalar(select(bridge.c.value).where(bridge.c.name == ID))
     if found is None:
         found = str(uuid.uuid4())
-        connection.execute(insert(bridge).values(name="id", value=found))
+        connection.execute(insert(bridge).values(name=ID, value=found))
     return str(found)
 
 

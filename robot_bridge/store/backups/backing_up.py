@@ -9,14 +9,14 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Protocol
 
-from sqlalchemy import URL, Connection, delete, func, inspect, select
+from sqlalchemy import URL, Connection, func, inspect, select
 
 from ...counting import counted
 from ...errors import BridgeError, StoreError
-from .. import facts, revisions
+from .. import revisions
 from ..address import shown
 from ..database import run_once
-from ..schema import bridge, metadata, rr
+from ..schema import metadata
 from ..sole_gateway import no_gateway
 from .server_dump import MariaDbBackups, PostgreSqlBackups
 from .sqlite_file import SqliteBackups
@@ -37,7 +37,7 @@ class Backups(Protocol):
         """Return the revision of the tables in ``file``; raises StoreError unless it is a whole backup."""
 
     def load(self, file: Path) -> None:
-        """Put what ``file`` holds in the place of what is there."""
+        """Put what ``file`` holds in the place of what is there, under a new id, in one transaction."""
 
 
 KINDS: dict[str, Callable[[URL], Backups]] = {
@@ -107,7 +107,6 @@ def _restore(url: URL, file: Path, revision: str, replace: bool) -> None:
             "replaced"
         )
     KINDS[url.get_backend_name()](url).load(file)
-    run_once(url, _renew)
 
 
 def _check_fits(url: URL, file: Path, revision: str, found: str) -> None:
@@ -146,14 +145,6 @@ def _held(connection: Connection) -> str | None:
         if count:
             return f"{counted(count, 'row')} in {name}"
     return None
-
-
-def _renew(connection: Connection) -> None:
-    if bridge.name not in inspect(connection).get_table_names():
-        return  # a database of version 0.1.0, which gets its id when it is upgraded
-    connection.execute(delete(rr))
-    connection.execute(delete(bridge).where(bridge.c.name == "id"))
-    facts.database_id(connection)
 
 
 def _refuse_itself(url: URL, file: Path) -> None:

@@ -14,6 +14,7 @@ import shutil
 import subprocess
 import tempfile
 import time
+import uuid
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import IO, Any
@@ -23,7 +24,8 @@ from sqlalchemy import URL, Connection, inspect
 from ...errors import StoreError
 from ..address import shown
 from ..database import run_once
-from ..schema import metadata
+from ..facts import ID
+from ..schema import bridge, metadata
 
 MARK = b"-- robot-bridge backup "
 LEFT_OUT = frozenset({"rr", "bridge"})
@@ -41,6 +43,7 @@ class ServerBackups:
     writer: str
     reader: str
     package: str
+    schema: str = ""
 
     def __init__(self, url: URL) -> None:
         self._url = url
@@ -68,7 +71,7 @@ class ServerBackups:
         return str(about.get("revision"))
 
     def load(self, file: Path) -> None:
-        """Put what ``file`` holds in the place of the rows that are there, in one transaction."""
+        """Put what ``file`` holds in the place of the rows there, under a new id, in one transaction."""
         program, script = self._program(self.reader), self._script(file, self._tables())
         self._run([program, *self._reader_options()], script, None)
 
@@ -92,7 +95,8 @@ class ServerBackups:
         with gzip.open(file, "rb") as source:
             while piece := source.read(_PIECE):
                 yield piece
-        yield b"\n" + "\n".join(self._after(tables)).encode() + b"\n"
+        new_id = _new_id(self.schema + bridge.name) if run_once(self._url, _has_id) else []
+        yield b"\n" + "\n".join([*new_id, *self._after(tables)]).encode() + b"\n"
 
     def _run(
         self, command: Sequence[str], script: Iterable[bytes] | None, output: gzip.GzipFile | None
@@ -150,7 +154,7 @@ class PostgreSqlBackups(ServerBackups):
     """pg_dump and psql. Inserts and not COPY: the rights of rows, where robots have accounts, forbid that."""
 
     kind = "postgresql"
-    writer, reader, package = "pg_dump", "psql", "postgresql-client"
+    writer, reader, package, schema = "pg_dump", "psql", "postgresql-client", "public."
 
     def _writer_options(self, tables: Collection[str]) -> list[str]:
         form = [
@@ -244,6 +248,19 @@ class MariaDbBackups(ServerBackups):
 def _present(connection: Connection) -> list[str]:
     names = set(inspect(connection).get_table_names())
     return sorted(names & metadata.tables.keys() - LEFT_OUT)
+
+
+def _has_id(connection: Connection) -> bool:
+    """Tell whether the database has an id: one of version 0.1.0 gets it when it is upgraded."""
+    return bridge.name in inspect(connection).get_table_names()
+
+
+def _new_id(table: str) -> list[str]:
+    """Return SQL that gives the database another id: messages come again under numbers that robots know."""
+    return [
+        f"delete from {table} where name = '{ID}';",
+        f"insert into {table} (name, value) values ('{ID}', '{uuid.uuid4()}');",
+    ]
 
 
 def _highest(table: str) -> str:

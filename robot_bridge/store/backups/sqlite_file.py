@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import contextlib
 import sqlite3
+import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
-from sqlalchemy import URL, create_engine
+from sqlalchemy import URL, Connection, create_engine, delete, inspect
 from sqlalchemy.pool import NullPool
 
 from ...errors import StoreError
-from .. import revisions
+from .. import facts, revisions
+from ..database import run_once
+from ..schema import bridge, rr
 
 _MAGIC = b"SQLite format 3\x00"
 
@@ -52,10 +55,17 @@ class SqliteBackups:
         return revision
 
     def load(self, file: Path) -> None:
-        """Put what ``file`` holds in the place of the database."""
-        with _connected(file) as source, _connected(self._file()) as target:
-            source.backup(target)
-            target.execute("PRAGMA journal_mode = WAL")
+        """Put what ``file`` holds in the place of the database, under a new id, in one transaction."""
+        database = self._file()
+        with tempfile.TemporaryDirectory(prefix=".restoring-", dir=database.parent) as folder:
+            # Renewed before it takes the place: between the two robots would know the old id.
+            renewed = Path(folder) / "backup"
+            with _connected(file) as source, _connected(renewed) as target:
+                source.backup(target)
+            run_once(URL.create("sqlite", database=str(renewed)), _renew)
+            with _connected(renewed) as source, _connected(database) as target:
+                source.backup(target)
+                target.execute("PRAGMA journal_mode = WAL")
 
     def _file(self) -> Path:
         database = self._url.database
@@ -64,6 +74,14 @@ class SqliteBackups:
                 f"database {self._url}: only a file named by its path can be backed up or restored"
             )
         return Path(database)
+
+
+def _renew(connection: Connection) -> None:
+    if bridge.name not in inspect(connection).get_table_names():
+        return  # a database of version 0.1.0, which gets its id when it is upgraded
+    connection.execute(delete(rr))
+    connection.execute(delete(bridge).where(bridge.c.name == facts.ID))
+    facts.database_id(connection)
 
 
 @contextlib.contextmanager

@@ -21,6 +21,7 @@ from robot_bridge.messages import (
     TargetPosition,
     TaskKind,
 )
+from robot_bridge.site_maps import SiteMaps
 from robot_bridge.sites.settings import ConeSettings
 
 BASIN = (66.0, 32.0)
@@ -62,6 +63,23 @@ async def test_what_was_sent_before_is_answered_as_it_stands_whatever_is_a_keepo
     assert await line.yard.fleet.orders.send(send("SetPosEnd", **into), "Ada") == sent
 
 
+async def test_so_it_is_when_the_site_ends_before_it_by_now_or_the_robot_is_not_known_any_more(
+    line, monkeypatch
+):
+    asked = send("SetPosEnd", x=50.0, y=40.0)
+    sent = await line.yard.fleet.orders.send(asked, "Ada")
+    other = dataclasses.replace(asked, command="command-b")
+    monkeypatch.setattr(SiteMaps, "contains", lambda _site, _x, _y: False)
+    with pytest.raises(RefusedError, match="lies outside site"):
+        await line.yard.fleet.orders.send(other, "Ada")
+    assert await line.yard.fleet.orders.send(asked, "Ada") == sent
+    line.yard.sql("delete from robots where name = 'r1'")
+    await line.yard.restart()
+    with pytest.raises(RefusedError, match="'r1' is not known"):
+        await line.yard.fleet.orders.send(other, "Ada")
+    assert await line.yard.fleet.orders.send(asked, "Ada") == sent
+
+
 async def test_a_path_around_a_keepout_and_a_robot_that_is_said_to_stand_in_one_are_no_matter(line):
     await line.yard.fleet.orders.send(send("SetPath", points=BESIDE), "Ada")
     begin = Send("command-b", "r1", "SetPosIni", {"x": BASIN[0], "y": BASIN[1]})
@@ -73,6 +91,28 @@ async def test_of_several_targets_none_is_sent_when_one_lies_in_a_keepout(line):
     with pytest.raises(RefusedError, match=IN_IT):
         await line.yard.fleet.orders.set_positions(wanted, "Ada")
     assert await line.yard.states() == {}
+
+
+async def test_keepouts_are_looked_for_once_however_many_targets_there_are(line, monkeypatch):
+    asked = []
+    entered = SiteMaps.keepouts_entered
+
+    def noted(site, tracks):
+        asked.append(tracks)
+        return entered(site, tracks)
+
+    monkeypatch.setattr(SiteMaps, "keepouts_entered", noted)
+    await line.yard.fleet.orders.set_positions(
+        [TargetPosition("r1", 50.0, 40.0), TargetPosition("r2", 52.0, 40.0)], "Ada"
+    )
+    assert asked == [[[(50.0, 40.0)], [(52.0, 40.0)]]]
+
+
+async def test_a_site_without_keepouts_is_not_asked_for_them(line, monkeypatch):
+    monkeypatch.setattr(SiteMaps, "has_keepouts", False)
+    monkeypatch.delattr(SiteMaps, "keepouts_entered")
+    await line.yard.fleet.orders.set_positions([TargetPosition("r1", 50.0, 40.0)], "Ada")
+    assert await line.yard.states() != {}
 
 
 @pytest.mark.parametrize("request_of", [SetQueue, AddTasks])

@@ -14,7 +14,7 @@ from robot_bridge.roads.centrelines import BOTH, FORWARD, centrelines
 from robot_bridge.roads.engines.choice import ENGINES, engines_for
 from robot_bridge.roads.engines.engine import Graph
 from robot_bridge.roads.errors import MissingEngineError, NoRouteError, OffNetworkError
-from robot_bridge.roads.keepouts import Entry, KeepoutIndex
+from robot_bridge.roads.keepouts import KeepoutIndex
 from robot_bridge.roads.network import Network, build_network
 from robot_bridge.roads.routes import Restrictions, Router
 
@@ -209,11 +209,11 @@ def test_what_comes_into_a_keepout_is_told_from_what_is_on_its_rim_or_in_its_hol
     hole = np.array([(3.0, 2.0), (7.0, 2.0), (7.0, 3.0), (3.0, 3.0), (3.0, 2.0)])
     elsewhere = outer + 100.0
     index = KeepoutIndex([[elsewhere], [outer, hole]])
-    assert index.first_entry([[(50.0, 50.0)], track]) == (Entry(1, 1) if enters else None)
+    assert index.entered([[(50.0, 50.0)], track]) == ({1: 1} if enters else {})
 
 
 def test_without_keepouts_nothing_comes_into_one() -> None:
-    assert KeepoutIndex([]).first_entry([[(0.0, 0.0)]]) is None
+    assert KeepoutIndex([]).entered([[(0.0, 0.0)]]) == {}
     assert KeepoutIndex([]).edges_through(square()).tolist() == []
 
 

@@ -136,6 +136,30 @@ def test_a_restored_database_is_another_and_gives_out_new_numbers(address, other
     run_once(other, lambda c: c.execute(insert(step).values(command="c1", state="x", at=1.0, by="x")))
 
 
+REFUSING_IDS = {
+    "sqlite": "create trigger no_new_id before insert on bridge when new.name = 'id' "
+    "begin select raise(abort, 'no new id'); end",
+    "postgresql": "alter table bridge add constraint no_new_id check (name <> 'id') not valid",
+    "mariadb": "create trigger no_new_id before insert on bridge for each row begin "
+    "if new.name = 'id' then signal sqlstate '45000' set message_text = 'no new id'; end if; end",
+}
+
+
+def test_what_cannot_get_a_new_id_is_not_restored_at_all(address, tmp_path, kind, request):
+    """Restored under its old one, robots would take new messages for those that they have done."""
+    file = tmp_path / "backup"
+    back_up(address, file)
+    refusing = f"sqlite:///{file}" if kind == "sqlite" else address
+    if kind != "sqlite":
+        refusing = read_address(request.getfixturevalue(f"{kind}_server").admin_url(str(address)))
+    run_once(refusing, lambda c: c.exec_driver_sql(REFUSING_IDS[kind]))
+    run_once(address, lambda c: c.execute(metadata.tables["robots"].delete()))
+    before = run_once(address, contents), run_once(address, identity)
+    with pytest.raises(StoreError, match=r"no.new.id"):
+        put_back(address, file, replace=True)
+    assert (run_once(address, contents), run_once(address, identity)) == before
+
+
 def test_a_database_that_holds_something_is_replaced_only_when_told(address, tmp_path):
     file = tmp_path / "backup"
     before = run_once(address, contents)
