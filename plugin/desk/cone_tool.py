@@ -6,7 +6,7 @@ from qgis.gui import QgsMapMouseEvent
 from qgis.PyQt.QtGui import QKeyEvent
 
 from ..language import tr
-from .commands.nudging import nudged
+from .commands.nudging import is_nudge, nudged
 from .desk import Desk
 from .draft_tool import DraftTool
 from .drafts import CONE, Draft, Point
@@ -43,9 +43,7 @@ class ConeTool(DraftTool):
 
     def key(self, event: QKeyEvent) -> bool:
         draft = self.draft
-        if draft is not None:
-            to = nudged(event, self.desk, draft.points[0])
-            if to is not None:
-                self.put(Draft(draft.robot, CONE, (to,)))
-                return True
-        return super().key(event)
+        if draft is None or not is_nudge(event):
+            return super().key(event)
+        self._try(lambda: self.put(Draft(draft.robot, CONE, (nudged(event, self.desk, draft.points[0]),))))
+        return True

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from qgis.core import QgsCoordinateReferenceSystem, QgsPointXY
 from qgis.gui import QgsMapMouseEvent, QgsMapTool, QgsSnapIndicator
 from qgis.PyQt.QtCore import QEvent, QObject, QPoint, Qt
@@ -78,7 +80,8 @@ class DraftTool(QgsMapTool):
         if event.button() == Qt.MouseButton.RightButton:
             self.desk.drafts.put(None)
         elif event.button() == Qt.MouseButton.LeftButton:
-            self._try_click(event.snapPoint())
+            at = event.snapPoint()
+            self._try(lambda: self._place(lambda: self.desk.placement().to_site(at)))
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
         if event.key() in SEND_KEYS:
@@ -127,23 +130,11 @@ class DraftTool(QgsMapTool):
 
     def paste(self) -> None:
         """Take what the clipboard holds, ``lat, lon`` in WGS 84, for a click there."""
-        try:
-            self._check_robot()
-            lon, lat = read_place(QApplication.clipboard().text(), geographic=True)
-            self.desk.placement()
-            wgs84 = QgsCoordinateReferenceSystem(PASTED_IN)
-            placement = Placement(self.desk.site, wgs84, self.desk.project.transformContext())
-            self.clicked(placement.to_site(QgsPointXY(lon, lat)))
-        except FleetError as error:
-            self.desk.complained.emit(str(error))
+        self._try(lambda: self._place(self._pasted))
 
     def take(self, point: Point) -> None:
         """Take a point of the site frame, from wherever, for a click there."""
-        try:
-            self._check_robot()
-            self.clicked(point)
-        except FleetError as error:
-            self.desk.complained.emit(str(error))
+        self._try(lambda: self._place(lambda: point))
 
     def put(self, draft: Draft) -> None:
         """Check a draft and make it the one.
@@ -157,10 +148,21 @@ class DraftTool(QgsMapTool):
         """Tell whether the mouse went further than in a click."""
         return (now - pressed).manhattanLength() > QApplication.startDragDistance()
 
-    def _try_click(self, map_point: QgsPointXY) -> None:
+    def _place(self, where: Callable[[], Point]) -> None:
+        """Take in a click at the point that ``where`` returns, if there is somebody to send there."""
+        self._check_robot()
+        self.clicked(where())
+
+    def _pasted(self) -> Point:
+        lon, lat = read_place(QApplication.clipboard().text(), geographic=True)
+        self.desk.placement()
+        wgs84 = QgsCoordinateReferenceSystem(PASTED_IN)
+        placement = Placement(self.desk.site, wgs84, self.desk.project.transformContext())
+        return placement.to_site(QgsPointXY(lon, lat))
+
+    def _try(self, change: Callable[[], object]) -> None:
         try:
-            self._check_robot()
-            self.clicked(self.desk.placement().to_site(map_point))
+            change()
         except FleetError as error:
             self.desk.complained.emit(str(error))
 

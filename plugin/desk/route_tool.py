@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 from qgis.gui import QgsMapMouseEvent
 from qgis.PyQt.QtCore import QEvent, QObject, Qt
 from qgis.PyQt.QtGui import QKeyEvent
 
-from ..errors import FleetError, PlacementError
+from ..errors import PlacementError
 from ..language import tr
-from .commands.nudging import nudged
+from .commands.nudging import is_nudge, nudged
 from .commands.route_drag import RouteDrag
 from .commands.route_handles import RouteHandles, middle
 from .desk import Desk
@@ -101,7 +99,9 @@ class RouteTool(DraftTool):
             self._try(lambda: self._put_or_end(route_editing.deleted(draft, vertex)))
         elif event.key() == Qt.Key.Key_Insert:
             self._insert(draft, vertex)
-        elif not self._nudge(event, draft, vertex):
+        elif is_nudge(event):
+            self._nudge(event, draft, vertex)
+        else:
             return super().key(event)
         return True
 
@@ -177,23 +177,13 @@ class RouteTool(DraftTool):
         self._try(lambda: self.put(route_editing.inserted(draft, vertex, middle(draft, vertex))))
         self._hold_again(vertex)
 
-    def _nudge(self, event: QKeyEvent, draft: Draft, vertex: int) -> bool:
-        try:
-            to = nudged(event, self.desk, draft.points[vertex])
-            if to is None:
-                return False
-            self.put(route_editing.moved(draft, vertex, to))
-        except FleetError as error:
-            self.desk.complained.emit(str(error))
+    def _nudge(self, event: QKeyEvent, draft: Draft, vertex: int) -> None:
+        def nudge() -> None:
+            self.put(route_editing.moved(draft, vertex, nudged(event, self.desk, draft.points[vertex])))
+
+        self._try(nudge)
         self._hold_again(vertex)
-        return True
 
     def _hold_again(self, vertex: int) -> None:
         if self.draft is not None and vertex in route_editing.vertices(self.draft):
             self._hold(self.draft, vertex)
-
-    def _try(self, change: Callable[[], object]) -> None:
-        try:
-            change()
-        except FleetError as error:
-            self.desk.complained.emit(str(error))

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 from qgis.core import QgsPointXY
-from qgis.PyQt.QtCore import QObject
+from qgis.PyQt.QtCore import QObject, QPointF, Qt
 from qgis.PyQt.QtWidgets import QWidget
 
 from ....robot_bridge.messages import SendMap
@@ -175,7 +175,9 @@ class DraftCommands(QObject):
         """Move the map where none of ``points`` is on it."""
         canvas = self._desk.canvas
         places = self._desk.placement().to_map(np.array(points))
-        if not any(canvas.extent().contains(QgsPointXY(x, y)) for x, y in places.tolist()):
+        # Of a rotated map the extent also has corners that are not on the screen.
+        seen, rule = canvas.mapSettings().visiblePolygon(), Qt.FillRule.OddEvenFill
+        if not any(seen.containsPoint(QPointF(x, y), rule) for x, y in places.tolist()):
             canvas.setCenter(QgsPointXY(*places[0]))
             canvas.refresh()
 

@@ -70,13 +70,21 @@ def _features(layer: QgsVectorLayer) -> list[QgsFeature]:
                 longest_queue=LONGEST_QUEUE,
             )
         )
-    features = layer.selectedFeatures() if chosen else list(layer.getFeatures())
+    features = sorted(layer.selectedFeatures(), key=_age) if chosen else list(layer.getFeatures())
     found = [one for one in features if not one.geometry().isNull() and not one.geometry().isEmpty()]
     if not found:
         raise LayerDraftError(
             tr("The layer {layer} has no feature with a place to go to.", layer=layer.name())
         )
     return found
+
+
+def _age(feature: QgsFeature) -> tuple[bool, int]:
+    """Return what tells older features from newer ones: QGIS hands over selected ones in any order.
+
+    Those that are not saved yet have numbers below zero, counted downwards.
+    """
+    return feature.id() < 0, abs(feature.id())
 
 
 def _targets(layer: QgsVectorLayer, features: Sequence[QgsFeature], desk: Desk) -> Draft:

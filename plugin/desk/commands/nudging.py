@@ -18,16 +18,19 @@ _ASIDE = {Qt.Key.Key_Left: (-1, 0), Qt.Key.Key_Right: (1, 0), Qt.Key.Key_Up: (0,
 _PIXELS = 50
 
 
-def nudged(event: QKeyEvent, desk: Desk, point: Point) -> Point | None:
-    """Return where ``point`` of the site frame goes by Ctrl and an arrow key; None for another key.
+def is_nudge(event: QKeyEvent) -> bool:
+    """Tell whether it is Ctrl with an arrow key."""
+    return event.key() in _ASIDE and bool(event.modifiers() & Qt.KeyboardModifier.ControlModifier)
+
+
+def nudged(event: QKeyEvent, desk: Desk, point: Point) -> Point:
+    """Return where ``point`` of the site frame goes by Ctrl and an arrow key.
 
     Left is left on the screen, however map and site frame are turned.
 
     :raises PlacementError: when the point has no place on the map.
     """
-    aside = _ASIDE.get(event.key())
-    if aside is None or not event.modifiers() & Qt.KeyboardModifier.ControlModifier:
-        return None
+    aside = _ASIDE[event.key()]
     coarse = event.modifiers() & Qt.KeyboardModifier.ShiftModifier
     placement, screen = desk.placement(), desk.canvas.getCoordinateTransform()
     ((x, y),) = placement.to_map(np.array([point]))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from qgis.core import QgsPointXY
 from qgis.gui import QgsMapMouseEvent
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtGui import QKeyEvent
@@ -12,7 +13,7 @@ from ...errors import FleetError
 from ...language import tr
 from ..draft_tool import DraftTool
 from ..drafts import START, Draft, Point
-from .nudging import nudged
+from .nudging import is_nudge, nudged
 
 
 class StartTool(DraftTool):
@@ -30,26 +31,23 @@ class StartTool(DraftTool):
             super().canvasReleaseEvent(event)
             return
         self._pressed_at = None
-        try:
-            self._check_robot()
-            placement = self.desk.placement()
-            place = placement.to_site(self.toMapCoordinates(pressed))
-            ahead = placement.to_site(event.mapPoint())
-            self._put(place, math.atan2(ahead[1] - place[1], ahead[0] - place[0]))
-        except FleetError as error:
-            self.desk.complained.emit(str(error))
+        self._try(lambda: self._drawn(self.toMapCoordinates(pressed), event.mapPoint()))
 
     def clicked(self, point: Point) -> None:
         self._put(point, None)
 
     def key(self, event: QKeyEvent) -> bool:
         draft = self.draft
-        if draft is not None:
-            to = nudged(event, self.desk, draft.points[0])
-            if to is not None:
-                self._put(to, draft.theta)
-                return True
-        return super().key(event)
+        if draft is None or not is_nudge(event):
+            return super().key(event)
+        self._try(lambda: self._put(nudged(event, self.desk, draft.points[0]), draft.theta))
+        return True
+
+    def _drawn(self, start: QgsPointXY, end: QgsPointXY) -> None:
+        self._check_robot()
+        placement = self.desk.placement()
+        place, ahead = placement.to_site(start), placement.to_site(end)
+        self._put(place, math.atan2(ahead[1] - place[1], ahead[0] - place[0]))
 
     def _put(self, place: Point, theta: float | None) -> None:
         other = self.desk.drafts.draft

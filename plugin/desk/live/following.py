@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from enum import Enum
 
 import numpy as np
@@ -52,6 +53,13 @@ def keep_in_view(canvas: QgsMapCanvas, screen: Screen, places: Points) -> bool:
 
 
 def show_places(canvas: QgsMapCanvas, places: Points) -> None:
-    """Show the smallest part of the map that has all of (n, 2) map coordinates."""
-    canvas.setExtent(QgsRectangle(*places.min(axis=0).tolist(), *places.max(axis=0).tolist()))
+    """Show the smallest part of the map that has all of (n, 2) map coordinates, however it is rotated."""
+    turn = math.radians(canvas.rotation())
+    # QGIS takes an extent for that of the map before it is rotated clockwise about its middle.
+    to_screen = np.array([[math.cos(turn), -math.sin(turn)], [math.sin(turn), math.cos(turn)]])
+    seen = places @ to_screen
+    low, high = seen.min(axis=0), seen.max(axis=0)
+    middle = to_screen @ ((low + high) / 2)
+    half = (high - low) / 2
+    canvas.setExtent(QgsRectangle(*(middle - half).tolist(), *(middle + half).tolist()))
     canvas.refresh()

@@ -87,3 +87,15 @@ def test_everything_is_possible_without_a_mouse(tool):
     assert len(tool.points) == {"SetPath": 2}.get(tool.op, 1)
     tool.key(Qt.Key.Key_Return)
     assert tool.sent()["op"] == tool.op
+
+
+@pytest.mark.parametrize("tool", ["cone", "route"], indirect=True)
+def test_a_step_of_the_keys_that_cannot_be_checked_is_told_and_the_draft_stays(tool, layer_of):
+    layer = layer_of("Polygon", "Polygon ((1 1, 2 1, 2 2, 1 1))", role="keepout", name="Yard")
+    if tool.op == OPS["route"]:
+        tool.type(">")
+    draft = tool.drafts.draft
+    layer.setCustomProperty("fleet/filter", "1 +")
+    tool.key(Qt.Key.Key_Right, CTRL)
+    assert tool.complained("The filter expression '1 +' for the layer Yard is not one")
+    assert tool.points == draft.points

@@ -4,7 +4,15 @@ from __future__ import annotations
 
 import pytest
 from pyproj import Transformer
-from qgis.core import QgsCoordinateReferenceSystem, QgsPointXY, QgsProject, QgsSnappingConfig, QgsTolerance
+from qgis.core import (
+    QgsCoordinateReferenceSystem,
+    QgsFeature,
+    QgsGeometry,
+    QgsPointXY,
+    QgsProject,
+    QgsSnappingConfig,
+    QgsTolerance,
+)
 from qgis.gui import QgsProjectionSelectionWidget
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
@@ -194,6 +202,23 @@ def test_a_whole_layer_of_points_are_targets_and_sending_says_that_they_are_queu
     assert len(hand.points) == 3
 
 
+def test_selected_points_come_in_the_order_of_their_table_and_unsaved_ones_last(hand, layer_of):
+    wkts = [f"Point ({10 + k} 20)" for k in range(40)]
+    layer = layer_of("Point", *wkts, names=[f"P{k:02}" for k in range(40)])
+    layer.startEditing()
+    for name in ("new1", "new2"):
+        feature = QgsFeature(layer.fields())
+        feature.setGeometry(QgsGeometry.fromPointXY(QgsPointXY(X + 15, Y + 40)))
+        feature["name"] = name
+        layer.addFeature(feature)
+    hand.window.desk.select("r1")
+    hand.iface.canvas.setCurrentLayer(layer)
+    layer.selectAll()
+    hand.window.actions.from_layer.trigger()
+    assert hand.drafts.draft.names == (*(f"P{k:02}" for k in range(40)), "new1", "new2")
+    layer.rollBack()
+
+
 def test_a_selected_line_is_a_route_that_can_be_changed(hand, layer_of):
     layer = layer_of("LineString", "LineString (1 1, 2 2)", "LineString (40 30, 60 30, 60 60)")
     take_from(hand, layer, 1, 2)
@@ -240,6 +265,16 @@ def test_targets_out_of_sight_are_shown(hand, layer_of, iface):
     take_from(hand, layer_of("Point", "Point (180 150)"))
     middle = iface.canvas.center()
     assert (middle.x() - X, middle.y() - Y) == pytest.approx((180, 150), abs=0.01)
+
+
+def test_a_target_in_a_corner_that_a_rotated_map_does_not_show_is_shown(hand, layer_of, iface):
+    canvas = iface.canvas
+    canvas.setRotation(45)
+    corner, middle = canvas.extent(), canvas.center()
+    at = corner.xMaximum() - 0.02 * corner.width() - X, corner.yMaximum() - 0.02 * corner.height() - Y
+    take_from(hand, layer_of("Point", f"Point ({at[0]} {at[1]})"))
+    assert hand.points == (pytest.approx(at, abs=1e-6),)
+    assert (canvas.center().x(), canvas.center().y()) != pytest.approx((middle.x(), middle.y()), abs=1.0)
 
 
 def test_ctrl_and_arrows_move_a_cone_exactly(hand):

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
+from fleet_supervisor.plugin.desk.live.following import show_places
+from qgis.core import QgsPointXY
 from qgis.gui import QgsMapCanvas
 from qgis.PyQt.QtTest import QTest
 
@@ -51,6 +54,20 @@ def test_a_view_that_has_all_of_them_stays(at_desk, iface, rotation):
     before = _view(iface.canvas)
     QTest.qWait(1300)
     assert _view(iface.canvas) == pytest.approx(before)
+
+
+@pytest.mark.parametrize("rotation", [0, 35, 90, 180, 260])
+@pytest.mark.parametrize("across", [(180.0, 5.0), (5.0, 180.0), (90.0, -120.0)])
+def test_all_of_the_places_that_are_gone_to_are_shown_and_little_else(canvas, rotation, across):
+    canvas.resize(720, 400)
+    canvas.setRotation(rotation)
+    places = np.array([(1000.0, 2000.0), (1000.0 + across[0], 2000.0 + across[1])])
+    show_places(canvas, places)
+    to_pixel = canvas.getCoordinateTransform()
+    seen = [to_pixel.transform(QgsPointXY(*place)) for place in places.tolist()]
+    parts = np.array([(at.x() / canvas.width(), at.y() / canvas.height()) for at in seen])
+    assert (parts > -0.01).all() and (parts < 1.01).all()
+    assert np.ptp(parts, axis=0).max() > 0.98
 
 
 def _view(canvas: QgsMapCanvas) -> tuple[float, float, float]:
