@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ..robot_bridge.assignment.job import COLLECT, PLACE, STAY, TO_START, TO_STORE
 from ..robot_bridge.assignment.scheduling import BALANCED, LEAST_DISTANCE
-from ..robot_bridge.assignment.solving import AUTOMATIC, PREVIEW, PYVRP
+from ..robot_bridge.assignment.solving import AUTOMATIC, PREVIEW, PREVIEW_KEPT, PYVRP
 from .language import tr
 
 TASKS = {PLACE: tr("place them"), COLLECT: tr("collect them")}
@@ -15,3 +15,9 @@ METHODS = {
     PYVRP: "PyVRP",
     PREVIEW: tr("the preview: quick, not the best"),
 }
+FOUND = {
+    PREVIEW: tr("quick preview"),
+    PYVRP: tr("solved"),
+    PREVIEW_KEPT: tr("solved: nothing better than the preview was found"),
+}
+"""How good a plan is, by the method that found it."""

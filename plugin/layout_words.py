@@ -32,10 +32,8 @@ DIMENSIONS = {
     "gate_width": tr("Clear width of the gates"),
     "vehicle_width": tr("Width of the vehicle without mirrors"),
     "cones_per_row": tr("Cones on each side of each lane"),
-    "exit_side": tr(
-        "What of the exit lane is in line with the entry lane: 1 left limit, 0 middle, -1 right limit"
-    ),
-    "turn": tr("To which side it goes first: 1 left, -1 right"),
+    "exit_side": tr("What of the exit lane is in line with the entry lane"),
+    "turn": tr("To which side it goes first"),
     "entry_length": tr("Section 1: entry lane"),
     "out_length": tr("Section 2: way to the side lane"),
     "side_length": tr("Section 3: side lane"),
@@ -54,7 +52,7 @@ DIMENSIONS = {
     "exit_least": tr("Least width of the exit lane"),
     "radius": tr("Radius of the middle of the lane"),
     "circle.spacing": tr("From cone to cone along the middle of the lane"),
-    "circle.turn": tr("Which way it is driven: 1 left, -1 right"),
+    "circle.turn": tr("Which way it is driven"),
     "width": tr("Clear width of the lane"),
     "fs_skidpad.entry_length": tr("Length of the way in that has cones"),
     "fs_skidpad.exit_length": tr("Length of the way out that has cones"),
@@ -85,6 +83,17 @@ DIMENSIONS = {
 }
 """By the dimension's name, or by layout and name where layouts mean different things by it."""
 
+CHOICES = {
+    "left": tr("left"),
+    "right": tr("right"),
+    "to the left": tr("to the left"),
+    "to the right": tr("to the right"),
+    "left limit": tr("left limit"),
+    "middle": tr("middle"),
+    "right limit": tr("right limit"),
+}
+"""What the choices of dimensions mean, by the bridge's words."""
+
 
 def standard_in_words(layout: type[Layout]) -> str:
     """Return the standard that ``layout`` follows."""
@@ -100,6 +109,13 @@ def dimension_in_words(layout: type[Layout], dimension: Dimension) -> str:
     """Return what the dimension of ``layout`` is."""
     own = f"{layout.NAME}.{dimension.name}"
     return DIMENSIONS[own] if own in DIMENSIONS else DIMENSIONS[dimension.name]
+
+
+def whole_dimension_in_words(layout: type[Layout], dimension: Dimension) -> str:
+    """Return what the dimension is, with the number of each choice, for those who give numbers."""
+    words = dimension_in_words(layout, dimension)
+    meanings = ", ".join(f"{choice:g} {CHOICES[name]}" for choice, name in dimension.choices.items())
+    return f"{words}: {meanings}" if meanings else words
 
 
 def fault_in_words(dimension: Dimension, fault: Fault) -> str:

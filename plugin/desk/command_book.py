@@ -6,9 +6,12 @@ from collections.abc import Iterable, Iterator
 
 from ...robot_bridge.messages import Abort, CommandReport, CommandState, SetPath, SetPosEnd
 from ..language import tr
+from .state_words import COMMAND_STATES
 
 UNDER_WAY = (CommandState.QUEUED, CommandState.DELIVERED, CommandState.ACKNOWLEDGED)
 MOST_COMMANDS = 2000
+DRIVES = (SetPosEnd.__name__, SetPath.__name__)
+"""Operations that lead a robot somewhere; the others are done where it stands."""
 
 
 class CommandBook:
@@ -116,6 +119,14 @@ def in_words(report: CommandReport) -> str:
     if report.op == SetPath.__name__:
         return tr("route of {number} points", number=len(report.params.get("points", [])))
     return {Abort.__name__: tr("abort")}.get(report.op, report.op)
+
+
+def how_it_stands(report: CommandReport) -> str:
+    """Return how far a command has come, and why where that was told, as in ``failed: battery empty``."""
+    if report.state is CommandState.REACHED and report.op not in DRIVES:
+        return tr("done")
+    reason = report.steps[-1].reason if report.steps else None
+    return COMMAND_STATES[report.state] + (f": {reason}" if reason else "")
 
 
 def place_of(report: CommandReport) -> tuple[float, float] | None:

@@ -59,7 +59,7 @@ class FleetDock(QgsDockWidget):
         self.connection_panel = ConnectionPanel(actions.connect)
         self.robots = RobotPanel(desk)
         self.table = self.robots.table
-        self.details = RobotDetails(desk, self.table.positions)
+        self.details = RobotDetails(desk, self.table.positions, self.table.robots.deviations)
         self.log = CommandLog(desk)
         self.queue_panel = QueuePanel(desk, edits)
         self.draft_panel = DraftPanel(desk, actions)

@@ -14,11 +14,14 @@ from qgis.PyQt.QtWidgets import (
     QWidget,
 )
 
+from ...robot_bridge.messages import CommandReport, CommandState
 from ..language import tr
 from .actions import Actions
 from .colours import WRONG_STYLE
+from .command_book import how_it_stands
 from .desk import Desk
 from .drafts import TARGETS, Draft, in_brief
+from .state_words import COMMAND_STATES
 from .whole_text import WholeText
 
 NOTHING = tr("Select a robot, choose Cone target or Draw route, and click on the map.")
@@ -31,6 +34,8 @@ class DraftPanel(QWidget):
         super().__init__(parent)
         self._desk = desk
         self._remark = ""
+        self._kept: tuple[str, str] | None = None
+        """The command that the remark is about, and what it is in words."""
         self._text = WholeText(NOTHING, lines=2)
         self._text.setObjectName("fleet_draft_text")
         self._text.setAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignTop)
@@ -53,11 +58,24 @@ class DraftPanel(QWidget):
         desk.drafts.changed.connect(self._show)
         desk.checks.progressed.connect(self._show)
         desk.remarked.connect(self._remarked)
+        desk.orders.kept.connect(self._follow)
+        desk.commands_changed.connect(self._take_steps)
         desk.site_changed.connect(lambda: self._remarked(""))
 
     def _remarked(self, text: str) -> None:
-        self._remark = text
+        self._remark, self._kept = text, None
         self._show()
+
+    def _follow(self, command: str, words: str) -> None:
+        """Say how a command stands, from now on at each of its steps until something else happens."""
+        known = self._desk.book.get(command)
+        stands = COMMAND_STATES[CommandState.QUEUED] if known is None else how_it_stands(known)
+        self._remarked(f"{words}: {stands}")
+        self._kept = command, words
+
+    def _take_steps(self, reports: Sequence[CommandReport]) -> None:
+        if self._kept is not None and any(report.command == self._kept[0] for report in reports):
+            self._follow(*self._kept)
 
     def _show(self) -> None:
         draft = self._desk.drafts.draft

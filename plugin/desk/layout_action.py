@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from qgis.core import Qgis, QgsProject
+from qgis.core import QgsProject
 from qgis.gui import QgisInterface
 from qgis.PyQt.QtGui import QIcon
 from qgis.PyQt.QtWidgets import QAction, QMenu
@@ -14,12 +14,13 @@ from ..layout_words import layout_in_words
 from .actions import ICONS
 from .layout_dimensions import LayoutDimensions, remembered
 from .layout_tool import LayoutTool
+from .notices import Notices
 
 
 class LayoutAction:
     """An entry of ``menu`` with a menu of layouts. :meth:`remove` undoes the constructor."""
 
-    def __init__(self, iface: QgisInterface, menu: str):
+    def __init__(self, iface: QgisInterface, menu: str, notices: Notices):
         self._iface, self._menu = iface, menu
         window = iface.mainWindow()
         self.action = QAction(QIcon(str(ICONS / "cone_layout.svg")), tr("Place cone layout"), window)
@@ -31,7 +32,7 @@ class LayoutAction:
                 "its dimensions. Nothing is sent to robots"
             )
         )
-        self.tool = LayoutTool(iface.mapCanvas(), QgsProject.instance(), self._say)
+        self.tool = LayoutTool(iface.mapCanvas(), QgsProject.instance(), notices)
         self.dimensions = LayoutDimensions(window)
         self.dimensions.changed.connect(self.tool.show_layout)
         self.dimensions.turned.connect(self.tool.turn_to)
@@ -63,7 +64,3 @@ class LayoutAction:
         self._iface.removePluginMenu(self._menu, self.action)
         self._layouts.deleteLater()
         self.action.deleteLater()
-
-    def _say(self, text: str, complaint: bool) -> None:
-        level = Qgis.MessageLevel.Warning if complaint else Qgis.MessageLevel.Info
-        self._iface.messageBar().pushMessage(tr("Cone layout"), text, level)

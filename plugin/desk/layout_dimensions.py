@@ -19,7 +19,7 @@ from qgis.PyQt.QtWidgets import (
 
 from ...robot_bridge.layouts.layout import Dimension, Fault, Layout
 from ..language import tr
-from ..layout_words import TITLES, dimension_in_words, fault_in_words, standard_in_words
+from ..layout_words import CHOICES, TITLES, dimension_in_words, fault_in_words, standard_in_words
 from .colours import WRONG_STYLE
 
 GROUP = "fleet_supervisor/layouts"
@@ -128,13 +128,14 @@ class LayoutDimensions(QDialog):
         field.setObjectName(f"fleet_layout_{one.name}")
         field.setFixedWidth(_WIDTH)
         unit = f" {one.unit}" if one.unit else ""
-        field.setToolTip(tr("Standard: {value}", value=f"{one.standard:g}{unit}"))
+        standard = CHOICES[one.choices[one.standard]] if one.choices else f"{one.standard:g}{unit}"
+        field.setToolTip(tr("Standard: {value}", value=standard))
         return field
 
     def _choice(self, one: Dimension) -> QComboBox:
         field = QComboBox()
-        for choice in one.choices:
-            field.addItem(f"{choice:g}", choice)
+        for choice, name in one.choices.items():
+            field.addItem(CHOICES[name], choice)
         field.currentIndexChanged.connect(self._edited)
         return field
 

@@ -18,6 +18,7 @@ from ...robot_bridge.layouts.placing import placed
 from ..errors import FleetError
 from ..language import tr_count
 from .cone_store import ConeStore
+from .notices import Notices
 from .placement import transformed
 
 STEP, FINE_STEP = 15.0, 1.0
@@ -32,17 +33,17 @@ _TURNS = {
 
 
 class LayoutTool(QgsMapTool):
-    """Places ``layout``. Nothing is sent by it. ``say`` takes (text, is it a complaint)."""
+    """Places ``layout`` and says in ``notices`` what came of it. Nothing is sent by it."""
 
     turned = pyqtSignal(float)
     """The wheel or a key has turned the layout; degrees as :attr:`heading`."""
     dimensions_wanted = pyqtSignal()
     """F2: the operator wants to type dimensions."""
 
-    def __init__(self, canvas: QgsMapCanvas, project: QgsProject, say: Callable[[str, bool], None]):
+    def __init__(self, canvas: QgsMapCanvas, project: QgsProject, notices: Notices):
         super().__init__(canvas)
         self._project = project
-        self._say = say
+        self._notices = notices
         self._store = ConeStore(project)
         self._pressed_at: QPoint | None = None
         self._cursor: QgsPointXY | None = None
@@ -165,7 +166,7 @@ class LayoutTool(QgsMapTool):
         layer = self._store.add(cones, self.layout.NAME, crs)
         if findings:
             wrong = len({finding.cone for finding in findings})
-            self._say(
+            self._notices.warning(
                 tr_count(
                     len(cones),
                     "The cone should not stand there: {text} It is in the layer {layer}.",
@@ -173,25 +174,23 @@ class LayoutTool(QgsMapTool):
                     wrong=wrong,
                     text=findings[0].text,
                     layer=layer.name(),
-                ),
-                True,
+                )
             )
         else:
-            self._say(
+            self._notices.info(
                 tr_count(
                     len(cones),
                     "1 cone is in the layer {layer}.",
                     "%n cones are in the layer {layer}.",
                     layer=layer.name(),
-                ),
-                False,
+                )
             )
 
     def _try(self, action: Callable[[], None]) -> None:
         try:
             action()
         except FleetError as error:
-            self._say(str(error), True)
+            self._notices.warning(error)
 
     def _clear(self) -> None:
         if self._band is not None:

@@ -34,6 +34,8 @@ class Orders(QObject):
     refused = pyqtSignal(str, object)
     """An order was not carried out: the text, and the draft it came from or None."""
     accepted = pyqtSignal(str)
+    kept = pyqtSignal(str, str)
+    """A command is in the gateway's keeping: its id, and what it is in words. Its steps follow as reports."""
     slow = pyqtSignal(str)
     settled = pyqtSignal(str)
     """An order that ``slow`` told of with this text has been answered."""
@@ -136,7 +138,7 @@ class Orders(QObject):
         elif result.keys() & {"in_force", "revision", "queues", "placements", "tasks"}:
             self.accepted.emit(tr("{words}: done", words=pending.words))
         elif commands is None:
-            self.accepted.emit(tr("{words}: queued", words=pending.words))
+            self.kept.emit(answer.order.key, pending.words)
         else:
             self.accepted.emit(
                 tr_count(

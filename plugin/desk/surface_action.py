@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from qgis.core import Qgis
 from qgis.gui import QgisInterface
 from qgis.PyQt.QtGui import QIcon
 from qgis.PyQt.QtWidgets import QAction
@@ -10,13 +9,14 @@ from qgis.PyQt.QtWidgets import QAction
 from ..language import tr
 from ..sites.surface_store import SurfaceStore
 from .actions import ICONS
+from .notices import Notices
 from .surface_tool import SurfaceTool
 
 
 class SurfaceAction:
     """An entry of ``menu`` for the tool. :meth:`remove` undoes the constructor."""
 
-    def __init__(self, iface: QgisInterface, menu: str, store: SurfaceStore):
+    def __init__(self, iface: QgisInterface, menu: str, store: SurfaceStore, notices: Notices):
         self._iface, self._menu = iface, menu
         self.action = QAction(
             QIcon(str(ICONS / "surface_at_point.svg")), tr("Which road surface is here?"), iface.mainWindow()
@@ -26,7 +26,7 @@ class SurfaceAction:
             tr("Tell the road surface under the cursor; a click says it with its coordinates, Esc ends")
         )
         self.action.setCheckable(True)
-        self.tool = SurfaceTool(iface.mapCanvas(), store, self._say)
+        self.tool = SurfaceTool(iface.mapCanvas(), store, notices)
         self.tool.setAction(self.action)
         self.action.triggered.connect(self._take)
         iface.addPluginToMenu(menu, self.action)
@@ -42,7 +42,3 @@ class SurfaceAction:
     def _take(self) -> None:
         self._iface.mapCanvas().setMapTool(self.tool)
         self._iface.mapCanvas().setFocus()
-
-    def _say(self, text: str, complaint: bool) -> None:
-        level = Qgis.MessageLevel.Warning if complaint else Qgis.MessageLevel.Info
-        self._iface.messageBar().pushMessage(tr("Road surface"), text, level)

@@ -15,19 +15,20 @@ from ..errors import FleetError
 from ..language import tr
 from ..sites.surface_map import SurfaceMap
 from ..sites.surface_store import SurfaceStore, SurfaceTask
+from .notices import Notices
 
 
 class SurfaceTool(QgsMapTool):
-    """Asks ``store`` for the project's road surfaces. ``say`` takes (text, is it a complaint).
+    """Asks ``store`` for the project's road surfaces. It says in ``notices`` what it found.
 
     Surfaces are read beside the window when the tool is taken up and when a layer has changed; a click that
     comes before is answered as soon as they are there.
     """
 
-    def __init__(self, canvas: QgsMapCanvas, store: SurfaceStore, say: Callable[[str, bool], None]):
+    def __init__(self, canvas: QgsMapCanvas, store: SurfaceStore, notices: Notices):
         super().__init__(canvas)
         self._store = store
-        self._say = say
+        self._notices = notices
         self._task: SurfaceTask | None = None
         self._clicked: QgsPointXY | None = None
         self._listens = False
@@ -121,7 +122,7 @@ class SurfaceTool(QgsMapTool):
         crs = self._crs()
         digits = 6 if crs.isGeographic() else 2
         where = f"{place.x():.{digits}f}, {place.y():.{digits}f} ({crs.authid() or tr('no CRS')})"
-        self._say(tr("{told} at {where}", told=_told(_at(surfaces, place, crs)), where=where), False)
+        self._notices.info(tr("{told} at {where}", told=_told(_at(surfaces, place, crs)), where=where))
 
     def _read_anew(self) -> None:
         # Without layers there is nothing to read; a click says so.
@@ -132,7 +133,7 @@ class SurfaceTool(QgsMapTool):
         task, self._task = self._task, None
         self._clicked = None
         if task is not None and task.why:
-            self._say(task.why, True)
+            self._notices.warning(task.why)
 
     def _crs(self) -> QgsCoordinateReferenceSystem:
         return self.canvas().mapSettings().destinationCrs()
@@ -141,7 +142,7 @@ class SurfaceTool(QgsMapTool):
         try:
             action()
         except FleetError as error:
-            self._say(str(error), True)
+            self._notices.warning(error)
 
 
 def _at(surfaces: SurfaceMap, place: QgsPointXY, crs: QgsCoordinateReferenceSystem) -> Surface | None:

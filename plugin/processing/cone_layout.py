@@ -23,7 +23,7 @@ from ...robot_bridge.layouts.catalogue import LAYOUTS
 from ...robot_bridge.layouts.cone import Cone
 from ...robot_bridge.layouts.placing import along, placed
 from ..language import tr, tr_page
-from ..layout_words import dimension_in_words, layout_in_words
+from ..layout_words import layout_in_words, whole_dimension_in_words
 from ..sites.ground_reading import lines_of
 from ..sites.placing import SitePlacing
 from .cone_ground import ground_parameters
@@ -124,7 +124,7 @@ class ConeLayout(FleetAlgorithm):
             feedback.pushInfo(layout_in_words(kind))
             for one in kind.dimensions():
                 value = f"{one.name}={getattr(layout, one.name):g} {one.unit}".rstrip()
-                feedback.pushInfo(f"  {value}: {dimension_in_words(kind, one)}")
+                feedback.pushInfo(f"  {value}: {whole_dimension_in_words(kind, one)}")
             cones = layout.cones(self.parameterAsString(parameters, PREFIX, context).strip())
             placed_cones = self._placed(cones, parameters, context)
             return self._setup.write(self, parameters, context, placed_cones, kind.NAME, feedback)

@@ -35,6 +35,21 @@
         </message>
         <message>
             <location filename="../../plugin/assignment_words.py" />
+            <source>quick preview</source>
+            <translation>vista prèvia ràpida</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/assignment_words.py" />
+            <source>solved</source>
+            <translation>resolt</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/assignment_words.py" />
+            <source>solved: nothing better than the preview was found</source>
+            <translation>resolt: no s'ha trobat res millor que la vista prèvia</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/assignment_words.py" />
             <source>stay where they are</source>
             <translation>queden on són</translation>
         </message>
@@ -1102,6 +1117,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/command_book.py" />
+            <source>done</source>
+            <translation>fet</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_book.py" />
             <source>route of {number} points</source>
             <translation>ruta de {number} punts</translation>
         </message>
@@ -1938,11 +1958,6 @@
         </message>
         <message>
             <location filename="../../plugin/desk/layout_action.py" />
-            <source>Cone layout</source>
-            <translation>Disposició de cons</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/layout_action.py" />
             <source>Place a cone layout: it is shown under the cursor, the wheel turns it (Shift: finely), a click places it, Esc ends; by keys PgUp and PgDown turn it, Enter places it, F2 leads to its dimensions. Nothing is sent to robots</source>
             <translation>Col·loca una disposició de cons: es mostra sota el cursor, la roda la gira (Maj: finament), un clic la col·loca, Esc acaba; amb tecles, RePàg i AvPàg la giren, Retorn la col·loca, F2 porta a les seves dimensions. No s'envia res als robots</translation>
         </message>
@@ -2416,11 +2431,6 @@
             <location filename="../../plugin/desk/orders.py" />
             <source>{words}: done</source>
             <translation>{words}: fet</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/orders.py" />
-            <source>{words}: queued</source>
-            <translation>{words}: en cua</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/desk/orders.py" />
@@ -2930,8 +2940,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/plan_rows.py" />
-            <source>done</source>
-            <translation>fet</translation>
+            <source>Found by: {method}. Ways along: {travel}.</source>
+            <translation>Mètode: {method}. Els camins segueixen: {travel}.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/plan_rows.py" />
@@ -2945,8 +2955,18 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/plan_rows.py" />
+            <source>straight lines</source>
+            <translation>línies rectes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_rows.py" />
             <source>taken out</source>
             <translation>tret</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_rows.py" />
+            <source>the roads</source>
+            <translation>les vies</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/plan_rows.py" />
@@ -4225,11 +4245,6 @@
         </message>
         <message>
             <location filename="../../plugin/desk/surface_action.py" />
-            <source>Road surface</source>
-            <translation>Superfície de via</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/surface_action.py" />
             <source>Tell the road surface under the cursor; a click says it with its coordinates, Esc ends</source>
             <translation>Diu la superfície de via sota el cursor; un clic la diu amb les coordenades, Esc acaba</translation>
         </message>
@@ -4894,8 +4909,8 @@
         </message>
         <message>
             <location filename="../../plugin/layout_words.py" />
-            <source>To which side it goes first: 1 left, -1 right</source>
-            <translation>Cap a quin costat va primer: 1 esquerra, -1 dreta</translation>
+            <source>To which side it goes first</source>
+            <translation>Cap a quin costat va primer</translation>
         </message>
         <message>
             <location filename="../../plugin/layout_words.py" />
@@ -4934,13 +4949,13 @@
         </message>
         <message>
             <location filename="../../plugin/layout_words.py" />
-            <source>What of the exit lane is in line with the entry lane: 1 left limit, 0 middle, -1 right limit</source>
-            <translation>Què del carril de sortida està alineat amb el d'entrada: 1 límit esquerre, 0 mig, -1 límit dret</translation>
+            <source>What of the exit lane is in line with the entry lane</source>
+            <translation>Què del carril de sortida està alineat amb el d'entrada</translation>
         </message>
         <message>
             <location filename="../../plugin/layout_words.py" />
-            <source>Which way it is driven: 1 left, -1 right</source>
-            <translation>En quin sentit es condueix: 1 esquerra, -1 dreta</translation>
+            <source>Which way it is driven</source>
+            <translation>En quin sentit es recorre</translation>
         </message>
         <message>
             <location filename="../../plugin/layout_words.py" />
@@ -4969,8 +4984,23 @@
         </message>
         <message>
             <location filename="../../plugin/layout_words.py" />
+            <source>left</source>
+            <translation>esquerra</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>left limit</source>
+            <translation>límit esquerre</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
             <source>length after UN R13-H; test after ISO 21994</source>
             <translation>llargada segons UN R13-H; assaig segons ISO 21994</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>middle</source>
+            <translation>centre</translation>
         </message>
         <message>
             <location filename="../../plugin/layout_words.py" />
@@ -4981,6 +5011,26 @@
             <location filename="../../plugin/layout_words.py" />
             <source>no standard: colours, width and spacing of Formula Student</source>
             <translation>cap norma: colors, amplada i separació de Formula Student</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>right</source>
+            <translation>dreta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>right limit</source>
+            <translation>límit dret</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>to the left</source>
+            <translation>a l'esquerra</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>to the right</source>
+            <translation>a la dreta</translation>
         </message>
         <message>
             <location filename="../../plugin/locator/robot_filter.py" />
@@ -5520,6 +5570,11 @@
             <location filename="../../plugin/processing/cone_layout.py" />
             <source>Both POINT and LINE are</source>
             <translation>S'han donat POINT i LINE alhora</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
+            <source>Cone layout</source>
+            <translation>Disposició de cons</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/cone_layout.py" />

@@ -35,6 +35,21 @@
         </message>
         <message>
             <location filename="../../plugin/assignment_words.py" />
+            <source>quick preview</source>
+            <translation>vista previa rápida</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/assignment_words.py" />
+            <source>solved</source>
+            <translation>resuelto</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/assignment_words.py" />
+            <source>solved: nothing better than the preview was found</source>
+            <translation>resuelto: no se encontró nada mejor que la vista previa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/assignment_words.py" />
             <source>stay where they are</source>
             <translation>quedan donde están</translation>
         </message>
@@ -1102,6 +1117,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/command_book.py" />
+            <source>done</source>
+            <translation>hecho</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_book.py" />
             <source>route of {number} points</source>
             <translation>ruta de {number} puntos</translation>
         </message>
@@ -1938,11 +1958,6 @@
         </message>
         <message>
             <location filename="../../plugin/desk/layout_action.py" />
-            <source>Cone layout</source>
-            <translation>Disposición de conos</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/layout_action.py" />
             <source>Place a cone layout: it is shown under the cursor, the wheel turns it (Shift: finely), a click places it, Esc ends; by keys PgUp and PgDown turn it, Enter places it, F2 leads to its dimensions. Nothing is sent to robots</source>
             <translation>Colocar una disposición de conos: se muestra bajo el cursor, la rueda la gira (Mayús: finamente), un clic la coloca, Esc termina; con teclas, RePág y AvPág la giran, Intro la coloca, F2 lleva a sus dimensiones. No se envía nada a los robots</translation>
         </message>
@@ -2416,11 +2431,6 @@
             <location filename="../../plugin/desk/orders.py" />
             <source>{words}: done</source>
             <translation>{words}: hecho</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/orders.py" />
-            <source>{words}: queued</source>
-            <translation>{words}: en cola</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/desk/orders.py" />
@@ -2930,8 +2940,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/plan_rows.py" />
-            <source>done</source>
-            <translation>hecho</translation>
+            <source>Found by: {method}. Ways along: {travel}.</source>
+            <translation>Método: {method}. Los caminos siguen: {travel}.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/plan_rows.py" />
@@ -2945,8 +2955,18 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/plan_rows.py" />
+            <source>straight lines</source>
+            <translation>líneas rectas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_rows.py" />
             <source>taken out</source>
             <translation>quitado</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_rows.py" />
+            <source>the roads</source>
+            <translation>las vías</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/plan_rows.py" />
@@ -4225,11 +4245,6 @@
         </message>
         <message>
             <location filename="../../plugin/desk/surface_action.py" />
-            <source>Road surface</source>
-            <translation>Superficie de vía</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/surface_action.py" />
             <source>Tell the road surface under the cursor; a click says it with its coordinates, Esc ends</source>
             <translation>Decir la superficie de vía bajo el cursor; un clic la dice con sus coordenadas, Esc termina</translation>
         </message>
@@ -4894,8 +4909,8 @@
         </message>
         <message>
             <location filename="../../plugin/layout_words.py" />
-            <source>To which side it goes first: 1 left, -1 right</source>
-            <translation>Hacia qué lado va primero: 1 izquierda, -1 derecha</translation>
+            <source>To which side it goes first</source>
+            <translation>Hacia qué lado va primero</translation>
         </message>
         <message>
             <location filename="../../plugin/layout_words.py" />
@@ -4934,13 +4949,13 @@
         </message>
         <message>
             <location filename="../../plugin/layout_words.py" />
-            <source>What of the exit lane is in line with the entry lane: 1 left limit, 0 middle, -1 right limit</source>
-            <translation>Qué del carril de salida está alineado con el de entrada: 1 límite izquierdo, 0 centro, -1 límite derecho</translation>
+            <source>What of the exit lane is in line with the entry lane</source>
+            <translation>Qué del carril de salida está alineado con el de entrada</translation>
         </message>
         <message>
             <location filename="../../plugin/layout_words.py" />
-            <source>Which way it is driven: 1 left, -1 right</source>
-            <translation>En qué sentido se conduce: 1 izquierda, -1 derecha</translation>
+            <source>Which way it is driven</source>
+            <translation>En qué sentido se recorre</translation>
         </message>
         <message>
             <location filename="../../plugin/layout_words.py" />
@@ -4969,8 +4984,23 @@
         </message>
         <message>
             <location filename="../../plugin/layout_words.py" />
+            <source>left</source>
+            <translation>izquierda</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>left limit</source>
+            <translation>límite izquierdo</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
             <source>length after UN R13-H; test after ISO 21994</source>
             <translation>longitud según UN R13-H; ensayo según ISO 21994</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>middle</source>
+            <translation>centro</translation>
         </message>
         <message>
             <location filename="../../plugin/layout_words.py" />
@@ -4981,6 +5011,26 @@
             <location filename="../../plugin/layout_words.py" />
             <source>no standard: colours, width and spacing of Formula Student</source>
             <translation>ninguna norma: colores, anchura y separación de Formula Student</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>right</source>
+            <translation>derecha</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>right limit</source>
+            <translation>límite derecho</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>to the left</source>
+            <translation>a la izquierda</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>to the right</source>
+            <translation>a la derecha</translation>
         </message>
         <message>
             <location filename="../../plugin/locator/robot_filter.py" />
@@ -5520,6 +5570,11 @@
             <location filename="../../plugin/processing/cone_layout.py" />
             <source>Both POINT and LINE are</source>
             <translation>Se han dado POINT y LINE a la vez</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
+            <source>Cone layout</source>
+            <translation>Disposición de conos</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/cone_layout.py" />

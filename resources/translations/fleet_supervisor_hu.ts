@@ -35,6 +35,21 @@
         </message>
         <message>
             <location filename="../../plugin/assignment_words.py" />
+            <source>quick preview</source>
+            <translation>gyors előnézet</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/assignment_words.py" />
+            <source>solved</source>
+            <translation>megoldva</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/assignment_words.py" />
+            <source>solved: nothing better than the preview was found</source>
+            <translation>megoldva: az előnézetnél jobb nem került elő</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/assignment_words.py" />
             <source>stay where they are</source>
             <translation>maradjanak, ahol vannak</translation>
         </message>
@@ -1098,6 +1113,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/command_book.py" />
+            <source>done</source>
+            <translation>kész</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_book.py" />
             <source>route of {number} points</source>
             <translation>{number} pontos útvonal</translation>
         </message>
@@ -1930,11 +1950,6 @@
         </message>
         <message>
             <location filename="../../plugin/desk/layout_action.py" />
-            <source>Cone layout</source>
-            <translation>Bójaelrendezés</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/layout_action.py" />
             <source>Place a cone layout: it is shown under the cursor, the wheel turns it (Shift: finely), a click places it, Esc ends; by keys PgUp and PgDown turn it, Enter places it, F2 leads to its dimensions. Nothing is sent to robots</source>
             <translation>Bójaelrendezés elhelyezése: a kurzor alatt látszik, a görgő forgatja (Shift: finoman), kattintásra elhelyeződik, Esc-re vége; billentyűkkel a PgUp és a PgDown forgatja, az Enter elhelyezi, az F2 a méreteihez visz. A robotoknak semmi sem megy ki</translation>
         </message>
@@ -2406,11 +2421,6 @@
             <location filename="../../plugin/desk/orders.py" />
             <source>{words}: done</source>
             <translation>{words}: kész</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/orders.py" />
-            <source>{words}: queued</source>
-            <translation>{words}: sorba állítva</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/desk/orders.py" />
@@ -2913,8 +2923,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/plan_rows.py" />
-            <source>done</source>
-            <translation>kész</translation>
+            <source>Found by: {method}. Ways along: {travel}.</source>
+            <translation>Módszer: {method}. Az utak ezek mentén vezetnek: {travel}.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/plan_rows.py" />
@@ -2928,8 +2938,18 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/plan_rows.py" />
+            <source>straight lines</source>
+            <translation>egyenes vonalak</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_rows.py" />
             <source>taken out</source>
             <translation>kivéve</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_rows.py" />
+            <source>the roads</source>
+            <translation>az utak</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/plan_rows.py" />
@@ -4202,11 +4222,6 @@
         </message>
         <message>
             <location filename="../../plugin/desk/surface_action.py" />
-            <source>Road surface</source>
-            <translation>Útfelület</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/surface_action.py" />
             <source>Tell the road surface under the cursor; a click says it with its coordinates, Esc ends</source>
             <translation>A kurzor alatti útfelületet mutatja; kattintás a koordinátáival együtt mondja, az Esc befejezi</translation>
         </message>
@@ -4871,8 +4886,8 @@
         </message>
         <message>
             <location filename="../../plugin/layout_words.py" />
-            <source>To which side it goes first: 1 left, -1 right</source>
-            <translation>Először melyik oldalra megy: 1 balra, -1 jobbra</translation>
+            <source>To which side it goes first</source>
+            <translation>Először melyik oldalra megy</translation>
         </message>
         <message>
             <location filename="../../plugin/layout_words.py" />
@@ -4911,13 +4926,13 @@
         </message>
         <message>
             <location filename="../../plugin/layout_words.py" />
-            <source>What of the exit lane is in line with the entry lane: 1 left limit, 0 middle, -1 right limit</source>
-            <translation>A kivezető sáv mely része esik egy vonalba a bevezetővel: 1 bal széle, 0 közepe, -1 jobb széle</translation>
+            <source>What of the exit lane is in line with the entry lane</source>
+            <translation>A kivezető sáv mely része esik egy vonalba a bevezetővel</translation>
         </message>
         <message>
             <location filename="../../plugin/layout_words.py" />
-            <source>Which way it is driven: 1 left, -1 right</source>
-            <translation>Merre kell körbemenni: 1 balra, -1 jobbra</translation>
+            <source>Which way it is driven</source>
+            <translation>Merre kell körbemenni</translation>
         </message>
         <message>
             <location filename="../../plugin/layout_words.py" />
@@ -4946,8 +4961,23 @@
         </message>
         <message>
             <location filename="../../plugin/layout_words.py" />
+            <source>left</source>
+            <translation>balra</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>left limit</source>
+            <translation>bal széle</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
             <source>length after UN R13-H; test after ISO 21994</source>
             <translation>hossza az UN R13-H, a vizsgálat az ISO 21994 szerint</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>middle</source>
+            <translation>közepe</translation>
         </message>
         <message>
             <location filename="../../plugin/layout_words.py" />
@@ -4958,6 +4988,26 @@
             <location filename="../../plugin/layout_words.py" />
             <source>no standard: colours, width and spacing of Formula Student</source>
             <translation>nem szabvány: a Formula Student színei, szélessége és távolságai</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>right</source>
+            <translation>jobbra</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>right limit</source>
+            <translation>jobb széle</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>to the left</source>
+            <translation>balra</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layout_words.py" />
+            <source>to the right</source>
+            <translation>jobbra</translation>
         </message>
         <message>
             <location filename="../../plugin/locator/robot_filter.py" />
@@ -5489,6 +5539,11 @@
             <location filename="../../plugin/processing/cone_layout.py" />
             <source>Both POINT and LINE are</source>
             <translation>POINT és LINE is meg van adva</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/cone_layout.py" />
+            <source>Cone layout</source>
+            <translation>Bójaelrendezés</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/cone_layout.py" />

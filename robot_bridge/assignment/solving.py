@@ -20,6 +20,8 @@ from .timetable import plan_of
 from .travel import CancellableTravel, Travel
 
 AUTOMATIC, PYVRP, PREVIEW = "automatic", "pyvrp", "preview"
+PREVIEW_KEPT = f"{PYVRP}, which found nothing better than the preview"
+"""The method of a plan that PyVRP looked at and could not improve."""
 METHODS = (AUTOMATIC, PYVRP, PREVIEW)
 _NAMED = 10
 """How many cones an error names at most."""
@@ -66,7 +68,7 @@ def assign(job: Job, travel: Travel, wanted: Wanted | None = None, progress: Pro
     plan, improved_by_pyvrp = _solved(days, wanted, use_pyvrp, progress)
     method = PREVIEW
     if use_pyvrp:
-        method = PYVRP if improved_by_pyvrp else f"{PYVRP}, which found nothing better than the preview"
+        method = PYVRP if improved_by_pyvrp else PREVIEW_KEPT
     return plan_of(days, CancellableTravel(travel, lambda: progress(1.0)), plan, wanted.objective, method)
 
 

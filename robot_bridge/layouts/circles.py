@@ -33,7 +33,7 @@ class ConstantRadius(Layout):
     width: float = dimension(3.5, "Clear width of the lane", least=0.1)
     spacing: float = dimension(10, "From cone to cone along the middle of the lane", least=0.5)
     turn: float = dimension(
-        LEFT, "Which way it is driven: 1 left, -1 right", "", least=-1, choices=(RIGHT, LEFT)
+        LEFT, "Which way it is driven", "", least=-1, choices={LEFT: "to the left", RIGHT: "to the right"}
     )
 
     def spots(self) -> list[Spot]:

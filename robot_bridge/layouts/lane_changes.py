@@ -27,13 +27,13 @@ class _LaneChange(Layout):
     cones_per_row: float = dimension(3, "Cones on each side of each lane", "", least=2, whole=True)
     exit_side: float = dimension(
         CENTRE,
-        "What of the exit lane is in line with the entry lane: 1 left limit, 0 middle, -1 right limit",
+        "What of the exit lane is in line with the entry lane",
         "",
         least=-1,
-        choices=(RIGHT, CENTRE, LEFT),
+        choices={LEFT: "left limit", CENTRE: "middle", RIGHT: "right limit"},
     )
     turn: float = dimension(
-        LEFT, "To which side it goes first: 1 left, -1 right", "", least=-1, choices=(RIGHT, LEFT)
+        LEFT, "To which side it goes first", "", least=-1, choices={LEFT: "left", RIGHT: "right"}
     )
 
     @abstractmethod
@@ -135,10 +135,10 @@ class ObstacleAvoidance(_LaneChange):
     )
     exit_side: float = dimension(
         LEFT,
-        "What of the exit lane is in line with the entry lane: 1 left limit, 0 middle, -1 right limit",
+        "What of the exit lane is in line with the entry lane",
         "",
         least=-1,
-        choices=(RIGHT, CENTRE, LEFT),
+        choices={LEFT: "left limit", CENTRE: "middle", RIGHT: "right limit"},
     )
 
     def lanes(self) -> list[tuple[str, float, float, float, float]]:

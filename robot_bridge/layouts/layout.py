@@ -30,7 +30,7 @@ class Dimension:
     """One number of a layout: what it is, in which unit, and its value in the standard.
 
     Values are ``least`` or more, without a fraction where ``whole``, and one of ``choices`` where there are
-    any.
+    any: these are named by what they mean.
     """
 
     name: str
@@ -39,12 +39,18 @@ class Dimension:
     standard: float
     least: float
     whole: bool
-    choices: tuple[float, ...]
+    choices: Mapping[float, str]
 
     @property
     def choices_text(self) -> str:
-        """Return the choices, one after the other."""
-        return ", ".join(f"{choice:g}" for choice in self.choices)
+        """Return the choices, the least one first."""
+        return ", ".join(f"{choice:g}" for choice in sorted(self.choices))
+
+    @property
+    def whole_text(self) -> str:
+        """Return what it is, with what each choice means."""
+        meanings = ", ".join(f"{choice:g} {name}" for choice, name in self.choices.items())
+        return f"{self.text}: {meanings}" if meanings else self.text
 
     def fault(self, value: float) -> Fault | None:
         """Return what is wrong with ``value``, None where nothing is."""
@@ -99,7 +105,7 @@ class Layout(ABC):
     @classmethod
     def dimensions(cls) -> list[Dimension]:
         """Return every dimension of the layout."""
-        unlimited: dict[str, Any] = {"least": 0.0, "whole": False, "choices": ()}
+        unlimited: dict[str, Any] = {"least": 0.0, "whole": False, "choices": {}}
         return [
             Dimension(name=one.name, **{"standard": one.default, **unlimited, **one.metadata})
             for one in fields(cls)

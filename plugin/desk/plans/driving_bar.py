@@ -10,7 +10,7 @@ from ..colours import WRONG_STYLE
 from ..push_button import push_button
 from .draft_plan import DraftPlan
 from .driven_plan import DrivenPlan
-from .plan_rows import summary
+from .plan_rows import how_made, summary
 
 
 class DrivingBar(QWidget):
@@ -80,8 +80,8 @@ class DrivingBar(QWidget):
         drafts, driven = self._drafts, self._driven
         idle = not driven.busy
         self.send.setEnabled(idle and drafts.draft is not None and driven.driven is None)
-        shown = drafts.draft is not None or driven.driven is not None
-        self.clear.setEnabled(idle and shown and not driven.held)
+        shown = driven.offer or driven.driven or drafts.draft
+        self.clear.setEnabled(idle and shown is not None and not driven.held)
         watching = driven.driven is not None and not driven.progress.is_finished(driven.driven.plan)
         self.rest.setVisible(watching and driven.offer is None)
         self.rest.setEnabled(idle and watching)
@@ -93,6 +93,7 @@ class DrivingBar(QWidget):
         self.resume.setVisible(watching and driven.offer is None and bool(driven.paused))
         self.resume.setEnabled(idle)
         self.text.setText(self._in_words())
+        self.text.setToolTip("" if shown is None else how_made(shown))
         self.trouble.setText(self._wrong())
         self.trouble.setVisible(bool(self.trouble.text()))
 

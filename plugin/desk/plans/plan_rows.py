@@ -7,7 +7,9 @@ from dataclasses import dataclass, replace
 
 from ....robot_bridge.assignment.editing import trips_of
 from ....robot_bridge.assignment.plan import Plan, Stop
+from ....robot_bridge.assignment.travel import STRAIGHT
 from ....robot_bridge.messages import TaskState
+from ...assignment_words import FOUND
 from ...language import first_of, tr, tr_count
 from .draft import Draft
 from .progress import Progress
@@ -69,7 +71,7 @@ def rows_of(draft: Draft, progress: Progress | None) -> dict[str, list[StopRow]]
 
 
 def summary(draft: Draft) -> str:
-    """Return how good a plan is, how it was made, and what it leaves out."""
+    """Return how good a plan is and what it leaves out."""
     plan = draft.plan
     cones = sum(stop.is_target for _, stop in plan.all_stops())
     robots = sum(bool(one.stops) for one in plan.robots)
@@ -79,8 +81,8 @@ def summary(draft: Draft) -> str:
         robots=tr_count(robots, "1 robot", "%n robots"),
         metres=plan.metres,
         span=_span(plan.end_s),
-        method=plan.method,
-        travel=plan.travel,
+        method=FOUND[plan.method],
+        travel=tr("straight lines") if plan.travel == STRAIGHT else tr("the roads"),
     )
     out = plan.left_out
     return (
@@ -92,6 +94,11 @@ def summary(draft: Draft) -> str:
         if out
         else text
     )
+
+
+def how_made(draft: Draft) -> str:
+    """Return by which parts a plan was made, for those who want to know."""
+    return tr("Found by: {method}. Ways along: {travel}.", method=draft.plan.method, travel=draft.plan.travel)
 
 
 def clock(seconds: float, began_at: float | None) -> str:

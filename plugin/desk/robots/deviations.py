@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+from dataclasses import dataclass
+
 import numpy as np
 import numpy.typing as npt
 
@@ -9,27 +12,59 @@ from ....robot_bridge.messages import CommandReport, SetPath
 from ..command_book import CommandBook
 
 Floats = npt.NDArray[np.float64]
+ON_PATH_M = 1.0
+"""Metres beside a path within which a robot has come to it."""
+AWAY_M = 1.0
+"""Metres by which a robot has to go away from a path's first point to have passed it."""
 
 
-def deviation(book: CommandBook, robot: str, xy: tuple[float, float] | None) -> float | None:
-    """Return metres beside the path that ``robot`` is to drive, else from the target that it reached last.
+class Deviations:
+    """Remembers of each robot whether it has come to its path: the way there is nobody's to prescribe."""
 
-    ``xy`` is where it is, in the site frame. None where it has neither, or is on its way to a target without
-    a path: it cannot be beside what it was not given.
-    """
-    task = book.task_of(robot)
-    if task is not None:
-        if task.op != SetPath.__name__ or xy is None:
+    def __init__(self, book: CommandBook):
+        self._book = book
+        self._ways: dict[str, _WayToPath] = {}
+
+    def of(self, robot: str, xy: tuple[float, float] | None) -> float | None:
+        """Return metres beside the path that ``robot`` drives, else from the target that it reached last.
+
+        ``xy`` is where it is, in the site frame. None where it has neither, or is on its way to a target or
+        to the first point of its path: it cannot be beside what it was not given.
+        """
+        task = self._book.task_of(robot)
+        if task is None:
+            reached = self._book.reached_by(robot)
+            return None if reached is None else reached.deviation
+        points = _points(task) if task.op == SetPath.__name__ else np.empty((0, 2))
+        if xy is None or len(points) == 0:
             return None
-        return beside(_points(task), np.array(xy))
-    reached = book.reached_by(robot)
-    return None if reached is None else reached.deviation
+        off = beside(points, np.array(xy))
+        way = self._ways.get(robot)
+        if way is None or way.command != task.command:
+            way = self._ways[robot] = _WayToPath(task.command)
+        way.go_on(off, math.dist(points[0], xy))
+        return off if way.is_over else None
 
 
-def beside(points: Floats, at: Floats) -> float | None:
-    """Return how far (2,) ``at`` is from the line through (n, 2) ``points``, None for no line."""
-    if len(points) == 0:
-        return None
+@dataclass
+class _WayToPath:
+    """How a robot comes to the path of ``command``: ``nearest`` is metres to its first point, the least."""
+
+    command: str
+    nearest: float = math.inf
+    is_over: bool = False
+
+    def go_on(self, off: float, to_first: float) -> None:
+        """Take in where the robot is: metres beside the path and to its first point.
+
+        One that never comes near passes the first point all the same: it goes away from that again.
+        """
+        self.is_over = self.is_over or off <= ON_PATH_M or to_first > self.nearest + AWAY_M
+        self.nearest = min(self.nearest, to_first)
+
+
+def beside(points: Floats, at: Floats) -> float:
+    """Return how far (2,) ``at`` is from the line through (n, 2) ``points``, n > 0."""
     if len(points) == 1:
         return float(np.hypot(*(points[0] - at)))
     start, step = points[:-1], np.diff(points, axis=0)

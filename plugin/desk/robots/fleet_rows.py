@@ -16,7 +16,7 @@ from ..command_book import CommandBook
 from ..picture import RobotPicture
 from ..state_words import ROBOT_STATES
 from .columns import SHORT, task_in_words
-from .deviations import deviation
+from .deviations import Deviations
 
 Floats = npt.NDArray[np.float64]
 Rows = npt.NDArray[np.intp]
@@ -39,6 +39,7 @@ class FleetRows:
 
     picture: RobotPicture
     book: CommandBook
+    deviations: Deviations
     names: list[str]
     state: npt.NDArray[np.intp]
     xy: Floats
@@ -63,7 +64,7 @@ class FleetRows:
         if known is None:
             x, y = self.xy[row].tolist()
             at = (x, y) if np.isfinite(x) and np.isfinite(y) else None
-            found = deviation(self.book, self.names[row], at)
+            found = self.deviations.of(self.names[row], at)
             known = self._off[row] = np.nan if found is None else found
         return known
 
@@ -159,7 +160,7 @@ class FleetRows:
         return has
 
 
-def fleet_rows(picture: RobotPicture, book: CommandBook, moment: float) -> FleetRows:
+def fleet_rows(picture: RobotPicture, book: CommandBook, deviations: Deviations, moment: float) -> FleetRows:
     """Return all robots at ``moment`` of the desk's clock."""
     robots = picture.arrays(moment)
     numbers = {
@@ -168,4 +169,4 @@ def fleet_rows(picture: RobotPicture, book: CommandBook, moment: float) -> Fleet
         "Age": robots.age,
         "Ping": picture.column("latency"),
     }
-    return FleetRows(picture, book, robots.names, robots.state, robots.xy, numbers)
+    return FleetRows(picture, book, deviations, robots.names, robots.state, robots.xy, numbers)

@@ -26,7 +26,7 @@ from ..alarms.alarm import Alarm
 from ..desk import Desk
 from ..small_views import shrink
 from . import detail_rows as rows_of
-from .deviations import deviation
+from .deviations import Deviations
 from .last_image import LastImage
 from .position_crs import PositionCrs
 
@@ -46,11 +46,17 @@ HISTORY = 200
 class RobotDetails(QWidget):
     """Renewed twice a second while somebody sees it; history and image are asked for once for each robot."""
 
-    def __init__(self, desk: Desk, positions: PositionCrs, parent: QWidget | None = None):
+    def __init__(
+        self,
+        desk: Desk,
+        positions: PositionCrs,
+        deviations: Deviations,
+        parent: QWidget | None = None,
+    ):
         super().__init__(parent)
         self.setObjectName("fleet_robot_details")
         self._desk = desk
-        self._positions = positions
+        self._positions, self._deviations = positions, deviations
         self._turn = desk.beat.turn()
         self._asked_for = ""
         self.alarms_of: Callable[[str], list[Alarm]] = lambda robot: []
@@ -92,7 +98,7 @@ class RobotDetails(QWidget):
             self.ask()
         book = self._desk.book
         at = (view.report.x, view.report.y) if view.has_pose else None
-        off = deviation(book, robot, at)
+        off = self._deviations.of(robot, at)
         position = self._position(at)
         self._fill(
             {

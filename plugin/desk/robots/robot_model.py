@@ -20,6 +20,7 @@ from ..item_values import TO_THE_RIGHT
 from ..picture import RobotPicture
 from ..state_words import COMMAND_STATES, ROBOT_STATES
 from .columns import COLUMNS, POSITION, TITLES, number_in_words, short_link
+from .deviations import Deviations
 from .fleet_rows import FleetRows, Rows, Which, fleet_rows
 
 ROLES = frozenset(
@@ -39,7 +40,8 @@ class RobotModel(QAbstractTableModel):
 
     def __init__(self, picture: RobotPicture, book: CommandBook, parent: QObject | None = None):
         super().__init__(parent)
-        self._fleet: FleetRows = fleet_rows(picture, book, 0.0)
+        self.deviations = Deviations(book)
+        self._fleet: FleetRows = fleet_rows(picture, book, self.deviations, 0.0)
         self._generation = picture.generation
         self._order: Rows = np.empty(0, dtype=np.intp)
         self._row_at: Rows = np.empty(0, dtype=np.intp)
@@ -88,7 +90,7 @@ class RobotModel(QAbstractTableModel):
     def show(self, moment: float) -> None:
         """Show what is known at ``moment`` of the desk's clock."""
         picture = self._fleet.picture
-        fleet = fleet_rows(picture, self._fleet.book, moment)
+        fleet = fleet_rows(picture, self._fleet.book, self.deviations, moment)
         if picture.generation != self._generation:
             # Rows of another generation are other robots.
             self._generation = picture.generation

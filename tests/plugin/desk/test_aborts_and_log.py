@@ -96,6 +96,43 @@ def test_the_log_shows_each_step_with_time_who_and_how_far_off(at_desk, gateway,
     assert all(len(model.index(row, 0, top).data()) == 8 for row in range(4))
 
 
+def test_the_line_below_the_robots_follows_the_command_that_was_sent_last(at_desk, gateway, iface, wait):
+    line = at_desk.dock.findChild(QLabel, "fleet_draft_text")
+    at_desk.desk.select("r1")
+    at_desk.actions.cone.trigger()
+    iface.click(70, 55)
+    words = at_desk.desk.drafts.draft.in_words()
+    press(at_desk, QToolButton, "fleet_send_button")
+    wait(lambda: line.text() == f"{words}: queued", what="the command being kept")
+    (command,) = gateway.commands
+    gateway.step(command, CommandState.ACKNOWLEDGED, "r1")
+    wait(lambda: line.text() == f"{words}: acknowledged", what="the line going on")
+    gateway.step(command, CommandState.FAILED, "r1", reason="the cone holder is jammed")
+    wait(lambda: line.text() == f"{words}: failed: the cone holder is jammed", what="the end of it")
+
+
+def test_the_line_says_of_an_abort_that_it_is_done(at_desk, gateway, wait):
+    line = at_desk.dock.findChild(QLabel, "fleet_draft_text")
+    at_desk.desk.select("r1")
+    press(at_desk, QToolButton, "fleet_abort_button")
+    wait(lambda: line.text() == "Abort of r1: queued", what="the abort being kept")
+    (command,) = gateway.commands
+    gateway.step(command, CommandState.REACHED, "r1")
+    wait(lambda: line.text() == "Abort of r1: done", what="the abort being done")
+
+
+def test_the_line_leaves_a_command_for_what_happens_after_it(at_desk, gateway, wait):
+    line = at_desk.dock.findChild(QLabel, "fleet_draft_text")
+    at_desk.desk.select("r1")
+    press(at_desk, QToolButton, "fleet_abort_button")
+    wait(lambda: line.text() == "Abort of r1: queued", what="the abort being kept")
+    at_desk.desk.remarked.emit("3 commands written")
+    (command,) = gateway.commands
+    gateway.step(command, CommandState.REACHED, "r1")
+    wait(lambda: at_desk.desk.book.get(command).state is CommandState.REACHED)
+    assert line.text() == "3 commands written"
+
+
 def test_the_log_is_filled_with_what_was_asked_before_this_desk_came(plugin, gateway, make_robot, wait):
     gateway.show(make_robot("r1"))
     gateway._queue("command-1", "r1", "SetPosEnd", {"x": 1.0, "y": 2.0, "cone": True})

@@ -28,11 +28,20 @@ ORIGIN = (488000.0, 5190000.0)
 NONE = Qt.KeyboardModifier.NoModifier
 
 
+class Said(list):
+    """Notices that are only written down: each text, and whether it is a complaint."""
+
+    def info(self, text):
+        self.append((text, False))
+
+    def warning(self, text):
+        self.append((str(text), True))
+
+
 @pytest.fixture
 def entry(iface):
-    made = LayoutAction(iface, "Fleet Supervisor")
-    iface.said = []
-    made.tool._say = lambda text, complaint: iface.said.append((text, complaint))
+    iface.said = Said()
+    made = LayoutAction(iface, "Fleet Supervisor", iface.said)
     yield made
     made.remove()
 
@@ -161,6 +170,14 @@ def test_a_map_without_true_metres_is_refused_with_what_to_do(slalom, iface):
     assert no_layer()
 
 
+def test_what_it_says_hangs_where_all_notices_hang_and_is_not_cut(plugin, iface):
+    iface.canvas.setDestinationCrs(QgsCoordinateReferenceSystem("EPSG:3857"))
+    iface.mainWindow().findChild(QAction, "fleet_cone_layout_slalom").trigger()
+    QTest.mouseClick(iface.canvas.viewport(), Qt.MouseButton.LeftButton, NONE, QPoint(300, 300))
+    (text,) = iface.texts()
+    assert "its metres are not metres" in text
+
+
 def test_a_right_click_a_drag_and_a_move_place_nothing(slalom, iface):
     iface.hover(40, 50)
     iface.click(40, 50, Qt.MouseButton.RightButton)
@@ -240,6 +257,8 @@ def test_every_dimension_has_a_field_with_its_unit_and_the_standards_value(entry
             if one.choices:
                 assert field.currentData() == one.standard
                 assert [field.itemData(k) for k in range(field.count())] == list(one.choices)
+                assert [field.itemText(k) for k in range(field.count())] == list(one.choices.values())
+                assert field.toolTip() == f"Standard: {field.currentText()}"
             else:
                 assert field.value() == one.standard
                 assert field.suffix().strip() == one.unit

@@ -60,12 +60,21 @@ def layer(iface):
     return layer
 
 
+class Said(list):
+    """Notices that are only written down: each text, and whether it is a complaint."""
+
+    def info(self, text):
+        self.append((text, False))
+
+    def warning(self, text):
+        self.append((str(text), True))
+
+
 @pytest.fixture
 def entry(iface):
     store = SurfaceStore(QgsProject.instance())
-    made = SurfaceAction(iface, "Fleet Supervisor", store)
-    iface.said = []
-    made.tool._say = lambda text, complaint: iface.said.append((text, complaint))
+    iface.said = Said()
+    made = SurfaceAction(iface, "Fleet Supervisor", store, iface.said)
     yield made
     made.remove()
     store.remove()
@@ -136,6 +145,12 @@ def test_without_a_layer_of_that_role_it_says_what_to_do(entry, iface):
     assert "No layer of the project has the role road surface" in text and complaint
     iface.click(50, 50)
     assert len(iface.said) == 2
+
+
+def test_what_it_says_hangs_where_all_notices_hang_and_is_not_cut(plugin, iface):
+    iface.mainWindow().findChild(QAction, "fleet_surface_at_point").trigger()
+    (text,) = iface.texts()
+    assert "No layer of the project has the role road surface" in text
 
 
 def test_a_layer_that_cannot_be_used_is_named(entry, iface):

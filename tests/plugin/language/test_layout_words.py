@@ -7,12 +7,14 @@ import math
 import pytest
 from fleet_supervisor.plugin.language import Language, tr
 from fleet_supervisor.plugin.layout_words import (
+    CHOICES,
     DIMENSIONS,
     STANDARDS,
     TITLES,
     dimension_in_words,
     fault_in_words,
     standard_in_words,
+    whole_dimension_in_words,
 )
 from fleet_supervisor.robot_bridge.layouts.catalogue import LAYOUTS
 
@@ -27,6 +29,9 @@ def test_in_english_the_words_are_the_bridges():
     assert set(STANDARDS) <= set(LAYOUTS)
     wrong = [(kind.NAME, one.name) for kind, one in EVERY if dimension_in_words(kind, one) != one.text]
     assert wrong == []
+    wrong = [one for kind, one in EVERY if whole_dimension_in_words(kind, one) != one.whole_text]
+    assert wrong == []
+    assert set(CHOICES) == {name for _, one in EVERY for name in one.choices.values()}
 
 
 def test_no_words_are_left_of_dimensions_that_are_gone():
@@ -50,7 +55,7 @@ def test_each_dimension_has_words_in_each_language(qgis_app, locale):
     language = Language(locale)
     try:
         # Proper names may be the same; whole sentences may not.
-        same = [text for text in DIMENSIONS.values() if tr(text) == text]
+        same = [text for text in (*DIMENSIONS.values(), *CHOICES.values()) if tr(text) == text]
     finally:
         language.remove()
     assert same == []

@@ -56,6 +56,10 @@ TEXTS = {
     "Connect call failed": "what Python says, to be told better",
     "fleet road_surface ": "a key of a cache",
     "traffic cone": "a label that robots read on their maps",
+    **dict.fromkeys(
+        ("to the left", "to the right", "left limit", "right limit"),
+        "the bridge's word for a choice of a layout's dimension, with the operator's word beside it",
+    ),
     **dict.fromkeys(("PyVRP", "RoutingKit", "SciPy", "QGIS", "GeoJSON", "GeoPackage"), "a proper name"),
     **dict.fromkeys(
         ("too close", "outside the site", "off the road", "stopped unasked", "low battery"),

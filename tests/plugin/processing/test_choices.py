@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from fleet_supervisor.plugin.assignment_words import FINISHES, METHODS, OBJECTIVES, TASKS
+from fleet_supervisor.plugin.assignment_words import FINISHES, FOUND, METHODS, OBJECTIVES, TASKS
 from fleet_supervisor.plugin.processing.export_navigation_map import FORMAT_NAMES
 from fleet_supervisor.plugin.processing.find_route import ENGINE_NAMES, QGIS
 from fleet_supervisor.plugin.processing.navigation_files import FORMATS
@@ -109,3 +109,4 @@ def test_every_value_has_a_name():
     assert set(TASKS) == {job.PLACE, job.COLLECT}
     assert set(OBJECTIVES) == set(scheduling.OBJECTIVES)
     assert set(METHODS) == set(solving.METHODS)
+    assert set(FOUND) == {solving.PREVIEW, solving.PYVRP, solving.PREVIEW_KEPT}

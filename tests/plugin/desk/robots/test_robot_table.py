@@ -2,12 +2,13 @@
 
 import numpy as np
 import pytest
+from fleet_supervisor.plugin.desk.command_book import CommandBook
 from fleet_supervisor.plugin.desk.robots.columns import COLUMNS, TITLES, number_in_words
-from fleet_supervisor.plugin.desk.robots.deviations import beside
+from fleet_supervisor.plugin.desk.robots.deviations import Deviations, beside
 from fleet_supervisor.plugin.desk.robots.fleet_rows import Which
 from fleet_supervisor.plugin.desk.robots.robot_panel import AROUND_SEARCH, WHICH
 from fleet_supervisor.plugin.desk.state_words import ROBOT_STATES
-from fleet_supervisor.robot_bridge.messages import CommandState, RobotState
+from fleet_supervisor.robot_bridge.messages import CommandReport, CommandState, CommandStep, RobotState
 from qgis.core import (
     QgsCoordinateReferenceSystem,
     QgsCoordinateTransform,
@@ -90,11 +91,13 @@ def test_what_a_narrow_panel_cuts_of_a_task_is_in_its_tool_tip(table, at_desk, g
 
 
 def test_how_far_a_robot_is_off_its_path_then_off_its_target(table, at_desk, gateway, make_robot, wait):
-    path = {"points": [[40.0, 42.0], [60.0, 42.0]]}
+    path = {"points": [[50.0, 40.5], [50.0, 60.0]]}
     gateway._queue("command-1", "r1", "SetPath", path)
     gateway.step("command-1", CommandState.ACKNOWLEDGED, "r1")
-    wait(lambda: column(table, "Off")[1] == "2.00 m")
+    wait(lambda: column(table, "Off")[1] == "0.50 m")
     assert column(table, "Task")[1] == "on route"
+    gateway.show(make_robot("r1", 52, 50))
+    wait(lambda: column(table, "Off")[1] == "2.00 m")
     gateway.step("command-1", CommandState.REACHED, "r1", deviation=0.07)
     wait(lambda: column(table, "Off")[1] == "0.07 m")
 
@@ -105,7 +108,53 @@ def test_how_far_beside_a_line():
     assert beside(line, np.array((12.0, 5.0))) == pytest.approx(2.0)
     assert beside(line, np.array((-3.0, 4.0))) == pytest.approx(5.0)
     assert beside(line[:1], np.array((3.0, 4.0))) == pytest.approx(5.0)
-    assert beside(np.empty((0, 2)), np.array((3.0, 4.0))) is None
+
+
+PATH = [[100.0, 0.0], [0.0, 0.0], [0.0, 50.0]]
+
+
+def on_path(command, points, at):
+    steps = [CommandStep(CommandState.ACKNOWLEDGED, at, "r1")]
+    return CommandReport(command, "r1", "SetPath", {"points": points}, "anna", steps[-1].state, steps)
+
+
+@pytest.fixture
+def book():
+    made = CommandBook()
+    made.merge([on_path("command-1", PATH, 1.0)])
+    return made
+
+
+@pytest.fixture
+def off(book):
+    """How far r1 is off a path that it was told to drive, by where it is."""
+    deviations = Deviations(book)
+    return lambda x, y: deviations.of("r1", (x, y))
+
+
+def test_on_its_way_to_a_paths_first_point_a_robot_is_not_off_it(off):
+    # Nearer to the middle of the path than to its beginning.
+    assert [off(x, 20.0 - x / 5) for x in (10.0, 40.0, 70.0, 90.0)] == [None] * 4
+    assert off(99.5, 0.1) == pytest.approx(0.1)
+    assert off(60.0, 4.0) == pytest.approx(4.0)
+
+
+def test_a_robot_that_passes_the_first_point_far_beside_is_off_its_path(off):
+    assert [off(x, 5.0) for x in (90.0, 99.0, 99.5)] == [None] * 3
+    assert off(80.0, 5.0) == pytest.approx(5.0)
+    # Nor does it become a way to the path again.
+    assert off(99.0, 5.0) == pytest.approx(5.0)
+
+
+def test_a_robot_that_is_seen_on_its_path_first_has_come_to_it(off):
+    assert off(0.5, 20.0) == pytest.approx(0.5)
+    assert off(3.0, 20.0) == pytest.approx(3.0)
+
+
+def test_each_path_has_a_way_to_it_of_its_own(off, book):
+    assert off(50.0, 0.0) == pytest.approx(0.0)
+    book.merge([on_path("command-2", [[200.0, 0.0], [200.0, 9.0]], 2.0)])
+    assert off(50.0, 0.0) is None
 
 
 @pytest.mark.parametrize(
