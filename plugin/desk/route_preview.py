@@ -59,6 +59,13 @@ class RoutePreview(QObject):
         self.why_not = ""
         """Why there is no way to where the mouse is."""
 
+    @property
+    def awaits_click(self) -> bool:
+        """Whether a way to where the operator clicked is still to be answered."""
+        if self._asked is None or self._clock() - self._asked[2] >= UNANSWERED_AFTER:
+            return False
+        return self._asked[1].taken or (self._next is not None and self._next.taken)
+
     def want(self, question: Question) -> None:
         """Ask for a way, now or when the question before is answered; raises NotSentError."""
         if self._asked is not None and self._clock() - self._asked[2] < UNANSWERED_AFTER:

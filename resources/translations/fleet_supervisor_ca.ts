@@ -3679,6 +3679,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/road_route_tool.py" />
+            <source>The way to where you clicked last was not known yet, so it is not in the route.</source>
+            <translation>Encara no se sabia el camí fins on heu fet l'últim clic, de manera que no és a la ruta.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/road_route_tool.py" />
             <source>This leg does not follow the roads: {note}</source>
             <translation>Aquest tram no segueix les vies: {note}</translation>
         </message>

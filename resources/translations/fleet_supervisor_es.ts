@@ -3679,6 +3679,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/road_route_tool.py" />
+            <source>The way to where you clicked last was not known yet, so it is not in the route.</source>
+            <translation>Aún no se conocía el camino hasta donde hizo el último clic, así que no está en la ruta.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/road_route_tool.py" />
             <source>This leg does not follow the roads: {note}</source>
             <translation>Este tramo no sigue las vías: {note}</translation>
         </message>

@@ -3658,6 +3658,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/road_route_tool.py" />
+            <source>The way to where you clicked last was not known yet, so it is not in the route.</source>
+            <translation>Még nem volt ismert, hogyan lehet eljutni oda, ahová utoljára kattintott, ezért az nincs benne az útvonalban.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/road_route_tool.py" />
             <source>This leg does not follow the roads: {note}</source>
             <translation>Ez a szakasz nem követi az utakat: {note}</translation>
         </message>
