@@ -11,7 +11,6 @@ from typing import Any
 from ...robot_bridge.messages import (
     PROTOCOL_VERSION,
     ClearEmergencyStop,
-    CommandReport,
     EmergencyStop,
     GetClosures,
     GetCommands,
@@ -20,7 +19,6 @@ from ...robot_bridge.messages import (
     PositionForm,
     SiteReport,
     Subscribe,
-    command_report,
     emergency_report,
     observation_report,
     placement_report,
@@ -30,6 +28,8 @@ from ...robot_bridge.messages import (
 )
 from ..errors import LinkError
 from ..language import tr
+from .command_news import METHOD as COMMAND_NEWS
+from .command_news import command_in, commands_in
 from .mailbox import Mailbox
 from .observation_news import METHOD as OBSERVATION_NEWS
 from .observation_news import observations_in
@@ -135,8 +135,8 @@ class DeskProtocol:
     def _notified(self, method: str, params: dict[str, Any]) -> None:
         if method == "positions":
             self._mailbox.put_robots(sightings(params["robots"], self._clock()))
-        elif method == "command":
-            self._mailbox.put_commands([command_report(params)])
+        elif method == COMMAND_NEWS:
+            self._mailbox.put_commands([command_in(params)])
         elif method == "emergency":
             self._mailbox.put_emergency(emergency_report(params))
         elif method == "site":
@@ -232,7 +232,7 @@ class DeskProtocol:
             self._mailbox.put_every_queue(queues_in(result))
         else:
             self._take_queues(result)
-        self._mailbox.put_commands(_commands_in(result))
+        self._mailbox.put_commands(commands_in(result))
         self._mailbox.put_placements(placements_in(result))
         self._mailbox.put_observations(observations_in(result))
         if waiting is not None:
@@ -257,13 +257,6 @@ def checked_site(site: SiteReport) -> SiteReport:
 def _check_number(name: str, value: Any) -> None:
     if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
         raise ValueError(f"{name} is {value!r}, not a finite number")
-
-
-def _commands_in(result: dict[str, Any]) -> list[CommandReport]:
-    """Return the reports in an answer; oldest first, since get_commands answers with the newest first."""
-    if "commands" in result:
-        return [command_report(values) for values in reversed(result["commands"])]
-    return [command_report(result)] if "command" in result and "op" in result else []
 
 
 def _error_text(message: dict[str, Any]) -> str:
