@@ -18,8 +18,8 @@ from ..language import tr
 from .closure_dialog import ClosureDialog
 from .desk import Desk
 from .drafts import Point
-from .road_board import time_of_day
 from .safe_question import safe_question
+from .wall_clock import time_of_day
 
 REACH = 12.0
 """Pixels by which a click may miss a road."""

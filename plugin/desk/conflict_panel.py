@@ -8,8 +8,8 @@ from ...robot_bridge.messages import ConflictReport, HoldReport
 from ..language import first_of, tr
 from .colours import DOUBTFUL_STYLE
 from .desk import Desk
-from .road_board import time_of_day
 from .state_words import MEETINGS
+from .wall_clock import time_of_day
 from .whole_text import WholeText
 
 SHOWN = 3

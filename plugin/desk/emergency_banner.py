@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import time
-
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtWidgets import QAction, QFrame, QGridLayout, QLabel, QToolButton, QWidget
 
@@ -11,6 +9,7 @@ from ...robot_bridge.messages import EmergencyReport
 from ..language import first_of, tr, tr_count
 from ..wire.status import Phase
 from .desk import Desk
+from .wall_clock import time_of_day
 
 STYLE = (
     "QFrame#fleet_emergency_banner { background: #B00020; border: 2px solid #FFC400; border-radius: 4px; }"
@@ -75,7 +74,7 @@ def in_words(report: EmergencyReport | None, asked: bool, connected: bool) -> st
         since = (
             tr(
                 " since {time}",
-                time=time.strftime("%H:%M:%S", time.localtime(report.at)),
+                time=time_of_day(report.at),
             )
             if report.at
             else ""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 import uuid
 from collections.abc import Callable
 
@@ -112,8 +111,3 @@ class RoadBoard(QObject):
 
     def _tell(self, robot: ReplannedRobot) -> None:
         (self.remarked if robot.became == "another way" else self.failed).emit(robot.text)
-
-
-def time_of_day(at: float | None) -> str:
-    """Return a time of the gateway as the operator's clock shows it; nothing for none."""
-    return "" if at is None else time.strftime("%H:%M:%S", time.localtime(at))

@@ -17,8 +17,8 @@ from qgis.PyQt.QtCore import QObject
 from ...robot_bridge.messages import ClosureReport, ConflictReport
 from ..language import tr
 from .desk import Desk
-from .road_board import time_of_day
 from .row_layer import RowLayer, label
+from .wall_clock import date_and_time, time_of_day
 
 LABEL_MM = 1.5
 CLOSED_FIELDS = "closure:string,reason:string,closed_by:string,closed_at:string,until:string,edges:integer"
@@ -64,9 +64,8 @@ class RoadLayers(QObject):
 
 
 def _closure_values(closure: ClosureReport) -> list[Any]:
-    until = time_of_day(closure.until)
-    reason = closure.reason or ""
-    return [closure.closure, reason, closure.closed_by, time_of_day(closure.closed_at), until, closure.edges]
+    reason, since, until = closure.reason or "", date_and_time(closure.closed_at), time_of_day(closure.until)
+    return [closure.closure, reason, closure.closed_by, since, until, closure.edges]
 
 
 def _conflict_values(one: ConflictReport) -> list[Any]:

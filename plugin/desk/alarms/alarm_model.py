@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import time
-
 from qgis.PyQt.QtCore import QModelIndex, QObject, Qt
 from qgis.PyQt.QtGui import QFont
 
 from ...language import tr
 from ..row_model import RowModel
+from ..wall_clock import time_of_day
 from .alarm import Alarm
 from .colours import colour_of
 from .words import KINDS, state_in_words
@@ -61,8 +60,3 @@ def tip(alarm: Alarm) -> str:
         seen = time_of_day(alarm.acknowledged)
         lines.append(tr("acknowledged {time} by {operator}", time=seen, operator=alarm.by))
     return "\n".join(lines)
-
-
-def time_of_day(at: float) -> str:
-    """Return a time as the operator's clock shows it."""
-    return time.strftime("%H:%M:%S", time.localtime(at))

@@ -18,6 +18,7 @@ from qgis.PyQt.QtWidgets import (
 from ...language import tr
 from ..push_button import push_button
 from ..small_views import shrink
+from ..time_column import TimeColumn
 from .alarm import Alarm
 from .alarm_model import AlarmModel
 from .log_dialog import AlarmLogDialog
@@ -50,12 +51,14 @@ class AlarmPanel(QWidget):
     def refresh(self) -> None:
         """Show the alarms as they are."""
         chosen = {alarm.key for alarm in self._chosen()}
-        self._model.show_alarms(self._watch.board.alarms())
+        alarms = self._watch.board.alarms()
+        self._model.show_alarms(alarms)
+        self._times.make_room(min((alarm.began for alarm in alarms), default=None))
         self._choose(chosen)
         note = self._watch.why_not()
         self._note.setText(note)
         self._note.setVisible(bool(note))
-        new = sum(alarm.is_new for alarm in self._watch.board.alarms())
+        new = sum(alarm.is_new for alarm in alarms)
         self._all.setEnabled(new > 0)
         self._allow()
         self.counted.emit(new)
@@ -71,7 +74,7 @@ class AlarmPanel(QWidget):
         view.verticalHeader().hide()
         shrink(view)
         view.verticalHeader().setDefaultSectionSize(view.fontMetrics().height() + 8)
-        view.setColumnWidth(0, view.fontMetrics().horizontalAdvance("00:00:00") + 14)
+        self._times = TimeColumn(view, beside=14)
         view.setColumnWidth(2, view.fontMetrics().horizontalAdvance(tr("over") + " ×00") + 14)
         view.horizontalHeader().setSectionResizeMode(1, QHeaderView.ResizeMode.Stretch)
         view.horizontalHeader().setHighlightSections(False)

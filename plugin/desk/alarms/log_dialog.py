@@ -19,8 +19,8 @@ from ...language import tr, tr_count
 from ...settings.preferences import export_path
 from ..csv_files import iso_time, write_csv
 from ..row_model import TextModel
+from ..wall_clock import date_and_time
 from .alarm import AlarmEvent
-from .alarm_model import time_of_day
 from .words import CHANGES, KINDS, who
 
 COLUMNS = (tr("Time"), tr("What"), tr("Kind"), tr("Robot"), tr("Alarm"), tr("By"))
@@ -43,7 +43,7 @@ class AlarmLogDialog(QDialog):
         view.setWordWrap(False)
         view.verticalHeader().hide()
         change, kind = (max(known.values(), key=len) for known in (CHANGES, KINDS))
-        widths = ("00:00:00", change, kind, "robot-00", "", "operator")
+        widths = (date_and_time(0.0), change, kind, "robot-00", "", "operator")
         for column, widest in enumerate(widths):
             view.setColumnWidth(column, view.fontMetrics().horizontalAdvance(widest) + 16)
         view.horizontalHeader().setSectionResizeMode(4, QHeaderView.ResizeMode.Stretch)
@@ -98,7 +98,7 @@ class EventModel(TextModel):
 def _cells(event: AlarmEvent) -> tuple[str, ...]:
     alarm = event.alarm
     what = CHANGES[event.change], KINDS[alarm.kind], who(alarm), alarm.text
-    return (time_of_day(event.at), *what, event.by)
+    return (date_and_time(event.at), *what, event.by)
 
 
 def _csv_row(event: AlarmEvent) -> tuple[object, ...]:

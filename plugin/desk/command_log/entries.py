@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from enum import Enum
@@ -12,6 +11,7 @@ from ...language import tr
 from ..command_book import UNDER_WAY, in_words, place_of
 from ..csv_files import iso_time
 from ..state_words import COMMAND_STATES
+from ..wall_clock import time_of_day
 
 FAILED = (CommandState.ABORTED, CommandState.FAILED, CommandState.EXPIRED)
 CSV_HEAD = (
@@ -59,7 +59,7 @@ def cells(report: CommandReport) -> tuple[str, str, str, str]:
     """Return a command's row: time, what, state, and how far off or why or by whom."""
     first = report.steps[0].at if report.steps else None
     return (
-        clock(first),
+        time_of_day(first),
         f"{report.robot} · {in_words(report)}",
         COMMAND_STATES[report.state],
         _details(report),
@@ -70,7 +70,7 @@ def step_cells(step: CommandStep, report: CommandReport) -> tuple[str, str, str,
     """Return a step's row: time, by whom and why, state, and how far off."""
     off = _off(report) if step.state is CommandState.REACHED else ""
     because = f": {step.reason}" if step.reason else ""
-    return clock(step.at), tr("by {by}", by=step.by) + because, COMMAND_STATES[step.state], off
+    return time_of_day(step.at), tr("by {by}", by=step.by) + because, COMMAND_STATES[step.state], off
 
 
 def summary(reports: Iterable[CommandReport]) -> str:
@@ -104,11 +104,6 @@ def csv_rows(reports: Iterable[CommandReport]) -> Iterator[tuple[object, ...]]:
                 x,
                 y,
             )
-
-
-def clock(at: float | None) -> str:
-    """Return a time as the operator's clock shows it; nothing for none."""
-    return time.strftime("%H:%M:%S", time.localtime(at)) if at is not None else ""
 
 
 def _details(report: CommandReport) -> str:

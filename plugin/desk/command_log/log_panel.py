@@ -20,11 +20,12 @@ from ...errors import FleetError
 from ...file_dialogs import file_to_write
 from ...language import tr, tr_count
 from ...settings.preferences import export_path
-from ..command_book import in_words, place_of
+from ..command_book import asked_at, in_words, place_of
 from ..csv_files import write_csv
 from ..desk import Desk
 from ..small_views import shrink
 from ..state_words import COMMAND_STATES, longest
+from ..time_column import TimeColumn
 from .entries import CSV_HEAD, Filter, Which, csv_rows, summary
 from .log_model import PAGE, LogModel
 
@@ -53,6 +54,7 @@ class CommandLog(QWidget):
         self._listed: set[str] = set()
         """The robots that can be chosen."""
         self.view = _tree(self._model)
+        self._times = TimeColumn(self.view, beside=2 * self.view.indentation() + 12)
         self._robots = _choices("fleet_log_robot", tr("Whose commands are listed"))
         self._robots.addItems([EVERY_ROBOT, SELECTED])
         self._which = _choices("fleet_log_filter", tr("Which commands are listed"))
@@ -81,14 +83,14 @@ class CommandLog(QWidget):
             self._model.keep(self._desk.book)
             self._let_go_of_old()
             self._open(self._model.index(0, 0))
-        self._summary.setText(summary(self._desk.book))
+        self._show_what_is_open()
 
     def refresh(self, *_what: object) -> None:
         """List anew what the filters keep."""
         self._model.show_all(self._desk.book, self.filter())
         self._opened = None
         self._open(self._model.index(0, 0))
-        self._summary.setText(summary(self._desk.book))
+        self._show_what_is_open()
         self._allow()
 
     def filter(self) -> Filter:
@@ -162,6 +164,11 @@ class CommandLog(QWidget):
         self._robots.setCurrentText(chosen)
         self._robots.blockSignals(False)
 
+    def _show_what_is_open(self) -> None:
+        self._summary.setText(summary(self._desk.book))
+        shown = self._model.shown
+        self._times.make_room((asked_at(shown[-1]) if shown else None) or None)
+
     def _let_go_of_old(self) -> None:
         """Keep the view short while nobody looks at older commands: it lays out each row at each new one."""
         current = self.view.currentIndex()
@@ -230,11 +237,8 @@ def _tree(model: LogModel) -> QTreeView:
     view.setExpandsOnDoubleClick(False)
     view.setIndentation(14)
     shrink(view)
-    for column, widest in enumerate(
-        ("00:00:00", "", longest(COMMAND_STATES), tr("{metres:.2f} m off", metres=0.0))
-    ):
-        width = view.fontMetrics().horizontalAdvance(widest)
-        view.setColumnWidth(column, width + (2 * view.indentation() + 12 if column == 0 else 12))
+    for column, widest in ((2, longest(COMMAND_STATES)), (3, tr("{metres:.2f} m off", metres=0.0))):
+        view.setColumnWidth(column, view.fontMetrics().horizontalAdvance(widest) + 12)
     view.header().setStretchLastSection(False)
     view.header().setSectionResizeMode(1, QHeaderView.ResizeMode.Stretch)
     return view

@@ -19,8 +19,8 @@ from qgis.core import (
 from ....robot_bridge.messages import ObservationReport, SiteReport
 from ...language import tr
 from ..observation_book import ObservationBook
-from ..road_board import time_of_day
 from ..row_layer import RowLayer
+from ..wall_clock import date_and_time
 from .thumbnails import Thumbnails
 
 FIELDS = (
@@ -68,7 +68,7 @@ class ObservationLayer:
             one.semantics or one.label or "",
             one.height,
             one.radius,
-            time_of_day(one.received_at),
+            date_and_time(one.received_at),
             one.reviewed_by or "",
             one.reason or "",
             self._thumbnails.file(one.observation),

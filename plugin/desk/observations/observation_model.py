@@ -9,7 +9,7 @@ from qgis.PyQt.QtGui import QColor, QIcon, QPixmap
 
 from ....robot_bridge.messages import ObservationReport, ObservationState
 from ...language import tr
-from ..road_board import time_of_day
+from ..wall_clock import time_of_day
 from .observation_layer import COLOURS
 from .thumbnails import Thumbnails
 

@@ -23,7 +23,7 @@ from ...settings.preferences import export_path
 from ..column_heads import fit_heads
 from ..desk import Desk
 from ..push_button import push_button
-from ..road_board import time_of_day
+from ..wall_clock import time_of_day
 from .as_placed import as_csv, chosen, tally
 from .as_placed_pdf import ReportError, open_report_dialog
 
@@ -59,6 +59,8 @@ class AsPlacedPage(QWidget):
         self._expected: int | None = None
         self.which = QComboBox()
         self.which.setObjectName("fleet_placed_which")
+        self.which.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
+        self.which.setMinimumContentsLength(8)
         self.figures = QLabel()
         self.figures.setObjectName("fleet_placed_figures")
         self.figures.setWordWrap(True)
@@ -167,19 +169,20 @@ class AsPlacedPage(QWidget):
     def _lay_out(self) -> None:
         rows = QVBoxLayout(self)
         rows.setContentsMargins(0, 4, 0, 0)
-        top, foot = QHBoxLayout(), QHBoxLayout()
+        top, files, foot = QHBoxLayout(), QHBoxLayout(), QHBoxLayout()
         top.addWidget(self.which, 1)
         for row, text, name, action in (
             (top, tr("Refresh"), "fleet_placed_refresh", self.refresh_wanted.emit),
-            (foot, tr("Save as CSV…"), "fleet_placed_save", self._save_as),
+            (files, tr("Save as CSV…"), "fleet_placed_save", self._save_as),
             (foot, tr("Plan collecting"), "fleet_placed_collect", self._collect),
         ):
             row.addWidget(push_button(name, text, pressed=action))
         self.report.setEnabled(False)
-        foot.insertWidget(1, self.report)
+        files.addWidget(self.report)
         rows.addLayout(top)
         rows.addWidget(self.figures)
         rows.addWidget(self.table, 1)
+        rows.addLayout(files)
         rows.addLayout(foot)
 
 

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import time
-
 from ....robot_bridge.messages import QueueReport, QueueState, RobotState, TaskKind, TaskReport
 from ...language import tr, tr_count
 from ..state_words import ROBOT_STATES, TASK_STATES
+from ..wall_clock import time_of_day
 
 KINDS = {TaskKind.DRIVE: tr("drive"), TaskKind.PLACE: tr("place cone"), TaskKind.COLLECT: tr("collect cone")}
 
@@ -35,7 +34,7 @@ def queue_in_words(queue: QueueReport) -> str:
     """Return whether a queue goes on, and who paused it when and why."""
     count = tr_count(len(queue.tasks), "1 task", "%n tasks")
     if queue.state is QueueState.PAUSED:
-        when = f", {clock(queue.at)}" if queue.at is not None else ""
+        when = f", {time_of_day(queue.at)}" if queue.at is not None else ""
         # The gateway's reasons name who did it; where they do not, the name stands alone.
         why = queue.reason or (tr("by {by}", by=queue.by) if queue.by else "")
         text = tr(
@@ -66,12 +65,7 @@ def last_ended_in_words(queue: QueueReport) -> str:
         "Last: {task} {state} {time}{off}{why}",
         task=task_in_words(task),
         state=TASK_STATES[task.state],
-        time=clock(task.ended_at),
+        time=time_of_day(task.ended_at),
         off=off,
         why=why,
     )
-
-
-def clock(at: float | None) -> str:
-    """Return a time as the operator's clock shows it; nothing for none."""
-    return "" if at is None else time.strftime("%H:%M:%S", time.localtime(at))

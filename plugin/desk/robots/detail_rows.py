@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterable
 from typing import Any
 
@@ -15,6 +14,7 @@ from ..picture import RobotView
 from ..queues.task_words import queue_in_words, task_in_words
 from ..queues.task_words import state_in_words as task_state
 from ..state_words import COMMAND_STATES, ROBOT_STATES
+from ..wall_clock import date_and_time, time_of_day
 
 Row = tuple[str, str]
 TIMES = ("device_time", "fix_time")
@@ -63,7 +63,7 @@ def received_rows(told: dict[str, Any]) -> list[Row]:
 
 def alarm_rows(alarms: Iterable[Alarm]) -> list[Row]:
     """Return a robot's alarms."""
-    return [(_clock(alarm.began), f"{alarm.text} ({state_in_words(alarm)})") for alarm in alarms]
+    return [(time_of_day(alarm.began), f"{alarm.text} ({state_in_words(alarm)})") for alarm in alarms]
 
 
 def queue_rows(queue: QueueReport | None) -> list[Row]:
@@ -87,16 +87,12 @@ def command_rows(commands: Iterable[CommandReport]) -> list[Row]:
         because = f": {why}" if why else ""
         what = f"{in_words(report)}: {COMMAND_STATES[report.state]}{off}{because}"
         told = tr("{told}, by {operator}", told=what, operator=report.operator)
-        rows.append((_clock(asked_at(report)), told))
+        rows.append((time_of_day(asked_at(report)), told))
     return rows
 
 
 def _value(name: str, value: Any) -> str:
     if name in TIMES and isinstance(value, (int, float)):
-        return f"{value!r} ({time.strftime('%Y-%m-%d %H:%M:%S', time.localtime(value))})"
+        return f"{value!r} ({date_and_time(value)})"
     unit = f" {UNITS[name]}" if name in UNITS and isinstance(value, (int, float)) else ""
     return f"{value}{unit}"
-
-
-def _clock(at: float) -> str:
-    return time.strftime("%H:%M:%S", time.localtime(at))

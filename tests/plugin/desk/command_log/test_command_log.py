@@ -1,6 +1,8 @@
 """The log of commands on real widgets: filter, jump, export, older ones, why something failed."""
 
 import csv
+import re
+import time
 
 import pytest
 from fleet_supervisor.plugin.desk.command_book import CommandBook
@@ -216,6 +218,28 @@ def test_older_commands_are_asked_for_and_sorted_in(log, gateway, wait):
     wait(lambda: len(rows(log)) == 3)
     assert {"robot": "r1", "limit": 1000} in gateway.asked("get_commands")
     assert rows(log)[-1] == ("r1 · target at 3.00, 4.00", "expired")
+
+
+def test_a_command_of_another_day_tells_its_date_and_has_room_for_it(at_desk, gateway, wait):
+    log = at_desk.dock.log
+
+    def listed(name, at):
+        steps = [CommandStep(CommandState.EXPIRED, at, "bert")]
+        report = CommandReport(name, "r1", "Abort", {}, "bert", CommandState.EXPIRED, steps)
+        gateway.commands = {name: report, **gateway.commands}
+        QTest.mouseClick(log.findChild(QToolButton, "fleet_log_older"), LEFT)
+        wait(lambda: len(rows(log)) == len(gateway.commands))
+        return log.view.model().index(len(gateway.commands) - 1, 0)
+
+    narrow = log.view.columnWidth(0)
+    assert re.fullmatch(r"\d\d:\d\d:\d\d", listed("command-2", time.time()).data())
+    assert log.view.columnWidth(0) == narrow
+    old = listed("command-1", 1_600_000_000.0)
+    assert re.fullmatch(r"2020-09-1\d \d\d:\d\d:\d\d", old.data())
+    assert log.view.columnWidth(0) > narrow
+    assert log.view.visualRect(old).width() > log.view.fontMetrics().horizontalAdvance(old.data())
+    choose(log, "fleet_log_filter", WHICH[Which.OPEN])
+    assert log.view.columnWidth(0) == narrow
 
 
 def test_refused_older_commands_are_said(log, gateway, iface, wait):
