@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from ....robot_bridge.messages import Abort, CommandReport, CommandState
+from ....robot_bridge.messages import Abort, CommandReport, CommandState, CommandStep
 from ...language import tr
 from ..command_book import UNDER_WAY, in_words
 from ..state_words import COMMAND_STATES
@@ -13,11 +13,32 @@ from ..state_words import COMMAND_STATES
 
 @dataclass(frozen=True)
 class Mark:
-    """One step of a command on the time line: when, what it came to, and in words."""
+    """One step of a command on the time line."""
 
-    at: float
-    state: CommandState
-    text: str
+    command: CommandReport
+    step: CommandStep
+
+    @property
+    def at(self) -> float:
+        """When it was, in seconds since 1970."""
+        return self.step.at
+
+    @property
+    def state(self) -> CommandState:
+        """What the command came to."""
+        return self.step.state
+
+    @property
+    def text(self) -> str:
+        """Return it in words. Not kept: of thousands one is looked at."""
+        text = tr(
+            "{robot}: {command} · {state} by {by}",
+            robot=self.command.robot,
+            command=in_words(self.command),
+            state=COMMAND_STATES[self.state],
+            by=self.step.by,
+        )
+        return text + (f" ({self.step.reason})" if self.step.reason else "")
 
 
 def under_way_at(reports: Iterable[CommandReport], moment: float) -> list[CommandReport]:
@@ -46,12 +67,5 @@ def marks(
         for step in report.steps:
             told = step.state not in UNDER_WAY or step.state is CommandState.QUEUED
             if told and since <= step.at <= until:
-                text = tr(
-                    "{robot}: {command} · {state} by {by}",
-                    robot=report.robot,
-                    command=in_words(report),
-                    state=COMMAND_STATES[step.state],
-                    by=step.by,
-                )
-                found.append(Mark(step.at, step.state, text + (f" ({step.reason})" if step.reason else "")))
+                found.append(Mark(report, step))
     return sorted(found, key=lambda mark: mark.at)

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from qgis.core import QgsApplication
+from qgis.PyQt.QtCore import QTimer
 from qgis.PyQt.QtWidgets import QComboBox, QHBoxLayout, QLabel, QToolButton, QVBoxLayout, QWidget
 
 from ...errors import FleetError
@@ -30,6 +33,11 @@ class ReplayDock(ActionDock):
         self.setObjectName("fleet_replay_dock")
         self._desk = desk
         self._told = ""
+        self._left: list[Callable[[], None]] = []
+        """What is still to be shown of a history that has just come."""
+        self._soon = QTimer(self)
+        self._soon.setSingleShot(True)
+        self._soon.timeout.connect(self._show_next)
         self.fetching = Fetching(desk, self)
         self.clockwork = Clockwork(desk.canvas, self)
         self.layer = ReplayLayer(desk.project, self)
@@ -56,6 +64,7 @@ class ReplayDock(ActionDock):
 
     def remove(self) -> None:
         """Stop the clock, take the layer out of the project, leave the live map alone."""
+        self._soon.stop()
         self.fetching.forget()
         self.clockwork.remove()
         self.layer.remove()
@@ -80,6 +89,7 @@ class ReplayDock(ActionDock):
             self._desk.failed.emit(tr("The replay was not loaded: {error}", error=error))
             return
         self._robots = robots
+        self._soon.stop()
         self.layer.remove()
         self.map.begin(self._desk.site)
         self.line.show_time(since, until)
@@ -128,18 +138,32 @@ class ReplayDock(ActionDock):
         if not len(history):
             self._say(why or tr("No positions are stored of that time."))
             return
-        if self._desk.site is not None:
-            self.layer.show(history, self._desk.site)
         self._say(
             tr("positions: {positions}, robots: {robots}", positions=len(history), robots=len(history.names))
             + (tr(" · NOT ALL") if why else "")
         )
-        self._show_marks()
-        self._show(self.clockwork.moment)
+        self._left = [self._show_lines, self._show_all, self._show_robots, self._show_marks]
+        self._soon.start(0)
+
+    def _show_next(self) -> None:
+        """Show one part in a piece of its own: between two of them the window looks for events."""
+        show = self._left.pop(0)
+        if self._left:
+            self._soon.start(0)
+        show()
+
+    def _show_lines(self) -> None:
+        if self._desk.site is not None:
+            self.layer.show(self.fetching.history, self._desk.site)
+
+    def _show_all(self) -> None:
         try:
-            self.map.show_all(history)
+            self.map.show_all(self.fetching.history)
         except FleetError as error:
             self._desk.complained.emit(str(error))
+
+    def _show_robots(self) -> None:
+        self._show(self.clockwork.moment)
 
     def _show(self, moment: float) -> None:
         self.line.show_moment(moment)
@@ -165,6 +189,7 @@ class ReplayDock(ActionDock):
         # bear the same names.
         self._generation = self._desk.picture.generation
         self.fetching.forget()
+        self._soon.stop()
         self.form.show_busy(False)
         self.clockwork.play(False)
         self.layer.remove()
@@ -200,3 +225,4 @@ class ReplayDock(ActionDock):
         rows.addLayout(bottom)
         self.map.setMinimumHeight(180)
         self.setWidget(body)
+        self.setFocusProxy(self.form.last)

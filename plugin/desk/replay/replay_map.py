@@ -79,8 +79,8 @@ class ReplayMap(QgsMapCanvas):
         """
         if self._site is None or not len(history):
             return
-        xy = history.table[:, 2:4]
-        corners = np.array([xy.min(axis=0) - AROUND, xy.max(axis=0) + AROUND])
+        least, greatest = history.extent
+        corners = np.array([least - AROUND, greatest + AROUND])
         show_places(self, self._place().to_map(corners))
 
     def follow(self) -> None:

@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+import numpy.typing as npt
 from qgis.PyQt.QtCore import QEvent, QPointF, QRectF, QSize, Qt, pyqtSignal
 from qgis.PyQt.QtGui import QColor, QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QPen, QPolygonF
 from qgis.PyQt.QtWidgets import QToolTip, QWidget
 
 from ....robot_bridge.messages import CommandState
+from ..live.strokes import flat, lines
 from .clockwork import in_words
 from .past_commands import Mark
 
@@ -18,14 +20,18 @@ EDGE = 9.0
 NEAR = 6.0
 """Pixels within which the mouse means a mark."""
 PLAYHEAD = QColor(123, 31, 162)
-SENT = QColor(33, 102, 172)
+ENDED_OTHERWISE = QColor(239, 108, 0)
 COLOURS = {
-    CommandState.QUEUED: SENT,
+    CommandState.QUEUED: QColor(33, 102, 172),
     CommandState.REACHED: QColor(46, 125, 50),
+    CommandState.SUPERSEDED: ENDED_OTHERWISE,
+    CommandState.EXPIRED: ENDED_OTHERWISE,
+    CommandState.ABORTED: ENDED_OTHERWISE,
     CommandState.FAILED: QColor(198, 40, 40),
 }
-OTHER = QColor(239, 108, 0)
-"""For what was aborted, expired or superseded."""
+"""Of marks, in the order in which they are painted: what failed lies on top."""
+LENGTH = 13
+"""Pixels of a mark, from the line on."""
 STEP, LONG_STEP = 1.0, 10.0
 """Seconds that an arrow key goes, alone and with Shift."""
 
@@ -49,6 +55,7 @@ class TimeLine(QWidget):
         self.since = self.until = self.moment = 0.0
         self.marks: list[Mark] = []
         self._times = np.empty(0)
+        self._states = np.empty(0, dtype=np.str_)
 
     def sizeHint(self) -> QSize:
         return QSize(400, 40)
@@ -62,6 +69,7 @@ class TimeLine(QWidget):
         """Show these commands."""
         self.marks = list(marks)
         self._times = np.array([mark.at for mark in marks])
+        self._states = np.array([mark.state.value for mark in marks], dtype=np.str_)
         self.update()
 
     def show_moment(self, moment: float) -> None:
@@ -69,8 +77,8 @@ class TimeLine(QWidget):
         self.moment = moment
         self.update()
 
-    def pixel(self, moment: float) -> float:
-        """Return where on the line a moment is."""
+    def pixel(self, moment: float | npt.NDArray[np.float64]) -> float | npt.NDArray[np.float64]:
+        """Return where on the line a moment is, or each of many."""
         span = max(self.until - self.since, 1e-9)
         return EDGE + (self.width() - 2 * EDGE) * (moment - self.since) / span
 
@@ -78,9 +86,13 @@ class TimeLine(QWidget):
         """Return the mark nearest to pixel ``x``, None when there is none nearby."""
         if not len(self._times):
             return None
-        away = np.abs(np.array([self.pixel(at) for at in self._times.tolist()]) - x)
+        away = np.abs(self.pixel(self._times) - x)
         nearest = int(away.argmin())
         return self.marks[nearest] if away[nearest] <= NEAR else None
+
+    def columns(self, state: CommandState) -> npt.NDArray[np.float64]:
+        """Return the pixels from left to right where commands came to ``state``: however many, each once."""
+        return np.unique(np.rint(self.pixel(self._times[self._states == state.value])))
 
     def paintEvent(self, event: QPaintEvent) -> None:
         painter = QPainter(self)
@@ -90,11 +102,7 @@ class TimeLine(QWidget):
         painter.drawLine(QPointF(EDGE, middle), QPointF(self.width() - EDGE, middle))
         if self.until <= self.since:
             return
-        for mark in self.marks:
-            x = self.pixel(mark.at)
-            up = mark.state is CommandState.QUEUED
-            painter.setPen(QPen(COLOURS.get(mark.state, OTHER), 2.0))
-            painter.drawLine(QPointF(x, middle), QPointF(x, middle + (-13 if up else 13)))
+        self._paint_marks(painter, middle)
         x = self.pixel(self.moment)
         painter.setPen(QPen(PLAYHEAD, 2.0))
         painter.drawLine(QPointF(x, 6), QPointF(x, self.height() - 6))
@@ -104,6 +112,14 @@ class TimeLine(QWidget):
             painter.setBrush(Qt.BrushStyle.NoBrush)
             painter.setPen(QPen(self.palette().highlight().color(), 1.0))
             painter.drawRect(QRectF(0.5, 0.5, self.width() - 1, self.height() - 1))
+
+    def _paint_marks(self, painter: QPainter, middle: float) -> None:
+        for state, colour in COLOURS.items():
+            x = self.columns(state)
+            end = middle + (-LENGTH if state is CommandState.QUEUED else LENGTH)
+            start_and_end = [np.column_stack([x, np.full(len(x), y)]) for y in (middle, end)]
+            painter.setPen(flat(QPen(colour, 2.0)))
+            painter.drawLines(lines(*start_and_end))
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
         if event.button() == Qt.MouseButton.LeftButton:
@@ -118,7 +134,9 @@ class TimeLine(QWidget):
             mark = self.mark_at(event.pos().x())
             at = self._moment_at(event.pos().x()) if mark is None else mark.at
             QToolTip.showText(
-                self.mapToGlobal(event.pos()), in_words(at) + ("" if mark is None else f"\n{mark.text}"), self
+                self.mapToGlobal(event.pos()),
+                in_words(at) + ("" if mark is None else f"\n{mark.text}"),
+                self,
             )
             return True
         return super().event(event)

@@ -81,6 +81,26 @@ def test_pages_that_come_after_a_look_join_those_before():
 
 def test_nothing_is_nowhere():
     assert History().at(T0).names == []
+    assert History().extent.size == 0
+
+
+@pytest.mark.parametrize("seconds", [-1.0, 0.0, 0.5, 7.0, 13.9, 14.0, 1000.0])
+def test_of_many_robots_each_is_where_it_was_then(seconds):
+    """Each is at x as many metres as seconds went by, from its first position to its last."""
+    made, random = History(), np.random.default_rng(3)
+    ways = {f"r{k}": random.choice(15, size=1 + k % 15, replace=False) for k in range(60)}
+    rows = [place(name, at, float(at)) for name, times in ways.items() for at in times.tolist()]
+    made.add(sorted(rows, key=lambda row: row[1]))
+    then = made.at(T0 + seconds)
+    for name, x in zip(then.names, then.xy[:, 0].tolist(), strict=True):
+        known = seconds >= ways[name].min()
+        assert x == pytest.approx(min(seconds, ways[name].max()) if known else math.nan, nan_ok=True)
+
+
+def test_the_extent_has_every_position_and_no_more(history):
+    assert history.extent.tolist() == [[0.0, 0.0], [50.0, 5.0]]
+    history.add([place("r2", 80, -3.0, 7.0)])
+    assert history.extent.tolist() == [[-3.0, 0.0], [50.0, 7.0]]
 
 
 @pytest.mark.parametrize("row", [["r1", T0], ["r1", None, 0, 0, 0, 0], ["r1", T0, math.nan, 0, 0, 0]])

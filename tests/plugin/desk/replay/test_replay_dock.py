@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import itertools
 import time
+from itertools import groupby, pairwise
 
 import pytest
 from qgis.core import QgsProject
+from qgis.PyQt.QtCore import QTimer
 
 LAYER = "Trajectories (replay)"
 
@@ -23,7 +25,7 @@ def loaded(at_desk, gateway, iface, wait):
     dock = iface.findChild(object, "fleet_replay_dock")
     dock.form.load.click()
     wait(lambda: not dock.fetching.is_busy and len(dock.fetching.history) == 10, what="the positions")
-    wait(lambda: not dock.layer.is_busy, what="the lines")
+    wait(lambda: lines() and not dock.layer.is_busy, what="the lines")
     wait(lambda: dock.line.marks, what="the mark of the abort")
     return dock
 
@@ -59,3 +61,30 @@ def test_the_same_gateway_again_takes_no_history_away(loaded, at_desk, gateway, 
     at_desk.desk.open_link(gateway.url, "anna")
     wait(lambda: at_desk.desk.link.phase.value == "connected")
     assert len(loaded.fetching.history) == 10 and lines()
+
+
+def test_what_came_is_shown_part_by_part_and_the_window_looks_for_events_in_between(
+    loaded, wait, monkeypatch
+):
+    told = []
+    shows = {loaded.layer: "show", loaded.map: "show_all", loaded.line: "show_marks"}
+    for part, show in shows.items():
+        done = getattr(part, show)
+        monkeypatch.setattr(part, show, lambda *a, done=done, show=show: (told.append(show), done(*a)))
+    events = QTimer()
+    events.timeout.connect(lambda: told.append("events"))
+    events.start(0)
+    loaded.fetching.ended.emit("")
+    assert told == []
+    wait(lambda: "show_marks" in told, what="the marks")
+    events.stop()
+    parts = [name for name, _ in groupby(told)]
+    assert [name for name in parts if name != "events"] == list(shows.values())
+    assert all("events" in pair for pair in pairwise(parts))
+
+
+def test_of_a_history_that_is_fetched_anew_nothing_more_is_shown(loaded, wait):
+    loaded.fetching.ended.emit("")
+    loaded.load()
+    assert not loaded._soon.isActive() and not lines()
+    wait(lambda: lines() and not loaded.layer.is_busy, what="the lines of the new one")
