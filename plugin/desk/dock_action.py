@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+from qgis.core import QgsSettings
 from qgis.gui import QgisInterface, QgsDockWidget
-from qgis.PyQt.QtCore import Qt
+from qgis.PyQt.QtCore import QByteArray, Qt
 from qgis.PyQt.QtGui import QIcon
-from qgis.PyQt.QtWidgets import QAction
+from qgis.PyQt.QtWidgets import QAction, QDockWidget
 
 from .actions import ICONS
+
+AREA = Qt.DockWidgetArea.LeftDockWidgetArea
+BROWSER = "Browser"
+"""QGIS's name for its panel of files and services."""
 
 
 class ActionDock(QgsDockWidget):
@@ -19,7 +24,11 @@ class ActionDock(QgsDockWidget):
 
 
 class DockAction:
-    """An entry of ``menu`` and the panel that it shows. :meth:`remove` undoes the constructor."""
+    """An entry of ``menu`` and the panel that it shows. :meth:`remove` undoes the constructor.
+
+    Opened for the first time, the panel is a tab beside QGIS's browser: beneath browser and layers a window
+    of 800 pixels has no room for its parts. Wherever the user drags it, QGIS has it there the next time.
+    """
 
     def __init__(
         self,
@@ -37,10 +46,35 @@ class DockAction:
         self.action.setObjectName(name)
         self.action.setCheckable(True)
         self.action.setToolTip(tip)
-        iface.addDockWidget(Qt.DockWidgetArea.LeftDockWidgetArea, dock)
+        self._is_placed = False
+        iface.addDockWidget(AREA, dock)
         dock.hide()
+        # Before the panel is shown. While QGIS starts would be too soon: it arranges its panels after that.
+        self.action.toggled.connect(self._place)
         dock.setToggleVisibilityAction(self.action)
+        self.action.triggered.connect(self._give_keyboard)
         iface.addPluginToMenu(menu, self.action)
+
+    def _place(self, opened: bool) -> None:
+        if self._is_placed or not opened:
+            return
+        self._is_placed = True
+        window = self._iface.mainWindow()
+        browser = window.findChild(QDockWidget, BROWSER)
+        if browser is None or self._is_known_to_qgis():
+            return
+        if window.dockWidgetArea(browser) == AREA and not browser.isFloating():
+            window.tabifyDockWidget(browser, self.dock)
+
+    def _is_known_to_qgis(self) -> bool:
+        """Tell whether QGIS has put the panel where it was when it was closed last."""
+        arrangement = bytes(QgsSettings().value("UI/state", QByteArray()) or b"")
+        return self.dock.objectName().encode("utf-16-be") in arrangement
+
+    def _give_keyboard(self, opened: bool) -> None:
+        """Let who opened the panel by its key go on in it by keys."""
+        if opened:
+            self.dock.setFocus(Qt.FocusReason.ShortcutFocusReason)
 
     def remove(self) -> None:
         """Take panel, layers and entry out."""

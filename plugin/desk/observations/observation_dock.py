@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 from qgis.PyQt.QtCore import QModelIndex, Qt, QTimer
-from qgis.PyQt.QtGui import QPixmap
 from qgis.PyQt.QtWidgets import QCheckBox, QLabel, QListView, QVBoxLayout, QWidget
 
 from ....robot_bridge.messages import ObservationReport, ReviewObservation
@@ -24,8 +23,9 @@ SHOW_AFTER_MS = 250
 """News of a crowd of robots are shown together."""
 AROUND = 15.0
 """Metres around an observation that are shown with it."""
-PICTURE = 120
-"""Pixels."""
+
+ROWS = 3
+"""Observations that are seen at once at least."""
 
 
 class ObservationDock(ActionDock):
@@ -49,6 +49,7 @@ class ObservationDock(ActionDock):
         self.list.setModel(self.model)
         self.list.setIconSize(ICON)
         self.list.setUniformItemSizes(True)
+        self.list.setMinimumHeight(ROWS * ICON.height())
         self.form = ReviewForm()
         self._lay_out()
         self._timer = QTimer(self)
@@ -160,9 +161,7 @@ class ObservationDock(ActionDock):
         words = [one.label for one in self._desk.observations if one.label][-20:]
         self.form.show_report(report, words, asked=number is not None and self.feed.is_asked(number))
         file = "" if report is None else self._picture_of(report)
-        picture = QPixmap(file).scaledToHeight(PICTURE) if file else QPixmap()
-        self.form.picture.setPixmap(picture)
-        self.form.picture.setVisible(not picture.isNull())
+        self.form.show_picture(file)
 
     def _picture_of(self, report: ObservationReport) -> str:
         """Return the picture of an observation, or of the newest image of the same object."""

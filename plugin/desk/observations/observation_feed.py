@@ -44,7 +44,7 @@ class ObservationFeed(QObject):
         self._without: set[int] = set()
         desk.link_changed.connect(self._link_changed)
         desk.answered.connect(self._answered)
-        desk.observations_changed.connect(self._fetch_image)
+        desk.observations_changed.connect(self._observations_changed)
         desk.site_changed.connect(self._site_changed)
         thumbnails.failed.connect(self._without.add)
 
@@ -104,7 +104,14 @@ class ObservationFeed(QObject):
             self._without.add(number)
         self._fetch_image()
 
-    def _fetch_image(self, *_: object) -> None:
+    def _observations_changed(self, _numbers: list[int]) -> None:
+        # The book forgets those that were reviewed long ago, and a picture is a file of up to 0.2 MB.
+        known = {one.observation for one in self._desk.observations}
+        self._thumbnails.keep(known)
+        self._without &= known
+        self._fetch_image()
+
+    def _fetch_image(self) -> None:
         """Ask for the next image that is not there yet, when no other is on its way."""
         if self._image is not None or self._desk.link.phase is not Phase.CONNECTED:
             return

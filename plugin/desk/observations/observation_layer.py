@@ -6,6 +6,7 @@ from typing import Any
 
 from qgis.core import (
     QgsEditorWidgetSetup,
+    QgsExpression,
     QgsMarkerSymbol,
     QgsProject,
     QgsProperty,
@@ -16,7 +17,7 @@ from qgis.core import (
     QgsVectorLayer,
 )
 
-from ....robot_bridge.messages import ObservationReport, SiteReport
+from ....robot_bridge.messages import ObservationReport, ObservationState, SiteReport
 from ...language import tr
 from ..observation_book import ObservationBook
 from ..row_layer import RowLayer
@@ -30,10 +31,15 @@ FIELDS = (
 COLOURS = {"pending": "255,179,0", "accepted": "46,125,50", "rejected": "117,117,117"}
 MARKS = {"pending": "diamond", "accepted": "circle", "rejected": "cross2"}
 """A shape for each state besides its colour, for those who see no colours."""
+STATES = {
+    ObservationState.PENDING: tr("to be reviewed"),
+    ObservationState.ACCEPTED: tr("accepted"),
+    ObservationState.REJECTED: tr("rejected"),
+}
 PICTURES_FROM = 1000
 """The scale from which on images are on the map themselves."""
 MAP_TIP = """
-<b>[% "object" %]</b> [% coalesce("label", '') %]<br>[% "state" %] · [% "robot" %] · [% "received" %]
+<b>[% "object" %]</b> [% coalesce("label", '') %]<br>[% {state} %] · [% "robot" %] · [% "received" %]
 [% if("thumbnail" != '', '<br><img width="220" src="file:///' || "thumbnail" || '">', '') %]
 """
 
@@ -78,7 +84,7 @@ class ObservationLayer:
 def style(layer: QgsVectorLayer) -> None:
     """Give a layer of observations its looks: a mark for each state, images when looked at from near."""
     root = QgsRuleBasedRenderer.Rule(None)
-    pictures = QgsRuleBasedRenderer.Rule(_picture(), 0, PICTURES_FROM, "\"thumbnail\" != ''", "images")
+    pictures = QgsRuleBasedRenderer.Rule(_picture(), 0, PICTURES_FROM, "\"thumbnail\" != ''", tr("image"))
     root.appendChild(pictures)
     for state, colour in COLOURS.items():
         mark = {
@@ -89,12 +95,14 @@ def style(layer: QgsVectorLayer) -> None:
             "size": "4.2",
         }
         rule = QgsRuleBasedRenderer.Rule(
-            QgsMarkerSymbol.createSimple(mark), filterExp=f"\"state\" = '{state}'", label=state
+            QgsMarkerSymbol.createSimple(mark),
+            filterExp=f"\"state\" = '{state}'",
+            label=STATES[ObservationState(state)],
         )
         root.appendChild(rule)
     layer.setRenderer(QgsRuleBasedRenderer(root))
-    layer.setMapTipTemplate(MAP_TIP)
-    layer.setDisplayExpression('"object" || \' · \' || "state"')
+    layer.setMapTipTemplate(MAP_TIP.replace("{state}", _state_in_words()))
+    layer.setDisplayExpression(f"\"object\" || ' · ' || {_state_in_words()}")
     field = layer.fields().indexFromName("thumbnail")
     shown = {
         "DocumentViewer": 1,
@@ -103,6 +111,12 @@ def style(layer: QgsVectorLayer) -> None:
         "FileWidget": False,
     }
     layer.setEditorWidgetSetup(field, QgsEditorWidgetSetup("ExternalResource", shown))
+
+
+def _state_in_words() -> str:
+    """Return the expression of what the field ``state``, the same in all languages, is to an operator."""
+    words = (f"'{state.value}', {QgsExpression.quotedString(word)}" for state, word in STATES.items())
+    return f'map_get(map({", ".join(words)}), "state")'
 
 
 def _picture() -> QgsMarkerSymbol:

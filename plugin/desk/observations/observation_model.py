@@ -7,19 +7,14 @@ from typing import Any
 from qgis.PyQt.QtCore import QAbstractListModel, QModelIndex, QObject, QSize, Qt
 from qgis.PyQt.QtGui import QColor, QIcon, QPixmap
 
-from ....robot_bridge.messages import ObservationReport, ObservationState
+from ....robot_bridge.messages import ObservationReport
 from ...language import tr
 from ..wall_clock import time_of_day
-from .observation_layer import COLOURS
+from .observation_layer import COLOURS, STATES
 from .thumbnails import Thumbnails
 
 NUMBER = Qt.ItemDataRole.UserRole
 ICON = QSize(56, 42)
-STATES = {
-    ObservationState.PENDING: tr("to be reviewed"),
-    ObservationState.ACCEPTED: tr("accepted"),
-    ObservationState.REJECTED: tr("rejected"),
-}
 
 
 class ObservationModel(QAbstractListModel):

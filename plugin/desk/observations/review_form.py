@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from qgis.PyQt.QtCore import pyqtSignal
+from qgis.PyQt.QtCore import QSize, Qt, QUrl, pyqtSignal
+from qgis.PyQt.QtGui import QPixmap
 from qgis.PyQt.QtWidgets import (
     QComboBox,
     QDoubleSpinBox,
@@ -20,10 +21,12 @@ from ....robot_bridge.messages import ObservationReport, ReviewObservation
 from ...language import tr
 from ..observation_book import is_pending
 from ..push_button import push_button
-from .observation_model import STATES
+from .observation_layer import STATES
 
 WORDS = ("traffic cone", "barrier", "bin", "bench", "column", "vehicle", "object")
 """Offered besides what robots said; anything may be written. In English: robots read them on their maps."""
+PICTURE = QSize(104, 110)
+"""Pixels that a picture fills at most: beside a broader one the form would widen the window."""
 
 
 class ReviewForm(QWidget):
@@ -88,6 +91,17 @@ class ReviewForm(QWidget):
         self.height_m.setValue((report.height if report else None) or 0.0)
         self.radius.setValue((report.radius if report else None) or 0.0)
         self.reason.setText((report.reason if report else "") or "")
+
+    def show_picture(self, file: str) -> None:
+        """Show the picture in ``file``, none where that is empty; the tool tip has it as large as it is."""
+        picture = QPixmap(file) if file else QPixmap()
+        if not picture.isNull():
+            picture = picture.scaled(
+                PICTURE, Qt.AspectRatioMode.KeepAspectRatio, Qt.TransformationMode.SmoothTransformation
+            )
+        self.picture.setPixmap(picture)
+        self.picture.setToolTip(f'<img src="{QUrl.fromLocalFile(file).toString()}">' if file else "")
+        self.picture.setVisible(not picture.isNull())
 
     def request(self, *, accept: bool) -> ReviewObservation | None:
         """Return the review as it stands in the form, None without an observation."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Set
 from pathlib import Path
 
 from qgis.core import QgsApplication
@@ -47,14 +48,17 @@ class Thumbnails(QObject):
         QgsApplication.taskManager().addTask(task)
         return True
 
-    def clear(self) -> None:
-        """Forget every picture: what is being made is of no use any more."""
-        tasks, self._tasks = self._tasks, {}
-        for task in tasks.values():
-            task.cancel()
-        for number in self._made:
+    def keep(self, numbers: Set[int]) -> None:
+        """Forget the pictures of all other observations; what is being made of them is of no use any more."""
+        for number in self._tasks.keys() - numbers:
+            self._tasks.pop(number).cancel()
+        for number in self._made - numbers:
             self._path(number).unlink(missing_ok=True)
-        self._made.clear()
+        self._made &= numbers
+
+    def clear(self) -> None:
+        """Forget every picture."""
+        self.keep(frozenset())
 
     def remove(self) -> None:
         """Delete the folder."""

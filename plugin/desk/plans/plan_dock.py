@@ -216,6 +216,7 @@ class PlanDock(ActionDock):
         outer.addWidget(self.tabs)
         self.tree.setMinimumHeight(100)
         self.setWidget(TallContent(body))
+        self.setFocusProxy(self.form.cones)
 
     def _wire(self) -> None:
         desk, bar = self._desk, self.bar

@@ -64,8 +64,8 @@ class StretchForm(QWidget):
         grid.addWidget(self.last, 0, 0)
         grid.addWidget(self.load, 0, 1)
         grid.addWidget(self.since, 1, 0)
-        grid.addWidget(self.selected, 1, 1)
         grid.addWidget(self.until, 2, 0)
+        grid.addWidget(self.selected, 3, 0, 1, 2)
         grid.setColumnStretch(0, 1)
 
     def _last_changed(self, *_: object) -> None:

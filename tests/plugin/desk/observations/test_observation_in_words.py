@@ -1,0 +1,58 @@
+"""What a layer and the review of observations show, without a gateway."""
+
+import pytest
+from fleet_supervisor.plugin.desk.observations.observation_layer import FIELDS, style
+from fleet_supervisor.plugin.desk.observations.review_form import PICTURE, ReviewForm
+from qgis.core import QgsExpression, QgsExpressionContext, QgsFeature, QgsVectorLayer
+from qgis.PyQt.QtGui import QColor, QImage
+
+
+@pytest.fixture
+def layer(qgis_app):
+    fields = "&".join(f"field={field}" for field in FIELDS.split(","))
+    made = QgsVectorLayer(f"Point?crs=EPSG:32633&{fields}", "Observations", "memory")
+    style(made)
+    return made
+
+
+def context_of(layer, state):
+    feature = QgsFeature(layer.fields())
+    feature["object"], feature["state"], feature["thumbnail"] = "cone-7", state, ""
+    context = QgsExpressionContext()
+    context.setFeature(feature)
+    return context
+
+
+@pytest.mark.parametrize(
+    ("state", "words"),
+    [("pending", "to be reviewed"), ("accepted", "accepted"), ("rejected", "rejected")],
+)
+def test_a_state_is_told_in_the_operators_words_wherever_it_is_read(layer, state, words):
+    context = context_of(layer, state)
+    expression = QgsExpression(layer.displayExpression())
+    assert expression.evaluate(context) == f"cone-7 · {words}", expression.evalErrorString()
+    tip = QgsExpression.replaceExpressionText(layer.mapTipTemplate(), context)
+    assert "<b>cone-7</b>" in tip
+    assert f"<br>{words} · " in tip
+    (rule,) = (
+        one for one in layer.renderer().rootRule().children() if f"'{state}'" in one.filterExpression()
+    )
+    assert rule.label() == words
+
+
+@pytest.mark.parametrize("size", [(640, 360), (300, 400)])
+def test_no_image_makes_the_form_broader_than_it_may_be(qgis_app, tmp_path, size):
+    image = QImage(*size, QImage.Format.Format_RGB32)
+    image.fill(QColor(200, 30, 30))
+    file = str(tmp_path / "image.png")
+    image.save(file)
+    form = ReviewForm()
+    form.show_picture(file)
+    shown = form.picture.pixmap()
+    assert shown.width() <= PICTURE.width()
+    assert shown.height() <= PICTURE.height()
+    assert shown.width() / shown.height() == pytest.approx(size[0] / size[1], rel=0.05)
+    assert "image.png" in form.picture.toolTip()
+    form.show_picture("")
+    assert form.picture.isHidden()
+    assert form.picture.toolTip() == ""
