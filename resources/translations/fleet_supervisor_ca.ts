@@ -1817,6 +1817,16 @@
         </message>
         <message>
             <location filename="../../plugin/desk/drafting/surface_check.py" />
+            <source>The way to {to} leaves the road surface.</source>
+            <translation>El camí fins a {to} surt de la superfície de via.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/surface_check.py" />
+            <source>{leave} of {legs} legs leave the road surface.</source>
+            <translation>{leave} de {legs} trams surten de la superfície de via.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/surface_check.py" />
             <source>{off} of {points} points are</source>
             <translation>{off} de {points} punts són</translation>
         </message>
@@ -2203,34 +2213,34 @@
             <translation>No se sap què han vist els robots: {error}</translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/observations/observation_layer.py" />
+            <source>accepted</source>
+            <translation>acceptada</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/observation_layer.py" />
+            <source>image</source>
+            <translation>imatge</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/observation_layer.py" />
+            <source>rejected</source>
+            <translation>rebutjada</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/observation_layer.py" />
+            <source>to be reviewed</source>
+            <translation>per revisar</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/observations/observation_model.py" />
             <source>Observation {number} at {x:.2f}, {y:.2f} m; double click goes there</source>
             <translation>Observació {number} a {x:.2f}, {y:.2f} m; un doble clic hi va</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/observations/observation_model.py" />
-            <source>accepted</source>
-            <translation>acceptada</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/observations/observation_model.py" />
-            <source>image</source>
-            <translation>imatge</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/observations/observation_model.py" />
             <source>object</source>
             <translation>objecte</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/observations/observation_model.py" />
-            <source>rejected</source>
-            <translation>rebutjada</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/observations/observation_model.py" />
-            <source>to be reviewed</source>
-            <translation>per revisar</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/observations/observation_model.py" />
@@ -4552,6 +4562,11 @@
             <location filename="../../plugin/desk/window.py" />
             <source>No emergency stop is in force.</source>
             <translation>No hi ha cap parada d'emergència en vigor.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/window.py" />
+            <source>Targets and routes</source>
+            <translation>Objectius i rutes</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/window_alarms.py" />

@@ -1817,6 +1817,16 @@
         </message>
         <message>
             <location filename="../../plugin/desk/drafting/surface_check.py" />
+            <source>The way to {to} leaves the road surface.</source>
+            <translation>El camino hasta {to} se sale de la superficie de vía.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/surface_check.py" />
+            <source>{leave} of {legs} legs leave the road surface.</source>
+            <translation>{leave} de {legs} tramos se salen de la superficie de vía.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/surface_check.py" />
             <source>{off} of {points} points are</source>
             <translation>{off} de {points} puntos están</translation>
         </message>
@@ -2203,34 +2213,34 @@
             <translation>No se sabe qué vieron los robots: {error}</translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/observations/observation_layer.py" />
+            <source>accepted</source>
+            <translation>aceptada</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/observation_layer.py" />
+            <source>image</source>
+            <translation>imagen</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/observation_layer.py" />
+            <source>rejected</source>
+            <translation>rechazada</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/observation_layer.py" />
+            <source>to be reviewed</source>
+            <translation>por revisar</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/observations/observation_model.py" />
             <source>Observation {number} at {x:.2f}, {y:.2f} m; double click goes there</source>
             <translation>Observación {number} en {x:.2f}, {y:.2f} m; un doble clic va allí</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/observations/observation_model.py" />
-            <source>accepted</source>
-            <translation>aceptada</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/observations/observation_model.py" />
-            <source>image</source>
-            <translation>imagen</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/observations/observation_model.py" />
             <source>object</source>
             <translation>objeto</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/observations/observation_model.py" />
-            <source>rejected</source>
-            <translation>rechazada</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/observations/observation_model.py" />
-            <source>to be reviewed</source>
-            <translation>por revisar</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/observations/observation_model.py" />
@@ -4552,6 +4562,11 @@
             <location filename="../../plugin/desk/window.py" />
             <source>No emergency stop is in force.</source>
             <translation>No hay ninguna parada de emergencia en vigor.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/window.py" />
+            <source>Targets and routes</source>
+            <translation>Objetivos y rutas</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/window_alarms.py" />

@@ -1811,6 +1811,16 @@
         </message>
         <message>
             <location filename="../../plugin/desk/drafting/surface_check.py" />
+            <source>The way to {to} leaves the road surface.</source>
+            <translation>A(z) {to} helyhez vezető út letér az útfelületről.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/surface_check.py" />
+            <source>{leave} of {legs} legs leave the road surface.</source>
+            <translation>{legs} szakaszból {leave} letér az útfelületről.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/surface_check.py" />
             <source>{off} of {points} points are</source>
             <translation>{points} pontból {off}</translation>
         </message>
@@ -2193,34 +2203,34 @@
             <translation>Nem tudni, mit láttak a robotok: {error}</translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/observations/observation_layer.py" />
+            <source>accepted</source>
+            <translation>elfogadva</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/observation_layer.py" />
+            <source>image</source>
+            <translation>kép</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/observation_layer.py" />
+            <source>rejected</source>
+            <translation>elutasítva</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/observations/observation_layer.py" />
+            <source>to be reviewed</source>
+            <translation>elbírálásra vár</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/observations/observation_model.py" />
             <source>Observation {number} at {x:.2f}, {y:.2f} m; double click goes there</source>
             <translation>{number}. megfigyelés itt: {x:.2f}, {y:.2f} m; dupla kattintásra odamegy</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/observations/observation_model.py" />
-            <source>accepted</source>
-            <translation>elfogadva</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/observations/observation_model.py" />
-            <source>image</source>
-            <translation>kép</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/observations/observation_model.py" />
             <source>object</source>
             <translation>tárgy</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/observations/observation_model.py" />
-            <source>rejected</source>
-            <translation>elutasítva</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/observations/observation_model.py" />
-            <source>to be reviewed</source>
-            <translation>elbírálásra vár</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/observations/observation_model.py" />
@@ -4529,6 +4539,11 @@
             <location filename="../../plugin/desk/window.py" />
             <source>No emergency stop is in force.</source>
             <translation>Nincs érvényben vészleállítás.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/window.py" />
+            <source>Targets and routes</source>
+            <translation>Célok és útvonalak</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/window_alarms.py" />

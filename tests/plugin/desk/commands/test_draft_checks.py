@@ -94,6 +94,21 @@ def test_a_drawn_route_through_an_obstacle_is_refused_though_its_points_are_besi
     assert "is on Hall 3" in hand.told
 
 
+def test_a_drawn_leg_that_leaves_the_road_between_two_points_on_it_is_warned_of(hand, layer_of):
+    box = "Polygon (({0} 20, {1} 20, {1} 80, {0} 80, {0} 20))"
+    # Two surfaces with no room between, and one behind a strip of grass.
+    roads = [box.format(*between) for between in ((10, 40), (40.2, 60), (70, 100))]
+    layer_of("Polygon", *roads, role="road_surface")
+    hand.take("route").click((20, 30), (50, 35))
+    assert "road surface" not in hand.told
+    hand.click((80, 30))
+    assert "The way to (80" in hand.told and "leaves the road surface" in hand.told
+    hand.click((85, 60), (50, 60))
+    assert "2 of 4 legs leave the road surface" in hand.told
+    hand.click((65, 60))
+    assert "is not on a road surface" in hand.told and "legs" not in hand.told
+
+
 def test_only_what_the_filter_of_a_layer_keeps_is_an_obstacle(cone, layer_of):
     layer = layer_of("Polygon", SQUARE, role="obstacle", names=["Hall 3"])
     layer.setCustomProperty("fleet/filter", "\"name\" <> 'Hall 3'")
