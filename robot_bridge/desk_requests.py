@@ -110,7 +110,7 @@ def _commands(reports: Sequence[CommandReport]) -> Json:
 
 
 async def _get_positions(fleet: Fleet, _request: GetPositions, _caller: Caller) -> Json:
-    return positions(fleet.rows())
+    return positions(fleet.rows(), everything=True)
 
 
 async def _set_positions(fleet: Fleet, request: SetPositions, caller: Caller) -> Json:

@@ -50,6 +50,7 @@ from .planning import Planner, StraightPlanner
 from .queueing.book import QueueBook
 from .queueing.driving import QueueDriving
 from .queueing.orders import QueueOrders
+from .removals import Removals
 from .road_traffic.closure_book import ClosureBook
 from .road_traffic.detours import Detours
 from .road_traffic.road_planning import RoadPlanner
@@ -132,6 +133,7 @@ class Fleet:
         )
         self.recorder = Recorder(lambda: self.site.settings.trajectories)
         self._saving = Saving(database, self.robots, self.recorder, clock)
+        self._removals = Removals(self.robots, self._saving, self._book, self.emergency, self._waiting)
         self.observations = ObservationBook(site, database, clock, self._observation_changed)
         self._answering = Answering(
             site, database, self.robots, self._book, planner or StraightPlanner(), self.ways
@@ -155,6 +157,7 @@ class Fleet:
         for robot in known:
             self.robots.restore(robot, self._clock())
         await self._book.restore()
+        self._removals.begin([robot.name for robot in known])
         for robot in known:
             self.robots.assign(robot.name, self._book.busy_with(robot.name))
         await self.emergency.restore()
@@ -319,8 +322,9 @@ class Fleet:
         self.robots.age(self._clock())
 
     async def save(self) -> None:
-        """Store where robots are and have been since the last call, and let old commands expire."""
+        """Store where robots are and have been since the last call, and see to who was removed."""
         await self._saving.save()
+        await self._removals.carry_out()
         await self.emergency.store()
         await self.observations.catch_up()
         await self._book.save_progress()

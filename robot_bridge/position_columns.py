@@ -9,7 +9,7 @@ import msgspec
 import numpy as np
 import numpy.typing as npt
 
-from .messages import POSITION_HEAD, POSITION_TEXTS, POSITION_VALUE, PositionColumns
+from .messages import POSITION_ALWAYS, POSITION_HEAD, POSITION_TEXTS, POSITION_VALUE, PositionColumns
 from .messages.position_columns import ALIGNMENT
 from .robots import Robot
 
@@ -30,7 +30,9 @@ _NOWHERE = (None,) * len(_OF_A_POSE)
 
 
 def table(robots: Sequence[Robot], now: float) -> tuple[dict[str, npt.NDArray[np.float64]], list[str]]:
-    """Return what is told of ``robots``, at least one, at ``now``: (n,) by column, and the words of texts."""
+    """Return what is told of ``robots`` at ``now``: (n,) by column, and the words of texts."""
+    if not robots:
+        return {name: np.empty(0) for name in POSITION_ALWAYS}, []
     facts = zip(*[_ROBOT(robot) for robot in robots], strict=True)
     poses = zip(*[_NOWHERE if robot.pose is None else _POSE(robot.pose) for robot in robots], strict=True)
     told = {**dict(zip(_OF_A_ROBOT, facts, strict=True)), **dict(zip(_OF_A_POSE, poses, strict=True))}
@@ -52,10 +54,16 @@ def table(robots: Sequence[Robot], now: float) -> tuple[dict[str, npt.NDArray[np
     return columns, [word for word in words if word is not None]
 
 
-def frame(t: float, robots: Sequence[Robot], now: float) -> bytes:
-    """Return the binary frame that tells of ``robots`` at ``now``, under the gateway's time ``t``."""
+def frame(
+    t: float, robots: Sequence[Robot], now: float, removed: Sequence[str] = (), *, everything: bool = False
+) -> bytes:
+    """Return the binary frame that tells of ``robots`` at ``now``, under the gateway's time ``t``.
+
+    With ``everything`` they are all that there are; else ``removed`` are gone since what was told last.
+    """
     columns, words = table(robots, now)
-    head = PositionColumns(t, [robot.name for robot in robots], list(columns), words)
+    names = [robot.name for robot in robots]
+    head = PositionColumns(t, names, list(columns), words, list(removed), everything)
     return packed(head, columns.values())
 
 

@@ -53,6 +53,8 @@ class Robots:
         self._stale_after = stale_after
         self._lost_after = lost_after
         self._robots: dict[str, Robot] = {}
+        self._removed: dict[str, int] = {}
+        """the robots that were removed and have not come back, with the revision of that."""
         self.revision = 0
         self.is_back: Callable[[str, float], None] = lambda _robot, _seconds: None
         """Called when a robot is heard again that was lost or offline, with how many seconds it was not."""
@@ -114,6 +116,7 @@ class Robots:
         """Register a robot, or this run of it."""
         anew = self.starts_anew(name, magic)
         robot = self._robots.setdefault(name, Robot(name, magic, link, now))
+        self._removed.pop(name, None)
         if anew and robot.pose is not None:
             # A robot that started anew may have a clock that did so too.
             robot.pose = replace(robot.pose, t=None)
@@ -154,6 +157,16 @@ class Robots:
         else:
             robot.pose_at, robot.located = now, True
         return True
+
+    def remove(self, name: str) -> None:
+        """Know a robot no more, until it says Ready again."""
+        if self._robots.pop(name, None) is not None:
+            self.revision += 1
+            self._removed[name] = self.revision
+
+    def removed(self, since: int) -> list[str]:
+        """Return the robots that were removed after revision ``since`` and have not come back."""
+        return [name for name, revision in self._removed.items() if revision > since]
 
     def closed(self, name: str) -> None:
         """Note that the robot closed its link in good order."""

@@ -31,9 +31,15 @@ ReportRow = msgspec.defstruct(
 fast as a dataclass. Thousands of them are told every second."""
 
 
-def positions(rows: Sequence[Any]) -> dict[str, Any]:
-    """Return rows as the parameters of ``positions`` and the result of ``get_positions``."""
-    return {"t": round(time.time(), 3), "robots": rows}
+def positions(rows: Sequence[Any], removed: Sequence[str] = (), *, everything: bool) -> dict[str, Any]:
+    """Return rows as the parameters of ``positions`` and the result of ``get_positions``.
+
+    With ``everything`` they are all that there are; else ``removed`` are gone since what was told last.
+    """
+    told: dict[str, Any] = {"t": round(time.time(), 3), "robots": rows}
+    if removed:
+        told["removed"] = removed
+    return {**told, "everything": True} if everything else told
 
 
 class Snapshot(NamedTuple):
@@ -100,9 +106,12 @@ class Snapshots:
 
     def _encoded(self, revision: int, form: PositionForm) -> bytes | None:
         now, changed = self._clock(), self._robots.changed(revision)
-        if not changed:
+        everything = revision == EVERYTHING
+        removed = [] if everything else self._robots.removed(revision)
+        if not (changed or removed or everything):
             return None
         if form is PositionForm.COLUMNS:
-            return frame(round(time.time(), 3), changed, now)
-        params = positions(self._robots.rows(now, revision, ReportRow))
+            return frame(round(time.time(), 3), changed, now, removed, everything=everything)
+        rows = self._robots.rows(now, revision, ReportRow)
+        params = positions(rows, removed, everything=everything)
         return msgspec.json.encode({"jsonrpc": "2.0", "method": "positions", "params": params})

@@ -223,6 +223,14 @@ class CommandBook:
         if late:
             await to_its_end(self._expire([c.report.command for c in late]))
 
+    def robots(self) -> set[str]:
+        """Return the robots that have a command with a step to come."""
+        return {command.report.robot for command in self._open}
+
+    async def give_up(self, robot: str, reason: str) -> None:
+        """End every command of a robot, which will not carry it out."""
+        await to_its_end(self._give_up(robot, reason))
+
     async def look_up(self) -> None:
         """Find out what became of a transaction that may have been done or not; raises StoreError."""
         if self._held.are_in_doubt:
@@ -386,6 +394,12 @@ class CommandBook:
             if recalls:
                 for command in await self._held.run(write_recalls, recalls):
                     self._apply(command)
+
+    async def _give_up(self, robot: str, reason: str) -> None:
+        async with self._held.of([robot]):
+            now = self._clock()
+            mine = self._open.of(robot)
+            await self._save([c.step(CommandState.FAILED, now, GATEWAY, reason) for c in mine])
 
     # -------------------------------------------------------------------------------------------------------
 

@@ -88,7 +88,8 @@ def remove(
 ) -> None:
     """Take a robot's account, its token, its connections and what waits for it away; its history stays.
 
-    On SQLite also a robot that never had a token. A gateway that runs knows it until it is started anew.
+    On SQLite also a robot that never had a token. A gateway that runs notices within a second or two,
+    ends the robot's commands, and takes it off every desk.
     """
     address = database_address(database, database_password_file)
 
@@ -105,7 +106,7 @@ def remove(
             tokens.revoke_robot_token(connection, name, time.time())
 
     act(address, "robots remove", name, None, work)
-    _say(f"robot {name} is removed; desks show it until the gateway and they are started anew")
+    _say(f"robot {name} is removed")
 
 
 @app.command("list")

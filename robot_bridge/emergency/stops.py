@@ -199,6 +199,11 @@ class EmergencyStops:
         if call_id == self.call_id and self._tally.answer(robot, refused=refused):
             self._announce()
 
+    def forget(self, robot: str) -> None:
+        """Wait for a robot no more: it was removed."""
+        if self._tally.forget(robot) and self.in_force:
+            self._announce()
+
     def take(self, report: CommandReport) -> None:
         """Note what became of the Abort that a robot was sent."""
         if self.in_force and self._tally.take(report):

@@ -41,6 +41,10 @@ class Tally:
         """Count one robot from nought: it is new, or started anew."""
         self._answers[robot] = Answer.NONE
 
+    def forget(self, robot: str) -> bool:
+        """Count a robot no more; tell whether it was counted."""
+        return self._answers.pop(robot, None) is not None
+
     def answer(self, robot: str, *, refused: bool) -> bool:
         """Take in what a robot said."""
         return self._raise(robot, Answer.REFUSED if refused else Answer.ACKNOWLEDGED)

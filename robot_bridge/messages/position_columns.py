@@ -8,7 +8,7 @@ is not known of a robot is NaN. A column of :data:`POSITION_TEXTS` holds places 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import Enum
 
 POSITION_NUMBERS = (
@@ -39,10 +39,13 @@ class PositionColumns:
     ``columns`` are names of RobotReport's fields, in the order in which they follow, 64-bit little-endian
     floats, one for each of ``robots``; NaN is what is not known, and what is known of no robot is left out.
     In columns ``state``, ``link``, ``status``, ``command`` and ``theta_from`` a number is a place in
-    ``words``, counted from 0.
+    ``words``, counted from 0. With ``everything`` they are all robots that there are; otherwise ``removed``
+    are gone for good.
     """
 
     t: float
     robots: list[str]
     columns: list[str]
     words: list[str]
+    removed: list[str] = field(default_factory=list)
+    everything: bool = False

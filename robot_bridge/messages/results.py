@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from .desk import CommandReport, RobotReport, SiteReport
 from .observations import ObservationReport
@@ -30,10 +30,15 @@ class Done:
 
 @dataclass(frozen=True)
 class Positions:
-    """Where robots are, at the gateway's time ``t``."""
+    """Where robots are, at the gateway's time ``t``.
+
+    With ``everything`` they are all robots that there are; otherwise ``removed`` are gone for good.
+    """
 
     t: float
     robots: list[RobotReport]
+    removed: list[str] = field(default_factory=list)
+    everything: bool = False
 
 
 @dataclass(frozen=True)

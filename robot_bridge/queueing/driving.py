@@ -129,7 +129,8 @@ class QueueDriving:
         """Do what is due now: settle what has ended, send what comes next."""
         self._event.clear()
         due, self._due = self._due, set()
-        await asyncio.gather(*(self._advance(robot) for robot in sorted(due)))
+        # A robot that was removed has a queue still, should it come back.
+        await asyncio.gather(*(self._advance(robot) for robot in sorted(due) if robot in self._robots))
 
     async def redirect(
         self, robot: str, path: SetPath, operator: str, reason: str | None = None

@@ -165,6 +165,11 @@ class WaitingRobots:
         place, _ = seen.places[row.robot]
         return math.dist(place, SetPath(**row.rest).points[0]) <= NEAR
 
+    async def forget(self, robot: str) -> None:
+        """Let a robot wait no longer, and send it nowhere; raises StoreError."""
+        if robot in self._rows:
+            await self._forget(robot)
+
     async def _forget(self, robot: str) -> None:
         await self._database.run(stored.release, robot)
         self._rows.pop(robot, None)

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Sequence, Set
 
 import msgspec
-from sqlalchemy import Connection, delete, select
+from sqlalchemy import Connection, delete, func, select
 
 from ..messages import SendPos
 from ..robots import Robot
@@ -49,6 +49,14 @@ def load(connection: Connection) -> list[Robot]:
 def names(connection: Connection) -> list[str]:
     """Return the names of the robots that an earlier gateway knew, sorted."""
     return sorted(connection.scalars(select(robots.c.name)))
+
+
+def missing(connection: Connection, stored: Set[str]) -> set[str]:
+    """Return those of the robots ``stored`` that are not there any more."""
+    # Asked every second, and the answer nearly always: none.
+    if connection.scalar(select(func.count()).select_from(robots)) == len(stored):
+        return set()
+    return set(stored).difference(names(connection))
 
 
 def forget(connection: Connection, name: str) -> bool:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence, Set
 from typing import Any
 
 from sqlalchemy import Connection
@@ -33,9 +33,21 @@ class Saving:
         self._recorder = recorder
         self._clock = clock
         self._unsaved: set[str] = set()
+        self._stored: set[str] = set()
+        """robots that are stored, unless somebody has removed them from there."""
+        self._removed: set[str] = set()
         self._jotted: list[tuple[int, list[PackedFix]]] = []
         """what a server may still forget, with the session in which it was written."""
         self._writing = asyncio.Lock()
+
+    def begin(self, robots: Iterable[str]) -> None:
+        """Go on with ``robots``, which an earlier gateway stored."""
+        self._stored.update(robots)
+
+    def take_removed(self) -> set[str]:
+        """Return the robots that somebody has removed from the database since the last call."""
+        removed, self._removed = self._removed, set()
+        return removed
 
     def observe(self, robot: str, now: float, pose: SendPos) -> None:
         """Have the place of a robot stored."""
@@ -81,11 +93,14 @@ class Saving:
                     known = [
                         stored_robots.row(self._robots.get(name)) for name in unsaved if name in self._robots
                     ]
-                    await self._database.run(_write, known, fixes)
+                    removed = await self._database.run(_write, known, fixes, self._stored)
                 except Exception:
                     self._recorder.give_back(fixes)
                     self._unsaved |= unsaved
                     raise
+                self._removed |= removed
+                self._stored.update(row[0] for row in known)
+                self._stored -= removed
                 taken_back = self._take_back()
                 # Now that this is stored for good, so is what was jotted down before in the same session.
                 self._jotted.clear()
@@ -105,6 +120,14 @@ class Saving:
         return bool(forgotten)
 
 
-def _write(connection: Connection, robots: Sequence[Row], fixes: Sequence[PackedFix]) -> None:
-    stored_robots.save(connection, robots)
+def _write(
+    connection: Connection, robots: Sequence[Row], fixes: Sequence[PackedFix], stored: Set[str]
+) -> set[str]:
+    """Write robots and positions; return those of the robots ``stored`` that are there no more.
+
+    They are not written anew: somebody has removed them.
+    """
+    removed = stored_robots.missing(connection, stored)
+    stored_robots.save(connection, [row for row in robots if row[0] not in removed])
     trajectories.add(connection, fixes)
+    return removed

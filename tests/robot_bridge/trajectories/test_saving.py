@@ -134,9 +134,10 @@ class ForgetfulServer:
     async def jot(self, _work, fixes):
         self.jotted += fixes
 
-    async def run(self, _write, _robots, fixes):
+    async def run(self, _write, _robots, fixes, _stored):
         self.kept += [*self.jotted, *fixes]
         self.jotted = []
+        return set()
 
     def kill(self):
         self.jotted = []
@@ -162,10 +163,10 @@ async def test_what_a_killed_server_may_have_forgotten_is_stored_again(killed):
 
 async def test_a_server_that_is_killed_while_it_stores_is_told_again_what_it_forgot():
     class KilledOnce(ForgetfulServer):
-        async def run(self, write, robots, fixes):
+        async def run(self, write, robots, fixes, stored):
             if self.session == 1:
                 self.kill()
-            await super().run(write, robots, fixes)
+            return await super().run(write, robots, fixes, stored)
 
     server = KilledOnce()
     yard = Yard(server)
