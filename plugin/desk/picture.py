@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from ...robot_bridge.messages import RobotReport, RobotState, robot_report
 from ..wire.sightings import STATES, Sightings
+from .name_order import name_order
 
 __all__ = ["STATES", "RobotArrays", "RobotPicture", "RobotView"]
 
@@ -73,6 +74,8 @@ class RobotPicture:
         self._seen = Sightings()
         self._names: list[str] = []
         self._by_name: list[int] = []
+        self._orders: list[str] = []
+        """What the robots are sorted by, by row."""
 
     def __len__(self) -> int:
         return len(self._seen)
@@ -86,7 +89,7 @@ class RobotPicture:
     def clear(self) -> None:
         """Forget every robot."""
         self._seen = Sightings()
-        self._names, self._by_name = [], []
+        self._names, self._by_name, self._orders = [], [], []
         self.generation += 1
         self.revision += 1
 
@@ -161,7 +164,8 @@ class RobotPicture:
     def _sorted(self) -> list[int]:
         names = self._seen.names
         if len(self._by_name) != len(names):
-            self._by_name = sorted(range(len(names)), key=names.__getitem__)
+            self._orders += [name_order(name) for name in names[len(self._orders) :]]
+            self._by_name = sorted(range(len(names)), key=self._orders.__getitem__)
         return self._by_name
 
     def _aged(self, now: float, rows: list[int] | slice) -> tuple[npt.NDArray[np.intp], Numbers]:

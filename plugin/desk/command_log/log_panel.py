@@ -23,6 +23,7 @@ from ...settings.preferences import export_path
 from ..command_book import asked_at, in_words, place_of
 from ..csv_files import write_csv
 from ..desk import Desk
+from ..name_order import name_order
 from ..small_views import shrink
 from ..state_words import COMMAND_STATES, longest
 from ..time_column import TimeColumn
@@ -160,7 +161,7 @@ class CommandLog(QWidget):
         self._robots.blockSignals(True)
         while self._robots.count() > 2:
             self._robots.removeItem(2)
-        self._robots.addItems(sorted(self._listed))
+        self._robots.addItems(sorted(self._listed, key=name_order))
         self._robots.setCurrentText(chosen)
         self._robots.blockSignals(False)
 

@@ -216,6 +216,21 @@ def unknown(title):
     }.get(title, set())
 
 
+def test_names_are_sorted_by_their_numbers_and_newcomers_among_them(
+    table, at_desk, gateway, make_robot, wait
+):
+    gateway.show(*[make_robot(name, 1, 1) for name in ("r10", "R3", "r2b", "Ö1")])
+    wait(lambda: len(at_desk.desk.picture) == 8)
+    table.refresh()
+    assert column(table, "Robot") == ["a9", "r1", "r2", "r2b", "R3", "r3", "r10", "Ö1"]
+    gateway.show(make_robot("r9", 1, 1), make_robot("r100", 1, 1))
+    wait(lambda: len(at_desk.desk.picture) == 10)
+    table.refresh()
+    assert column(table, "Robot")[6:9] == ["r9", "r10", "r100"]
+    click_head(table, "Robot")
+    assert column(table, "Robot")[1:4] == ["r100", "r10", "r9"]
+
+
 def test_what_changes_is_put_in_order_again_and_stays_selected(table, at_desk, gateway, make_robot, wait):
     table.sortByColumn(TITLES.index("Speed"), Qt.SortOrder.DescendingOrder)
     assert column(table, "Robot") == ["r2", "r1", "a9", "r3"]
