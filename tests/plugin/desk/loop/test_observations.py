@@ -115,7 +115,7 @@ def test_an_accepted_object_is_in_the_next_map_with_what_the_operator_wrote(seen
     )
     told = operator.desk.observations.get(number)
     assert (told.semantics, told.height, told.radius, told.reviewed_by) == ("litter bin", 1.1, 0.4, "anna")
-    operator.wait("the layer", lambda: rows()[number] == "accepted", 5)
+    operator.wait("the layer", lambda: rows().get(number) == "accepted", 5)
     bin_7 = objects_on_map(loop)["bin-7"]
     assert bin_7.semantics == "litter bin"
     assert bin_7.height[0] == pytest.approx(1.1)
