@@ -16,6 +16,7 @@ from qgis.PyQt.QtWidgets import (
 )
 
 from ...language import tr
+from ..going_there import GoingThere
 from ..push_button import push_button
 from ..small_views import shrink
 from ..time_column import TimeColumn
@@ -27,7 +28,7 @@ from .watch import AlarmWatch
 
 
 class AlarmPanel(QWidget):
-    """A row for each alarm; a double click goes to the robot."""
+    """A row for each alarm; a double click or Enter goes to the robot."""
 
     robots_wanted = pyqtSignal(list)
     """The names of robots to be selected and shown."""
@@ -78,7 +79,7 @@ class AlarmPanel(QWidget):
         view.setColumnWidth(2, view.fontMetrics().horizontalAdvance(tr("over") + " ×00") + 14)
         view.horizontalHeader().setSectionResizeMode(1, QHeaderView.ResizeMode.Stretch)
         view.horizontalHeader().setHighlightSections(False)
-        view.doubleClicked.connect(lambda index: self._go(self._model.alarm_at(index.row())))
+        GoingThere(view, lambda index: self._go(self._model.alarm_at(index.row())))
         view.selectionModel().selectionChanged.connect(self._allow)
 
     def _buttons(self) -> QHBoxLayout:

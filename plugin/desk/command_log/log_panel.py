@@ -23,6 +23,7 @@ from ...settings.preferences import export_path
 from ..command_book import asked_at, in_words, place_of
 from ..csv_files import write_csv
 from ..desk import Desk
+from ..going_there import GoingThere
 from ..name_order import name_order
 from ..small_views import shrink
 from ..state_words import COMMAND_STATES, longest
@@ -66,7 +67,7 @@ class CommandLog(QWidget):
         self._lay_out()
         self._robots.currentIndexChanged.connect(self.refresh)
         self._which.currentIndexChanged.connect(self.refresh)
-        self.view.doubleClicked.connect(self._go)
+        GoingThere(self.view, self._go)
         self.view.selectionModel().selectionChanged.connect(self._allow)
         desk.commands_changed.connect(self.show_reports)
         desk.site_changed.connect(self._site_changed)

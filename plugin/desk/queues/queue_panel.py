@@ -14,6 +14,7 @@ from ...errors import FleetError
 from ...language import tr
 from ..colours import WRONG_STYLE
 from ..desk import Desk
+from ..going_there import GoingThere
 from .queue_edits import QueueEdits
 from .task_list import TaskList
 from .task_words import last_ended_in_words, queue_in_words
@@ -71,7 +72,7 @@ class QueuePanel(QWidget):
         tasks.remove_wanted.connect(lambda task: self._ask(self._edits.remove, task))
         tasks.first_wanted.connect(lambda task: self._ask(self._edits.make_current, task))
         tasks.selectionModel().selectionChanged.connect(self._show_buttons)
-        tasks.doubleClicked.connect(lambda index: self._go(index.row()))
+        GoingThere(tasks, lambda index: self._go(index.row()))
         self._up.clicked.connect(lambda: self._step(-1))
         self._down.clicked.connect(lambda: self._step(2))
         self._remove.clicked.connect(lambda: self._chosen(self._edits.remove))

@@ -147,7 +147,7 @@ class TaskList(QTreeView):
         elif event.key() == keys.Key_Delete:
             self.remove_wanted.emit(task)
         elif event.key() in (keys.Key_Return, keys.Key_Enter):
-            # Alone it would let a robot drive off by a slip of the hand.
+            # Alone it goes to the place: it must not let a robot drive off by a slip of the hand.
             if event.modifiers() & Qt.KeyboardModifier.ControlModifier:
                 self.first_wanted.emit(task)
         else:

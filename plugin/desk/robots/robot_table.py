@@ -18,6 +18,7 @@ from ...errors import PlacementError
 from ...language import tr
 from ..column_heads import fit_heads
 from ..desk import Desk
+from ..going_there import GoingThere
 from ..small_views import shrink
 from .columns import COLUMNS, TASK
 from .position_crs import PositionCrs
@@ -51,7 +52,7 @@ class RobotTable(QTableView):
         self._model.modelReset.connect(self._reset)
         self._set_up()
         self.selectionModel().selectionChanged.connect(self._selected_here)
-        self.doubleClicked.connect(lambda index: self.zoom_wanted.emit(self._name(index)))
+        GoingThere(self, lambda index: self.zoom_wanted.emit(self._name(index)))
         self.positions.changed.connect(self.refresh)
         desk.selection_changed.connect(self._selected_elsewhere)
         desk.pulled.connect(self._pulled)

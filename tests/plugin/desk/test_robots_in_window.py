@@ -52,12 +52,16 @@ def test_a_selection_in_the_layer_selects_in_the_table(at_desk, wait):
     assert [index.data() for index in view.selectionModel().selectedRows()] == ["r2"]
 
 
-def test_a_double_click_in_the_table_goes_to_the_robot(at_desk, iface, wait):
+@pytest.mark.parametrize("how", ["double click", Qt.Key.Key_Return, Qt.Key.Key_Enter])
+def test_a_double_click_or_enter_in_the_table_goes_to_the_robot(at_desk, iface, wait, how):
     view, _ = table(at_desk)
     wait(lambda: view.model().rowCount() == 2)
     at = view.visualRect(view.model().index(1, 0)).center()
     QTest.mouseClick(view.viewport(), LEFT, pos=at)
-    QTest.mouseDClick(view.viewport(), LEFT, pos=at)
+    if how == "double click":
+        QTest.mouseDClick(view.viewport(), LEFT, pos=at)
+    else:
+        QTest.keyClick(view, how)
     centre = iface.canvas.center()
     assert (centre.x() - 488000, centre.y() - 5190000) == pytest.approx((80, 60), abs=1)
     assert 60 <= iface.canvas.extent().height() < 110

@@ -148,12 +148,16 @@ def test_acknowledging_one_takes_it_from_the_new_ones(at_alarms, gateway, make_r
     wait(lambda: [state for _, state in alarms(at_alarms)] == ["over"])
 
 
-def test_a_double_click_goes_to_both_robots(at_alarms, gateway, make_robot, iface, wait):
+@pytest.mark.parametrize("how", ["double click", "Enter"])
+def test_a_double_click_or_enter_goes_to_both_robots(at_alarms, gateway, make_robot, iface, wait, how):
     gateway.show(make_robot("r1", 79.5, 60))
     wait(lambda: len(alarms(at_alarms)) == 1)
     iface.look_at(0, 0, 20, 20)
     view = choose(at_alarms, 0)
-    QTest.mouseDClick(view.viewport(), LEFT, pos=view.visualRect(view.model().index(0, 1)).center())
+    if how == "Enter":
+        QTest.keyClick(view, Qt.Key.Key_Return)
+    else:
+        QTest.mouseDClick(view.viewport(), LEFT, pos=view.visualRect(view.model().index(0, 1)).center())
     assert at_alarms.desk.selection == ("r2", "r1")
     centre = iface.canvas.extent().center()
     assert (centre.x() - 488000, centre.y() - 5190000) == pytest.approx((79.75, 60), abs=0.5)

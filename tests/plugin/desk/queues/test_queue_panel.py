@@ -193,10 +193,14 @@ def test_while_an_answer_is_awaited_nothing_else_is_asked_but_to_pause(panel, ga
     wait(lambda: gateway.queues.get("r1").state is QueueState.PAUSED)
 
 
-def test_a_double_click_shows_the_place_on_the_map(panel, iface, wait):
+@pytest.mark.parametrize("how", ["double click", "Enter"])
+def test_a_double_click_or_enter_shows_the_place_on_the_map(panel, gateway, iface, wait, how):
     row = panel.list.visualRect(panel.list.tasks.index(1, 1)).center()
     QTest.mouseClick(panel.list.viewport(), Qt.MouseButton.LeftButton, pos=row)
-    QTest.mouseDClick(panel.list.viewport(), Qt.MouseButton.LeftButton, pos=row)
+    if how == "Enter":
+        QTest.keyClick(panel.list, Qt.Key.Key_Return)
+    else:
+        QTest.mouseDClick(panel.list.viewport(), Qt.MouseButton.LeftButton, pos=row)
     middle = iface.canvas.center()
     assert (middle.x() - 488000, middle.y() - 5190000) == pytest.approx((60, 50))
 
