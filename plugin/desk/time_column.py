@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from qgis.PyQt.QtWidgets import QTableView, QTreeView
 
-from .wall_clock import time_of_day
+from .wall_clock import short_time
 
 TODAY = "00:00:00"
 
@@ -19,7 +19,7 @@ class TimeColumn:
 
     def make_room(self, oldest: float | None) -> None:
         """Have room for times from ``oldest`` on, seconds since 1970: another day's have their date."""
-        widest = max(TODAY, time_of_day(oldest), key=len)
+        widest = max(TODAY, short_time(oldest), key=len)
         if len(widest) != self._letters:
             self._letters = len(widest)
             self._view.setColumnWidth(0, self._view.fontMetrics().horizontalAdvance(widest) + self._beside)

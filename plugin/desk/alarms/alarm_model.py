@@ -7,7 +7,7 @@ from qgis.PyQt.QtGui import QFont
 
 from ...language import tr
 from ..row_model import RowModel
-from ..wall_clock import time_of_day
+from ..wall_clock import short_time, time_of_day
 from .alarm import Alarm
 from .colours import colour_of
 from .words import KINDS, state_in_words
@@ -24,7 +24,7 @@ class AlarmModel(RowModel):
     def data(self, index: QModelIndex, role: int = 0) -> object:
         alarm = self.rows[index.row()]
         if role == Qt.ItemDataRole.DisplayRole:
-            return (time_of_day(alarm.began), alarm.text, state_in_words(alarm))[index.column()]
+            return (short_time(alarm.began), alarm.text, state_in_words(alarm))[index.column()]
         if role == Qt.ItemDataRole.ToolTipRole:
             return tip(alarm)
         if role == Qt.ItemDataRole.ForegroundRole:

@@ -11,7 +11,7 @@ from ...language import tr
 from ..command_book import UNDER_WAY, in_words, place_of
 from ..csv_files import iso_time
 from ..state_words import COMMAND_STATES
-from ..wall_clock import time_of_day
+from ..wall_clock import short_time
 
 FAILED = (CommandState.ABORTED, CommandState.FAILED, CommandState.EXPIRED)
 CSV_HEAD = (
@@ -59,7 +59,7 @@ def cells(report: CommandReport) -> tuple[str, str, str, str]:
     """Return a command's row: time, what, state, and how far off or why or by whom."""
     first = report.steps[0].at if report.steps else None
     return (
-        time_of_day(first),
+        short_time(first),
         f"{report.robot} · {in_words(report)}",
         COMMAND_STATES[report.state],
         _details(report),
@@ -70,7 +70,7 @@ def step_cells(step: CommandStep, report: CommandReport) -> tuple[str, str, str,
     """Return a step's row: time, by whom and why, state, and how far off."""
     off = _off(report) if step.state is CommandState.REACHED else ""
     because = f": {step.reason}" if step.reason else ""
-    return time_of_day(step.at), tr("by {by}", by=step.by) + because, COMMAND_STATES[step.state], off
+    return short_time(step.at), tr("by {by}", by=step.by) + because, COMMAND_STATES[step.state], off
 
 
 def summary(reports: Iterable[CommandReport]) -> str:

@@ -13,10 +13,11 @@ from ....robot_bridge.messages import CommandReport
 from ...language import tr
 from ..colours import COMMAND_COLOURS, for_letters
 from ..command_book import asked_at
+from ..wall_clock import date_and_time
 from .entries import Filter, cells, step_cells
 
 COLUMNS = (tr("Time"), tr("Command"), tr("State"), tr("Details"))
-STATE = 2
+TIME, STATE = 0, 2
 COMMAND_ROLE = Qt.ItemDataRole.UserRole
 ROLES = frozenset(
     {
@@ -100,6 +101,10 @@ class LogModel(QAbstractItemModel):
         report = self.report_at(index)
         if report is None:
             return None
+        if role == Qt.ItemDataRole.ToolTipRole and index.column() == TIME:
+            return date_and_time(
+                asked_at(report) if index.internalId() == 0 else report.steps[index.row()].at
+            )
         if role in (Qt.ItemDataRole.DisplayRole, Qt.ItemDataRole.ToolTipRole):
             return self._cells(index, report)[index.column()]
         if role == COMMAND_ROLE:

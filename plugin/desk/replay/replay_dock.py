@@ -223,6 +223,6 @@ class ReplayDock(ActionDock):
         rows.addWidget(self.banner)
         rows.addWidget(self.map, 1)
         rows.addLayout(bottom)
-        self.map.setMinimumHeight(180)
+        self.map.setMinimumHeight(100)
         self.setWidget(body)
         self.setFocusProxy(self.form.last)

@@ -3,7 +3,7 @@
 import time
 
 from fleet_supervisor.plugin.desk.emergency_banner import in_words
-from fleet_supervisor.plugin.desk.wall_clock import date_and_time, time_of_day
+from fleet_supervisor.plugin.desk.wall_clock import date_and_time, short_time, time_of_day
 from fleet_supervisor.robot_bridge.messages import EmergencyReport
 
 NOON = time.mktime((2026, 11, 22, 12, 0, 0, 0, 0, -1))
@@ -21,12 +21,17 @@ def test_another_day_is_named():
     assert time_of_day(NOON, NOON + 365 * 24 * HOUR) == "2026-11-22 12:00:00"
 
 
+def test_a_narrow_column_has_the_day_without_the_year():
+    assert short_time(NOON, NOON + HOUR) == "12:00:00"
+    assert short_time(NOON, NOON + 13 * HOUR) == "11-22 12:00"
+
+
 def test_what_is_written_down_has_its_date_today_too():
     assert date_and_time(NOON) == "2026-11-22 12:00:00"
 
 
 def test_no_time_is_no_text():
-    assert time_of_day(None) == date_and_time(None) == ""
+    assert time_of_day(None) == short_time(None) == date_and_time(None) == ""
 
 
 def test_an_emergency_stop_of_another_day_says_since_when():
