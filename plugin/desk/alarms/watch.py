@@ -10,8 +10,7 @@ from qgis.PyQt.QtCore import QObject, pyqtSignal
 from ...language import tr
 from ...sites.surface_store import SurfaceStore
 from ...wire.status import Phase
-from ..desk import Desk
-from ..picture import Gone
+from ..desk import PULL_EVERY_MS, Desk
 from .alarm import AlarmChange, AlarmEvent, Key
 from .board import AlarmBoard
 from .message_log import AlarmMessages
@@ -21,6 +20,7 @@ from .stored_limits import read_limits, write_limits
 from .thresholds import AlarmKind, Thresholds
 from .words import KINDS
 
+LOOK_EVERY = 500 // PULL_EVERY_MS
 MANY = 500
 """With more robots it looks half as often."""
 
@@ -39,17 +39,15 @@ class AlarmWatch(QObject):
         self._ground = RoadGround(surfaces, self)
         self._situations = Situations(desk, self._ground)
         self._messages = AlarmMessages(desk.clock)
-        self._turn = desk.beat.turn()
+        self._pulls = 0
         self._generation = desk.picture.generation
         self._told = ""
         self.board = AlarmBoard(read_limits())
         desk.pulled.connect(self._pulled)
-        desk.robots_removed.connect(self._drop)
 
     def remove(self) -> None:
         """Look no more."""
         self._desk.pulled.disconnect(self._pulled)
-        self._desk.robots_removed.disconnect(self._drop)
         self._ground.remove()
 
     def why_not(self) -> str:
@@ -74,7 +72,8 @@ class AlarmWatch(QObject):
     def acknowledge(self, keys: Iterable[Key]) -> None:
         """Note that the operator has seen these alarms."""
         link = self._desk.link
-        operator = (link.who if link.phase is Phase.CONNECTED else "") or tr("this desk")
+        # While connected the link's text is who this desk is to the gateway.
+        operator = (link.reason if link.phase is Phase.CONNECTED else "") or tr("this desk")
         self._tell(self.board.acknowledge(keys, operator, time.time()))
 
     def acknowledge_all(self) -> None:
@@ -92,12 +91,10 @@ class AlarmWatch(QObject):
             self._generation = self._desk.picture.generation
             self.board.clear()
             self.changed.emit()
-        if self._turn.has_come(1 if len(self._desk.picture) <= MANY else 2):
+        self._pulls += 1
+        every = LOOK_EVERY if len(self._desk.picture) <= MANY else 2 * LOOK_EVERY
+        if self._pulls % every == 0:
             self.look()
-
-    def _drop(self, gone: Gone) -> None:
-        self.board.drop(gone)
-        self.changed.emit()
 
     def _tell(self, events: list[AlarmEvent]) -> None:
         self._messages.write([event.alarm for event in events if event.change is AlarmChange.BEGAN])
