@@ -10,7 +10,7 @@ from qgis.PyQt.QtCore import QObject, pyqtSignal
 from ...language import tr
 from ...sites.surface_store import SurfaceStore
 from ...wire.status import Phase
-from ..desk import PULL_EVERY_MS, Desk
+from ..desk import Desk
 from .alarm import AlarmChange, AlarmEvent, Key
 from .board import AlarmBoard
 from .message_log import AlarmMessages
@@ -20,7 +20,6 @@ from .stored_limits import read_limits, write_limits
 from .thresholds import AlarmKind, Thresholds
 from .words import KINDS
 
-LOOK_EVERY = 500 // PULL_EVERY_MS
 MANY = 500
 """With more robots it looks half as often."""
 
@@ -39,7 +38,7 @@ class AlarmWatch(QObject):
         self._ground = RoadGround(surfaces, self)
         self._situations = Situations(desk, self._ground)
         self._messages = AlarmMessages(desk.clock)
-        self._pulls = 0
+        self._turn = desk.beat.turn()
         self._generation = desk.picture.generation
         self._told = ""
         self.board = AlarmBoard(read_limits())
@@ -72,8 +71,7 @@ class AlarmWatch(QObject):
     def acknowledge(self, keys: Iterable[Key]) -> None:
         """Note that the operator has seen these alarms."""
         link = self._desk.link
-        # While connected the link's text is who this desk is to the gateway.
-        operator = (link.reason if link.phase is Phase.CONNECTED else "") or tr("this desk")
+        operator = (link.who if link.phase is Phase.CONNECTED else "") or tr("this desk")
         self._tell(self.board.acknowledge(keys, operator, time.time()))
 
     def acknowledge_all(self) -> None:
@@ -91,9 +89,7 @@ class AlarmWatch(QObject):
             self._generation = self._desk.picture.generation
             self.board.clear()
             self.changed.emit()
-        self._pulls += 1
-        every = LOOK_EVERY if len(self._desk.picture) <= MANY else 2 * LOOK_EVERY
-        if self._pulls % every == 0:
+        if self._turn.has_come(1 if len(self._desk.picture) <= MANY else 2):
             self.look()
 
     def _tell(self, events: list[AlarmEvent]) -> None:
