@@ -13,6 +13,7 @@ from ...errors import PlacementError
 from ...language import tr
 from ..beat import PULL_EVERY_MS
 from ..desk import Desk
+from ..picture import Gone
 from ..placement import Placement
 from ..project_watch import ProjectWatch
 from .following import Whom, keep_in_view, show_places
@@ -63,11 +64,15 @@ class LiveView(QObject):
         self._frame.setSingleShot(True)
         self._frame.setInterval(FRAME_MS)
         self._frame.timeout.connect(self.show_now)
+        self._after_pull = QTimer(self)
+        self._after_pull.setSingleShot(True)
+        self._after_pull.timeout.connect(self._show_pulled)
         self._after_frame = QTimer(self)
         self._after_frame.setSingleShot(True)
         self._after_frame.timeout.connect(self._write_layer)
         desk.pulled.connect(self._pulled)
         desk.site_changed.connect(self._site_changed)
+        desk.robots_removed.connect(self._robots_removed)
         desk.selection_changed.connect(self._selection_changed)
         desk.commands_changed.connect(self._frame.start)
         desk.drafts.changed.connect(self._frame.start)
@@ -80,6 +85,7 @@ class LiveView(QObject):
     def remove(self) -> None:
         """Take the overlay and the card off the canvas and the layer out of the project."""
         self._frame.stop()
+        self._after_pull.stop()
         self._after_frame.stop()
         self._desk.canvas.destinationCrsChanged.disconnect(self._way_changed)
         self._desk.project.transformContextChanged.disconnect(self._way_changed)
@@ -148,6 +154,10 @@ class LiveView(QObject):
 
     def _pulled(self) -> None:
         self._pulls += 1
+        # In a piece of its own: the lists that look at the news are painted in this one.
+        self._after_pull.start(0)
+
+    def _show_pulled(self) -> None:
         picture = self._desk.picture
         is_whole = self._plans.is_whole and self.overlay.is_whole
         is_new = self.shown != (picture.generation, picture.revision) or not is_whole
@@ -171,6 +181,11 @@ class LiveView(QObject):
             self.layer.clear()
             self._trails.clear()
         self._placement = None
+        self._frame.start()
+
+    def _robots_removed(self, gone: Gone) -> None:
+        self._trails.drop(gone.rows)
+        self.layer.drop(gone.names)
         self._frame.start()
 
     def _way_changed(self) -> None:

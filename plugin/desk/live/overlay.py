@@ -36,7 +36,11 @@ class FleetOverlay(QgsMapCanvasItem):
     def show_scene(self, placed: PlacedScene | None) -> None:
         """Paint ``placed`` from now on, None for nothing."""
         self._placed = placed
-        self._painter.prepare(placed, self.screen(self._canvas.viewport().devicePixelRatioF()))
+        self.prepare()
+
+    def prepare(self) -> None:
+        """Go on with what is not whole of the scene, and have it as the canvas shows it now."""
+        self._painter.prepare(self._placed, self.screen(self._canvas.viewport().devicePixelRatioF()))
         self.update()
 
     def boundingRect(self) -> QRectF:

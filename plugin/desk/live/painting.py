@@ -42,7 +42,10 @@ class ScenePainter:
         return self._plans.is_whole
 
     def prepare(self, placed: PlacedScene | None, screen: Screen) -> None:
-        """Take in a new scene: what is drawn once for each and not for each time it is painted."""
+        """Take in a new scene: what is drawn once for each and not for each time it is painted.
+
+        The same scene is taken in again while it is not whole, or when it is seen on another screen.
+        """
         if placed is None:
             self._trails.forget()
             self._viewed = None
@@ -51,6 +54,7 @@ class ScenePainter:
         view = self._view(placed, screen)
         self._circles = circles(placed, view)
         self.robots.prepare(placed, view, screen)
+        self._plans.prepare(placed, screen, self.robots.marks)
 
     def paint(self, painter: QPainter, placed: PlacedScene, screen: Screen) -> None:
         """Paint the scene that was prepared last."""

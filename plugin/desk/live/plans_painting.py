@@ -20,6 +20,8 @@ from .strokes import broken, lines
 from .ways_image import WaysImage
 
 Points = npt.NDArray[np.float64]
+Marks = Callable[[float, float], Sprites]
+"""Gives the marks of a pixel ratio and a size."""
 MANY = 60
 """With more plans targets are small, and only selected robots have their lines and distances."""
 SMALL = 0.5
@@ -43,27 +45,28 @@ class PlansPainter:
         """Whether nothing is left to be painted by more frames."""
         return self._ways.is_whole
 
-    def paint(
-        self,
-        painter: QPainter,
-        placed: PlacedScene,
-        pixels: Points,
-        screen: Screen,
-        marks: Callable[[float, float], Sprites],
-    ) -> None:
-        """Paint every plan; ``pixels`` (n, 2) is where each robot is.
-
-        ``marks`` gives the marks of a pixel ratio and a size.
-        """
+    def prepare(self, placed: PlacedScene, screen: Screen, marks: Marks) -> None:
+        """Make what :meth:`paint` only puts there: in one piece both would hold up the window."""
         plans = placed.scene.plans
-        self.distances = []
         if not plans:
             self._ways.forget()
             self._of = None
             return
         if placed.plans is not self._of:
             self._take(placed)
-        self._ways.paint(painter, placed, screen)
+        self._ways.prepare(placed, screen)
+        for size in (SMALL, 1.0):
+            marks(screen.ratio, size)
+
+    def paint(
+        self, painter: QPainter, placed: PlacedScene, pixels: Points, screen: Screen, marks: Marks
+    ) -> None:
+        """Paint every plan that was prepared; ``pixels`` (n, 2) is where each robot is."""
+        plans = placed.scene.plans
+        self.distances = []
+        if not plans:
+            return
+        self._ways.paint(painter, screen)
         targets = screen.pixels(self._ends)
         shown = list(range(len(plans))) if len(plans) <= MANY else _of_chosen(placed)
         _lines_to_targets(painter, placed, shown, pixels, targets)

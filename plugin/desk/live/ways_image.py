@@ -30,14 +30,14 @@ class WaysImage:
         self.forget()
 
     def forget(self) -> None:
-        """Show nothing until the next :meth:`paint`."""
+        """Show nothing until the next :meth:`prepare`."""
         self._shown: _WaysSheet | None = None
         self._next: _WaysSheet | None = None
         self.is_whole = True
         """Whether nothing is left to be painted by more frames."""
 
-    def paint(self, painter: QPainter, placed: PlacedScene, screen: Screen) -> None:
-        """Paint the ways as far as they are known on ``screen``."""
+    def prepare(self, placed: PlacedScene, screen: Screen) -> None:
+        """Paint some more of the ways into what is shown of them on ``screen``."""
         if self._next is not None and self._next.to_map != placed.to_map:
             self.forget()
         if self._next is None or (self._next.is_full and not self._next.is_of(placed, screen)):
@@ -46,7 +46,10 @@ class WaysImage:
         self.is_whole = self._next.is_full and self._next.is_of(placed, screen)
         if self._next.is_full or self._shown is None:
             self._shown = self._next
-        if self._shown.image is None:
+
+    def paint(self, painter: QPainter, screen: Screen) -> None:
+        """Show what was prepared, where it is on ``screen``."""
+        if self._shown is None or self._shown.image is None:
             return
         painter.save()
         if screen != self._shown.screen:

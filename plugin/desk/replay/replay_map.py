@@ -6,13 +6,14 @@ import numpy as np
 from qgis.core import QgsProject
 from qgis.gui import QgsMapCanvas, QgsMapToolPan
 from qgis.PyQt import sip
-from qgis.PyQt.QtCore import QSize
+from qgis.PyQt.QtCore import QSize, QTimer
 from qgis.PyQt.QtWidgets import QWidget
 
 from ....robot_bridge.messages import SiteReport
 from ...errors import PlacementError
 from ..command_book import CommandBook
 from ..live.following import show_places
+from ..live.live_view import FRAME_MS
 from ..live.overlay import FleetOverlay
 from ..live.plans import Plans
 from ..live.scene import Placer, Scene
@@ -43,6 +44,11 @@ class ReplayMap(QgsMapCanvas):
         self._placement: Placement | None = None
         self._site: SiteReport | None = None
         self._moment: float | None = None
+        self._soon = QTimer(self)
+        self._soon.setSingleShot(True)
+        self._soon.setInterval(FRAME_MS)
+        self._soon.timeout.connect(self._go_on)
+        self.extentsChanged.connect(self._soon.start)
         self._pan = QgsMapToolPan(self)
         self.setMapTool(self._pan)
         self.setCanvasColor(live.canvasColor())
@@ -55,6 +61,7 @@ class ReplayMap(QgsMapCanvas):
 
     def remove(self) -> None:
         """Draw nothing any more and leave the live map alone."""
+        self._soon.stop()
         self._live.layersChanged.disconnect(self.follow)
         self._live.destinationCrsChanged.disconnect(self.follow)
         self.stopRendering()
@@ -116,11 +123,18 @@ class ReplayMap(QgsMapCanvas):
         except PlacementError:
             self.overlay.show_scene(None)
             raise
+        self._soon.start()
 
     def show_nothing(self) -> None:
         """Draw no robots."""
         self._site = self._moment = None
         self.overlay.show_scene(None)
+
+    def _go_on(self) -> None:
+        """Have the moment as the map shows it now, and whole: while time is held nothing else follows."""
+        self.overlay.prepare()
+        if not self.overlay.is_whole:
+            self._soon.start()
 
     def _place(self) -> Placement:
         way = self.mapSettings().destinationCrs(), QgsProject.instance().transformContext()

@@ -56,6 +56,20 @@ def test_what_follows_on_the_news_is_a_piece_of_its_own(at_desk, wait):
     wait(lambda: told, what="the signal")
 
 
+def test_the_map_is_drawn_in_a_piece_after_the_one_in_which_lists_look_at_the_news(
+    at_desk, wait, monkeypatch
+):
+    view, told = at_desk.view, []
+    at_desk.desk._timer.stop()
+    QTest.qWait(100)
+    monkeypatch.setattr(view, "show_now", lambda: told.append("drawn"))
+    # As if there were news, and long since the last frame.
+    view.shown, view._last_frame = (-1, -1), 0.0
+    at_desk.desk.pulled.emit()
+    assert told == []
+    wait(lambda: told == ["drawn"], what="the frame")
+
+
 def test_a_text_is_not_repeated_while_it_is_shown_and_is_when_it_was_closed(plugin, iface):
     notices = plugin.window.notices
     for _ in range(5):

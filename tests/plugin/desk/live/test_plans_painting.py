@@ -5,12 +5,15 @@ from __future__ import annotations
 import dataclasses
 
 import numpy as np
+from fleet_supervisor.plugin.desk.live import robots_painting, ways_image
+from fleet_supervisor.plugin.desk.live.scene import Placer
 from fleet_supervisor.robot_bridge.messages import RobotState
 from qgis.core import QgsPointXY
 from qgis.PyQt.QtWidgets import QApplication
 
 from tests.plugin.desk.live.on_canvas import (
     expected,
+    placement_of,
     plan,
     scene_of,
     show,
@@ -60,3 +63,17 @@ def test_ways_are_painted_where_they_lead_and_move_with_the_map(canvas, site):
             assert np.hypot(*(found - expected(canvas, site, x, y)).T).min() < 2
         canvas.setCenter(QgsPointXY(site.origin[0] + 70, site.origin[1] + 40))
         QApplication.processEvents()
+
+
+def test_ways_and_marks_are_drawn_before_they_are_painted(canvas, site, monkeypatch):
+    made, mark_atlas, route = [], robots_painting.mark_atlas, ways_image.route
+    monkeypatch.setattr(robots_painting, "mark_atlas", lambda *of: (made.append("marks"), mark_atlas(*of))[1])
+    monkeypatch.setattr(ways_image, "route", lambda *of: (made.append("way"), route(*of))[1])
+    scene = scene_of(plans=[plan("r1", (20.0, 20.0), (100.0, 20.0)), plan("r2", (40.0, 70.0))])
+    overlay = show(canvas, site, scene_of())
+    made.clear()
+    overlay.show_scene(Placer().placed(scene, placement_of(canvas, site)))
+    assert {"marks", "way"} <= set(made)
+    made.clear()
+    canvas.grab()
+    assert made == []

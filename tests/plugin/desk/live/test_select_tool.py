@@ -19,6 +19,7 @@ def desk(at_desk, gateway, make_robot, iface, wait):
     gateway.show(*[make_robot(f"r{k}", 20.0 * k, 50.0) for k in range(1, 5)])
     wait(lambda: len(at_desk.desk.picture) == 4)
     wait(lambda: at_desk.view.overlay.robot_at(*xy(iface.pixel(80, 50))) == "r4")
+    wait(lambda: at_desk.dock.table.model().rowCount() == 4)
     at_desk.actions.select.trigger()
     return at_desk.desk
 

@@ -37,7 +37,8 @@ def rows(image, scene, screen=SCREEN, column=100):
     canvas = QImage(WIDTH, HEIGHT, QImage.Format.Format_RGB32)
     canvas.fill(0)
     painter = QPainter(canvas)
-    image.paint(painter, scene, screen)
+    image.prepare(scene, screen)
+    image.paint(painter, screen)
     painter.end()
     return [y for y in range(HEIGHT) if canvas.pixelColor(column, y).red() > 200]
 

@@ -7,6 +7,7 @@ import time
 from itertools import groupby, pairwise
 
 import pytest
+from fleet_supervisor.plugin.desk.live import ways_image
 from qgis.core import QgsProject
 from qgis.PyQt.QtCore import QTimer
 from qgis.PyQt.QtWidgets import QApplication
@@ -100,3 +101,24 @@ def test_of_a_history_that_is_fetched_anew_nothing_more_is_shown(loaded, wait):
     loaded.load()
     assert not loaded._soon.isActive() and not lines()
     wait(lambda: lines() and not loaded.layer.is_busy, what="the lines of the new one")
+
+
+def test_while_time_is_held_the_map_goes_on_until_it_is_whole_and_follows_its_view(
+    loaded, at_desk, gateway, wait, monkeypatch
+):
+    """Of many ways some are drawn in each frame; a moment that is held has no other frame."""
+    monkeypatch.setattr(ways_image, "FILL_SECONDS", 0.0)
+    begun = loaded.clockwork.since
+    for k in range(4):
+        path = {"points": [[10.0, 20.0 * k], [90.0, 20.0 * k]]}
+        steps = [{"state": "queued", "at": begun, "by": "anna"}]
+        known = {"command": f"p{k}", "robot": f"w{k}", "op": "SetPath", "params": path, "operator": "anna"}
+        gateway.tell("command", {**known, "state": "queued", "steps": steps})
+    wait(lambda: "p3" in at_desk.desk.book, what="the commands")
+    ways = loaded.map.overlay._painter._plans._ways
+    loaded.clockwork.seek(begun + 12.0)
+    assert not loaded.map.overlay.is_whole
+    wait(lambda: loaded.map.overlay.is_whole, what="all ways")
+    loaded.map.zoomByFactor(0.5)
+    wait(lambda: ways._shown.screen == loaded.map.overlay.screen(), what="the ways in the new view")
+    wait(lambda: loaded.map.overlay.is_whole, what="all ways in the new view")
