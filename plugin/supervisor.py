@@ -99,11 +99,12 @@ class FleetSupervisor:
         add(AccountsAction(iface, MENU, connections, window.desk))
         add(SiteChoiceAction(iface, MENU, connections, window.desk))
         add(TourAction(iface, MENU, window))
-        entries = [*window.actions.all(), *(part.action for part in self._parts if hasattr(part, "action"))]
+        others = [part.action for part in self._parts if hasattr(part, "action")]
         # The last ones, so that they go first: while every action is still there.
-        add(Shortcuts(iface.mainWindow(), entries))
-        # Letters may run out in a long menu: what has no key gets one first.
-        add(MenuLetters(sorted(entries, key=lambda entry: not entry.shortcut().isEmpty())))
+        add(Shortcuts(iface.mainWindow(), [*window.actions.all(), *others]))
+        for menu in ([*window.menu_entries(), *others], window.actions.for_drafts):
+            # Letters may run out in a long menu: what has no key gets one first.
+            add(MenuLetters(sorted(menu, key=lambda entry: not entry.shortcut().isEmpty())))
 
     def _add(self, part: Any):
         self._parts.append(part)

@@ -35,6 +35,24 @@ class Actions(QObject):
             self.clear_emergency,
         )
         """In the menu, and beside the draft or the emergency stop where they belong to it."""
+        self.for_drafts = (
+            self.cone,
+            self.road_route,
+            self.way_wishes,
+            self.route,
+            self.start,
+            self.coordinates,
+            self.from_layer,
+            self.undo,
+            self.redo,
+            self.reverse,
+            self.send,
+            self.enqueue,
+            self.override,
+            self.cancel,
+        )
+        """What makes, changes and sends drafts: in a menu of its own, since one for all is too long for a
+        screen."""
 
     def all(self) -> list[QAction]:
         """Return every action, in the order of the toolbar."""

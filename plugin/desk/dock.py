@@ -83,8 +83,9 @@ class FleetDock(QgsDockWidget):
         # The banner and the buttons that stop robots are outside of it: they are seen on every screen.
         rows.addWidget(TallContent(split), 1)
         stops = QHBoxLayout()
-        stops.addWidget(_stop_button(actions.abort_all, STOP_STYLE))
+        # First: of a window that is broader than its screen the right end is not seen.
         stops.addWidget(_stop_button(actions.emergency, EMERGENCY_STYLE))
+        stops.addWidget(_stop_button(actions.abort_all, STOP_STYLE))
         rows.addLayout(stops)
         self.setWidget(body)
         self.setToggleVisibilityAction(actions.panel)

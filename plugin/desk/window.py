@@ -5,7 +5,7 @@ from __future__ import annotations
 from qgis.core import QgsProject
 from qgis.gui import QgisInterface, QgsMapTool
 from qgis.PyQt.QtCore import QObject, Qt
-from qgis.PyQt.QtWidgets import QMainWindow, QToolBar
+from qgis.PyQt.QtWidgets import QAction, QMainWindow, QMenu, QToolBar
 
 from ..errors import FleetError
 from ..language import tr
@@ -66,6 +66,9 @@ class DeskWindow(QObject):
             self.actions.start: StartTool(self.desk),
             self.actions.closures: ClosureTool(self.desk, iface.mainWindow()),
         }
+        self._draft_menu = QMenu(tr("Targets and routes"), iface.mainWindow())
+        self._draft_menu.setObjectName("fleet_draft_menu")
+        self._draft_menu.setIcon(self.actions.cone.icon())
         self.draft_commands = DraftCommands(self.desk, self.queue_edits, self.actions, iface.mainWindow())
         self._wire_actions()
         self._place()
@@ -82,8 +85,9 @@ class DeskWindow(QObject):
         self.road_layers.remove()
         self.view.remove()
         self.notices.withdraw()
-        for action in self.actions.all():
+        for action in self.menu_entries():
             self._iface.removePluginMenu(MENU, action)
+        self._draft_menu.deleteLater()
         window: QMainWindow = self._iface.mainWindow()
         window.removeToolBar(self.toolbar)
         self.toolbar.deleteLater()
@@ -91,14 +95,22 @@ class DeskWindow(QObject):
         self.dock.deleteLater()
         self.deleteLater()
 
+    def menu_entries(self) -> list[QAction]:
+        """Return what stands in the plugin's menu itself; one entry opens the menu of drafts."""
+        drafts = self.actions.for_drafts
+        entries = [self._draft_menu.menuAction() if one in drafts else one for one in self.actions.all()]
+        return list(dict.fromkeys(entries))
+
     def go_to(self, robot: str) -> None:
         """Select a robot alone and show where it is."""
         self.desk.select(robot)
         self.view.zoom_to(robot)
 
     def _place(self) -> None:
-        for action in self.actions.all():
+        self._draft_menu.addActions(self.actions.for_drafts)
+        for action in self.menu_entries():
             self._iface.addPluginToMenu(MENU, action)
+        for action in self.actions.all():
             if action not in self.actions.off_toolbar:
                 self.toolbar.addAction(action)
             if action in (self.actions.connect, self.actions.cancel, self.actions.follow_all):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from html import escape
 
-from qgis.PyQt.QtCore import QPoint, Qt
+from qgis.PyQt.QtCore import QPoint, QRect, Qt
 from qgis.PyQt.QtGui import QFont
 from qgis.PyQt.QtWidgets import QLabel, QToolTip, QWidget
 
@@ -38,16 +38,18 @@ class HoverCard(QLabel):
         self.hide()
 
     def show_at(self, text: str, mouse: QPoint) -> None:
-        """Show ``text`` beside the mouse, whole."""
+        """Show ``text`` beside the mouse, whole.
+
+        Not below it at the right as long as there is another place: that is where map tools have their tips.
+        """
         self.setText(text)
         self.adjustSize()
         area = self.parentWidget().rect()
-        at = mouse + AWAY
-        if at.x() + self.width() > area.right():
-            at.setX(max(0, mouse.x() - AWAY.x() - self.width()))
-        if at.y() + self.height() > area.bottom():
-            at.setY(max(0, mouse.y() - AWAY.y() - self.height()))
-        self.move(at)
+        right, left = mouse.x() + AWAY.x(), mouse.x() - AWAY.x() - self.width()
+        above, below = mouse.y() - AWAY.y() - self.height(), mouse.y() + AWAY.y()
+        places = [QRect(QPoint(x, y), self.size()) for x, y in ((right, above), (left, above), (left, below))]
+        free = next((place.topLeft() for place in places if area.contains(place)), None)
+        self.move(free or QPoint(max(0, min(right, area.right() - self.width())), below))
         self.show()
 
 

@@ -62,6 +62,15 @@ def test_on_a_low_screen_the_window_does_not_grow_and_what_stops_robots_stays_in
     wait(lambda: middle.viewport().width() >= widest, what="room beside the scroll bar")
 
 
+def test_of_a_window_that_is_broader_than_its_screen_the_stop_is_seen(at_desk):
+    """Panels beside one another may ask for more than the screen has: the right end of the last is lost."""
+    stop, abort = (
+        at_desk.dock.findChild(QPushButton, f"fleet_{name}_button")
+        for name in ("emergency_stop", "abort_all")
+    )
+    assert stop.geometry().right() < abort.geometry().left()
+
+
 def test_one_click_and_no_question_stops_everything_and_the_banner_says_what_was_confirmed(
     at_desk, gateway, wait
 ):

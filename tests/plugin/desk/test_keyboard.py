@@ -14,7 +14,7 @@ from qgis.PyQt import sip
 from qgis.PyQt.QtCore import QEvent, Qt
 from qgis.PyQt.QtGui import QFocusEvent
 from qgis.PyQt.QtTest import QTest
-from qgis.PyQt.QtWidgets import QApplication, QDialogButtonBox, QPushButton, QWidget
+from qgis.PyQt.QtWidgets import QApplication, QDialogButtonBox, QMenu, QPushButton, QWidget
 
 LANGUAGE = Path(__file__).parents[1] / "language"
 ROW = 12
@@ -31,25 +31,44 @@ def letter_of(text):
     return text[text.index("&") + 1].casefold() if "&" in text else None
 
 
+def drafts_in(iface):
+    """The menu of what makes, changes and sends drafts."""
+    return iface.mainWindow().findChild(QMenu, "fleet_draft_menu")
+
+
+def menus(plugin, iface):
+    """The entries of the plugin's menu that do something, and those of its menu of drafts."""
+    drafts = drafts_in(iface)
+    return [one for one in iface.plugins.actions() if one.menu() is not drafts], drafts.actions()
+
+
 def test_every_action_is_in_the_menu_and_in_qgis_list_of_shortcuts(plugin, iface):
     listed = {action.objectName() for action in QgsGui.shortcutsManager().listActions()}
-    entries = {action.objectName() for action in iface.plugins.actions()}
+    entries = {action.objectName() for menu in menus(plugin, iface) for action in menu}
     assert {action.objectName() for action in plugin.window.actions.all()} <= entries
     assert plugin.window.actions.clear_emergency.objectName() in entries
     # Its keys are its own: nobody can take them away.
     assert entries - listed == {"fleet_emergency_stop"}
     assert set(KEYS) <= entries
-    assert all(action.toolTip() for action in iface.plugins.actions())
+    assert all(action.toolTip() for menu in menus(plugin, iface) for action in menu)
 
 
 def test_no_two_entries_have_the_same_letter_key_or_name(plugin, iface):
-    actions = iface.plugins.actions()
-    texts = [action.text() for action in actions]
-    letters = [letter for letter in map(letter_of, texts) if letter]
-    assert len(letters) == len(set(letters)) >= 20
-    assert len({text.replace("&", "") for text in texts}) == len(texts)
+    for menu in menus(plugin, iface):
+        letters = [letter for letter in (letter_of(action.text()) for action in menu) if letter]
+        assert len(letters) == len(set(letters)) >= 12
+    actions = [action for menu in menus(plugin, iface) for action in menu]
+    assert len({action.text().replace("&", "") for action in actions}) == len(actions) >= 30
     keys = [key.toString() for action in actions for key in action.shortcuts()]
     assert len(keys) == len(set(keys)) >= len(KEYS)
+
+
+def test_each_menu_stands_in_one_column_on_a_low_screen_with_a_large_font(plugin, iface):
+    for menu in (iface.plugins, drafts_in(iface)):
+        font = menu.font()
+        font.setPointSize(12)
+        menu.setFont(font)
+        assert menu.sizeHint().height() <= 700
 
 
 def test_qgis_itself_has_none_of_the_keys():
@@ -57,7 +76,8 @@ def test_qgis_itself_has_none_of_the_keys():
 
 
 def test_what_has_no_key_has_a_letter(plugin, iface):
-    without_key = [one.text() for one in iface.plugins.actions() if one.shortcut().isEmpty()]
+    entries = [action for menu in menus(plugin, iface) for action in menu]
+    without_key = [one.text() for one in entries if one.shortcut().isEmpty()]
     assert [text for text in without_key if "&" not in text] == []
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from fleet_supervisor.plugin.desk.actions import EMERGENCY_KEYS
 from fleet_supervisor.plugin.desk.shortcuts import KEYS
-from qgis.PyQt.QtWidgets import QAction
+from qgis.PyQt.QtWidgets import QAction, QMenu
 from syntax import tree_of
 
 ROOT = Path(__file__).parents[3]
@@ -74,6 +74,10 @@ def test_each_entry_of_the_menu_that_is_named_is_there(plugin, iface, guide):
     named |= set(re.findall(r"\*\*([^*]+)\*\*,? in (?:the menu )?\*Plugins → Fleet Supervisor\*", guide))
     assert len(named) > 7
     assert {plain(name) for name in named} <= entries
+    drafts = iface.mainWindow().findChild(QMenu, "fleet_draft_menu")
+    within = rf"\*\*([^*]+)\*\* in the menu \*Plugins → Fleet Supervisor → {plain(drafts.title())}\*"
+    of_drafts = set(map(plain, re.findall(within, guide)))
+    assert of_drafts and of_drafts <= {plain(action.text()) for action in drafts.actions()}
 
 
 def test_what_is_in_bold_stands_at_the_desk(guide):
