@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from qgis.PyQt.QtCore import QSize
 from qgis.PyQt.QtWidgets import QHBoxLayout, QSizePolicy, QToolButton, QVBoxLayout, QWidget
 
 from ...robot_bridge.messages import ConflictReport, HoldReport
@@ -33,6 +34,11 @@ class ConflictPanel(QWidget):
         self._rows.addWidget(self._rest)
         desk.roads.conflicts_changed.connect(self._show)
         self._show()
+
+    def sizeHint(self) -> QSize:
+        # As wide as its buttons. A panel that nobody has dragged yet is as wide as its parts wish to be: by a
+        # text on one line it would push the map aside, under the mouse of who is about to click there.
+        return QSize(self.minimumSizeHint().width(), super().sizeHint().height())
 
     def _show(self) -> None:
         roads = self._desk.roads.conflicts

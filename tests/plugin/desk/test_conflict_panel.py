@@ -53,6 +53,22 @@ def test_no_row_is_cut_off_in_the_narrowest_panel(at_desk, tell, wait):
     assert tops == sorted(tops)
 
 
+def test_the_map_keeps_its_width_whatever_the_panel_has_to_tell(at_desk, tell, gateway, iface, wait):
+    """It would move beneath the mouse of who is about to click, and be drawn anew."""
+    before = iface.canvas.width()
+    names = [f"robot-{k}" for k in range(10, 18)]
+    holds = {"until": time.time() + 5.0, "x": 1.0, "y": 2.0, "by": "anna", "command": "c1"}
+    tell(
+        *(meeting("robot-10", name, "following", 100.0) for name in names[1:]),
+        waiting=[{"robot": name, "other": "robot-10", **holds} for name in names[1:]],
+    )
+    gateway.stand(in_force=True, stop="s1", at=time.time(), by="anna", waiting=names, refused=names)
+    wait(lambda: at_desk.dock.banner.isVisible(), what="the banner")
+    wait(lambda: at_desk.dock.conflict_panel.isVisible(), what="the conflicts")
+    QTest.qWait(100)
+    assert iface.canvas.width() == before
+
+
 def test_a_button_that_is_held_down_outlasts_news_of_the_same_conflict(at_desk, tell, gateway, wait):
     tell(meeting("r1", "r2"))
     button = at_desk.dock.findChild(QToolButton, "fleet_give_way_r2")
