@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ....robot_bridge.messages import CommandReport, SetPath
+from ..way_to_path import ON_PATH_M, WayToPath
 
 Points = npt.NDArray[np.float64]
 BACK = 5.0
@@ -58,6 +59,8 @@ class Plans:
         self._plans: list[Plan] = []
         self._known: dict[str, Plan | None] = {}
         self._driven: dict[str, float] = {}
+        self._ways: dict[str, WayToPath] = {}
+        """How robots come to the first points of their ways."""
         self.is_whole = True
         """Whether every plan that was asked for last is made."""
 
@@ -74,22 +77,49 @@ class Plans:
         known = {**self._known, **made}
         self._known = {task.command: known[task.command] for task in tasks if task.command in known}
         self._driven = {command: self._driven[command] for command in self._known if command in self._driven}
+        self._ways = {command: self._ways[command] for command in self._known if command in self._ways}
         self._tasks, self.is_whole = tasks, len(made) == len(new)
         self._plans = [plan for plan in self._known.values() if plan is not None]
         return self._plans
 
     def remaining(self, plan: Plan, at: Points) -> float:
-        """Return the metres that a robot at (2,) ``at`` still has to go, along its way if it has one."""
+        """Return the metres that a robot at (2,) ``at`` still has to go, along its way if it has one.
+
+        Before it has come to its way it goes to the first point of that.
+        """
         if not plan.is_way:
             return float(np.hypot(*(plan.points[-1] - at)))
         start, step, length = plan.points[:-1], plan.steps, plan.lengths
         part = np.clip(((at - start) * step).sum(axis=1) / length**2, 0.0, 1.0)
         away = np.hypot(*(start + step * part[:, None] - at).T)
+        to_first = float(np.hypot(*(plan.points[0] - at)))
+        way = self._ways.setdefault(plan.command, WayToPath())
+        way.go_on(float(away.min()), to_first)
+        if not way.is_over:
+            return to_first + float(plan.along[-1])
         along = plan.along[:-1] + part * length
-        ahead = along >= self._driven.get(plan.command, 0.0) - BACK
-        nearest = int(np.where(ahead, away, np.inf).argmin() if ahead.any() else away.argmin())
+        driven = self._driven.get(plan.command)
+        nearest = _first_near(away) if driven is None else _near_ahead(away, along, driven)
         self._driven[plan.command] = float(along[nearest])
         return float(plan.along[-1] - along[nearest] + away[nearest])
+
+
+def _first_near(away: Points) -> int:
+    """Return the step on which a robot has come to its way, by how far ``away`` it is from each.
+
+    That is the earliest where a way ends as it begins, or crosses itself.
+    """
+    near = away <= max(ON_PATH_M, float(away.min()))
+    begin = int(near.argmax())
+    beyond = np.flatnonzero(~near[begin:])
+    end = begin + int(beyond[0]) if len(beyond) else len(near)
+    return begin + int(away[begin:end].argmin())
+
+
+def _near_ahead(away: Points, along: Points, driven: float) -> int:
+    """Return the step that a robot is on which has ``driven`` so many metres of its way."""
+    ahead = along >= driven - BACK
+    return int(np.where(ahead, away, np.inf).argmin() if ahead.any() else away.argmin())
 
 
 def _plan(task: CommandReport) -> Plan | None:

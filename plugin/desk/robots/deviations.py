@@ -3,19 +3,15 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
 from ....robot_bridge.messages import CommandReport, SetPath
 from ..command_book import CommandBook
+from ..way_to_path import WayToPath
 
 Floats = npt.NDArray[np.float64]
-ON_PATH_M = 1.0
-"""Metres beside a path within which a robot has come to it."""
-AWAY_M = 1.0
-"""Metres by which a robot has to go away from a path's first point to have passed it."""
 
 
 class Deviations:
@@ -23,7 +19,8 @@ class Deviations:
 
     def __init__(self, book: CommandBook):
         self._book = book
-        self._ways: dict[str, _WayToPath] = {}
+        self._ways: dict[str, tuple[str, WayToPath]] = {}
+        """By robot, the command whose path it is to drive, and how it comes to that."""
 
     def of(self, robot: str, xy: tuple[float, float] | None) -> float | None:
         """Return metres beside the path that ``robot`` drives, else from the target that it reached last.
@@ -39,28 +36,12 @@ class Deviations:
         if xy is None or len(points) == 0:
             return None
         off = beside(points, np.array(xy))
-        way = self._ways.get(robot)
-        if way is None or way.command != task.command:
-            way = self._ways[robot] = _WayToPath(task.command)
+        command, way = self._ways.get(robot, ("", WayToPath()))
+        if command != task.command:
+            way = WayToPath()
+            self._ways[robot] = task.command, way
         way.go_on(off, math.dist(points[0], xy))
         return off if way.is_over else None
-
-
-@dataclass
-class _WayToPath:
-    """How a robot comes to the path of ``command``: ``nearest`` is metres to its first point, the least."""
-
-    command: str
-    nearest: float = math.inf
-    is_over: bool = False
-
-    def go_on(self, off: float, to_first: float) -> None:
-        """Take in where the robot is: metres beside the path and to its first point.
-
-        One that never comes near passes the first point all the same: it goes away from that again.
-        """
-        self.is_over = self.is_over or off <= ON_PATH_M or to_first > self.nearest + AWAY_M
-        self.nearest = min(self.nearest, to_first)
 
 
 def beside(points: Floats, at: Floats) -> float:

@@ -39,10 +39,46 @@ def test_on_a_second_lap_the_first_is_done():
     assert left == pytest.approx([400 - 50 * k for k in range(9)])
 
 
-def test_who_is_off_the_way_has_to_come_to_it_first():
+@pytest.mark.parametrize("shift", [(0.1, 0.0), (-0.1, 0.0), (0.0, 0.1), (0.0, -0.1), (0.4, 0.7)])
+def test_on_a_lap_that_ends_where_it_begins_all_of_it_is_still_to_go_at_first(shift):
+    dx, dy = shift
+    plans = Plans()
+    (plan,) = plans.of([task("SetPath", {"points": [[0, 0], [50, 0], [50, 50], [0, 50], [0, 0]]})])
+    assert plans.remaining(plan, at(dx, dy)) == pytest.approx(200.0, abs=1.0)
+    assert plans.remaining(plan, at(50 + dx, dy)) == pytest.approx(150.0, abs=1.0)
+    assert plans.remaining(plan, at(50 + dx, 50 + dy)) == pytest.approx(100.0, abs=1.0)
+    assert plans.remaining(plan, at(dx, 50 + dy)) == pytest.approx(50.0, abs=1.5)
+    assert plans.remaining(plan, at(dx, 1 + dy)) == pytest.approx(1.0, abs=1.5)
+
+
+def test_who_has_left_the_way_has_to_come_back_to_it():
     plans = Plans()
     (plan,) = plans.of([task("SetPath", {"points": [[0, 0], [100, 0]]})])
+    assert plans.remaining(plan, at(30, 0)) == pytest.approx(70.0)
     assert plans.remaining(plan, at(40, 30)) == pytest.approx(90.0)
+
+
+def test_who_has_not_come_to_the_way_yet_goes_to_its_first_point_though_its_end_is_nearer():
+    plans = Plans()
+    (plan,) = plans.of([task("SetPath", {"points": [[0, 0], [60, 0]]})])
+    assert plans.remaining(plan, at(60, 20)) == pytest.approx(np.hypot(60, 20) + 60)
+    assert plans.remaining(plan, at(30, 10)) == pytest.approx(np.hypot(30, 10) + 60)
+    assert plans.remaining(plan, at(0.3, 0.2)) == pytest.approx(60.0, abs=0.5)
+    assert plans.remaining(plan, at(20, 0)) == pytest.approx(40.0)
+
+
+def test_who_passes_the_first_point_far_beside_is_on_the_way_from_there():
+    plans = Plans()
+    (plan,) = plans.of([task("SetPath", {"points": [[0, 0], [60, 0]]})])
+    assert plans.remaining(plan, at(-10, 3)) == pytest.approx(np.hypot(10, 3) + 60)
+    assert plans.remaining(plan, at(0, 3)) == pytest.approx(63.0)
+    assert plans.remaining(plan, at(5, 3)) == pytest.approx(58.0)
+
+
+def test_a_desk_that_comes_in_the_middle_of_a_way_sees_the_rest_of_it():
+    plans = Plans()
+    (plan,) = plans.of([task("SetPath", {"points": [[k * 0.5, 0] for k in range(201)]})])
+    assert plans.remaining(plan, at(40, 0.2)) == pytest.approx(60.0, abs=0.3)
 
 
 @pytest.mark.parametrize("params", [{}, {"x": None, "y": 1.0}, {"x": "here", "y": 2.0}])
