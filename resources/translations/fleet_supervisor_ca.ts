@@ -711,28 +711,18 @@
         </message>
         <message>
             <location filename="../../plugin/desk/alarms/alarm_panel.py" />
-            <source>&amp;Acknowledge</source>
-            <translation>&amp;Reconeix</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/alarms/alarm_panel.py" />
-            <source>&amp;Log…</source>
-            <translation>Re&amp;gistre…</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/alarms/alarm_panel.py" />
-            <source>&amp;Settings…</source>
-            <translation>&amp;Configuració…</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/alarms/alarm_panel.py" />
-            <source>Acknowledge a&amp;ll</source>
-            <translation>Reconeix-les &amp;totes</translation>
+            <source>Acknowledge</source>
+            <translation>Reconeix</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/alarms/alarm_panel.py" />
             <source>Every alarm of this session, and who acknowledged it when</source>
             <translation>Totes les alarmes de la sessió, i qui les va reconèixer i quan</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_panel.py" />
+            <source>Log…</source>
+            <translation>Registre…</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/alarms/alarm_panel.py" />
@@ -743,6 +733,11 @@
             <location filename="../../plugin/desk/alarms/alarm_panel.py" />
             <source>Say that you have seen the chosen alarms</source>
             <translation>Digueu que heu vist les alarmes triades</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_panel.py" />
+            <source>Settings…</source>
+            <translation>Configuració…</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/alarms/alarm_panel.py" />
@@ -1621,6 +1616,11 @@
             <translation>{words}: no s'ha enviat, perquè ara se serveix un altre recinte. Torneu-ho a dibuixar.</translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/desk.py" />
+            <source>{words} was not sent: robot {robot} was removed.</source>
+            <translation>{words}: no s'ha enviat, perquè s'ha eliminat el robot {robot}.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/dock.py" />
             <source>Commands</source>
             <translation>Ordres</translation>
@@ -2254,8 +2254,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/observations/review_form.py" />
-            <source>&amp;Accept</source>
-            <translation>&amp;Accepta</translation>
+            <source>Accept</source>
+            <translation>Accepta</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/observations/review_form.py" />
@@ -2309,13 +2309,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/observations/review_form.py" />
-            <source>Re&amp;ject</source>
-            <translation>Re&amp;butja</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/observations/review_form.py" />
-            <source>Sho&amp;w</source>
-            <translation>&amp;Mostra</translation>
+            <source>Reject</source>
+            <translation>Rebutja</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/observations/review_form.py" />

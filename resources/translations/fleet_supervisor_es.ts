@@ -711,28 +711,18 @@
         </message>
         <message>
             <location filename="../../plugin/desk/alarms/alarm_panel.py" />
-            <source>&amp;Acknowledge</source>
-            <translation>&amp;Reconocer</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/alarms/alarm_panel.py" />
-            <source>&amp;Log…</source>
-            <translation>Re&amp;gistro…</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/alarms/alarm_panel.py" />
-            <source>&amp;Settings…</source>
-            <translation>&amp;Configuración…</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/alarms/alarm_panel.py" />
-            <source>Acknowledge a&amp;ll</source>
-            <translation>Reconocer &amp;todas</translation>
+            <source>Acknowledge</source>
+            <translation>Reconocer</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/alarms/alarm_panel.py" />
             <source>Every alarm of this session, and who acknowledged it when</source>
             <translation>Todas las alarmas de la sesión, y quién las reconoció y cuándo</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_panel.py" />
+            <source>Log…</source>
+            <translation>Registro…</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/alarms/alarm_panel.py" />
@@ -743,6 +733,11 @@
             <location filename="../../plugin/desk/alarms/alarm_panel.py" />
             <source>Say that you have seen the chosen alarms</source>
             <translation>Indicar que ha visto las alarmas elegidas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_panel.py" />
+            <source>Settings…</source>
+            <translation>Configuración…</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/alarms/alarm_panel.py" />
@@ -1621,6 +1616,11 @@
             <translation>{words}: no se envió, porque ahora se sirve otro recinto. Dibújelo de nuevo.</translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/desk.py" />
+            <source>{words} was not sent: robot {robot} was removed.</source>
+            <translation>{words}: no se envió, porque se eliminó el robot {robot}.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/dock.py" />
             <source>Commands</source>
             <translation>Órdenes</translation>
@@ -2254,8 +2254,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/observations/review_form.py" />
-            <source>&amp;Accept</source>
-            <translation>&amp;Aceptar</translation>
+            <source>Accept</source>
+            <translation>Aceptar</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/observations/review_form.py" />
@@ -2309,13 +2309,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/observations/review_form.py" />
-            <source>Re&amp;ject</source>
-            <translation>&amp;Rechazar</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/observations/review_form.py" />
-            <source>Sho&amp;w</source>
-            <translation>&amp;Mostrar</translation>
+            <source>Reject</source>
+            <translation>Rechazar</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/observations/review_form.py" />

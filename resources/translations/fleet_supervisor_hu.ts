@@ -709,28 +709,18 @@
         </message>
         <message>
             <location filename="../../plugin/desk/alarms/alarm_panel.py" />
-            <source>&amp;Acknowledge</source>
-            <translation>&amp;Nyugtázás</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/alarms/alarm_panel.py" />
-            <source>&amp;Log…</source>
-            <translation>Na&amp;pló…</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/alarms/alarm_panel.py" />
-            <source>&amp;Settings…</source>
-            <translation>&amp;Beállítások…</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/alarms/alarm_panel.py" />
-            <source>Acknowledge a&amp;ll</source>
-            <translation>M&amp;ind nyugtázása</translation>
+            <source>Acknowledge</source>
+            <translation>Nyugtázás</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/alarms/alarm_panel.py" />
             <source>Every alarm of this session, and who acknowledged it when</source>
             <translation>A munkamenet minden riasztása, és hogy ki mikor nyugtázta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_panel.py" />
+            <source>Log…</source>
+            <translation>Napló…</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/alarms/alarm_panel.py" />
@@ -741,6 +731,11 @@
             <location filename="../../plugin/desk/alarms/alarm_panel.py" />
             <source>Say that you have seen the chosen alarms</source>
             <translation>Annak jelzése, hogy látta a kiválasztott riasztásokat</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/alarms/alarm_panel.py" />
+            <source>Settings…</source>
+            <translation>Beállítások…</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/alarms/alarm_panel.py" />
@@ -1615,6 +1610,11 @@
             <translation>{words}: nem lett elküldve, mert már másik telephely van szolgáltatva. Rajzolja meg újra.</translation>
         </message>
         <message>
+            <location filename="../../plugin/desk/desk.py" />
+            <source>{words} was not sent: robot {robot} was removed.</source>
+            <translation>{words}: nem lett elküldve, mert a(z) {robot} robotot eltávolították.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/desk/dock.py" />
             <source>Commands</source>
             <translation>Parancsok</translation>
@@ -2244,8 +2244,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/observations/review_form.py" />
-            <source>&amp;Accept</source>
-            <translation>&amp;Elfogadás</translation>
+            <source>Accept</source>
+            <translation>Elfogadás</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/observations/review_form.py" />
@@ -2299,13 +2299,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/observations/review_form.py" />
-            <source>Re&amp;ject</source>
-            <translation>El&amp;utasítás</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/observations/review_form.py" />
-            <source>Sho&amp;w</source>
-            <translation>&amp;Mutat</translation>
+            <source>Reject</source>
+            <translation>Elutasítás</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/observations/review_form.py" />

@@ -84,15 +84,15 @@ class AlarmPanel(QWidget):
 
     def _buttons(self) -> QHBoxLayout:
         self._seen = _button(
-            "fleet_acknowledge", tr("&Acknowledge"), tr("Say that you have seen the chosen alarms")
+            "fleet_acknowledge", tr("Acknowledge"), tr("Say that you have seen the chosen alarms")
         )
         self._all = _button(
-            "fleet_acknowledge_all", tr("Acknowledge a&ll"), tr("Say that you have seen every alarm")
+            "fleet_acknowledge_all", tr("Acknowledge all"), tr("Say that you have seen every alarm")
         )
         log = _button(
-            "fleet_alarm_log", tr("&Log…"), tr("Every alarm of this session, and who acknowledged it when")
+            "fleet_alarm_log", tr("Log…"), tr("Every alarm of this session, and who acknowledged it when")
         )
-        limits = _button("fleet_alarm_limits", tr("&Settings…"), tr("What is an alarm, and from where on"))
+        limits = _button("fleet_alarm_limits", tr("Settings…"), tr("What is an alarm, and from where on"))
         self._seen.clicked.connect(lambda: self._watch.acknowledge([alarm.key for alarm in self._chosen()]))
         self._all.clicked.connect(self._watch.acknowledge_all)
         log.clicked.connect(self.show_log)

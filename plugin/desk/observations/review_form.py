@@ -53,13 +53,13 @@ class ReviewForm(QWidget):
         self.reason.setObjectName("fleet_observation_reason")
         self.reason.setMaxLength(ReviewObservation.texts["reason"])
         self.reason.setPlaceholderText(tr("optional"))
-        self.go = push_button("fleet_observation_go", tr("Sho&w"), tr("Go to it on the map"))
+        self.go = push_button("fleet_observation_go", tr("Show"), tr("Go to it on the map"))
         self.accept = push_button(
             "fleet_observation_accept",
-            tr("&Accept"),
+            tr("Accept"),
             tr("It stands there: draw it on the maps that robots get from now on"),
         )
-        self.reject = push_button("fleet_observation_reject", tr("Re&ject"), tr("Draw it on no map"))
+        self.reject = push_button("fleet_observation_reject", tr("Reject"), tr("Draw it on no map"))
         self._lay_out()
         self.go.clicked.connect(lambda: self._report and self.place_wanted.emit(self._report.observation))
         self.accept.clicked.connect(lambda: self._want(accept=True))

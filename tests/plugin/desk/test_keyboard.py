@@ -14,7 +14,7 @@ from qgis.PyQt import sip
 from qgis.PyQt.QtCore import QEvent, Qt
 from qgis.PyQt.QtGui import QFocusEvent
 from qgis.PyQt.QtTest import QTest
-from qgis.PyQt.QtWidgets import QApplication, QDialogButtonBox, QMenu, QPushButton, QWidget
+from qgis.PyQt.QtWidgets import QAbstractButton, QApplication, QDialogButtonBox, QMenu, QPushButton, QWidget
 
 LANGUAGE = Path(__file__).parents[1] / "language"
 ROW = 12
@@ -93,6 +93,18 @@ def test_buttons_show_no_letters(plugin):
     dock = plugin.window.dock
     for name in ("fleet_abort_all_button", "fleet_emergency_stop_button", "fleet_connect_button"):
         assert "&" not in dock.findChild(QWidget, name).text()
+
+
+PANELS = ("fleet_alarm_panel", "fleet_observation_dock", "fleet_plan_dock", "fleet_replay_dock")
+
+
+@pytest.mark.parametrize("name", PANELS)
+def test_panels_leave_alt_and_letters_to_the_menus_of_qgis(plugin, iface, name):
+    """Qt would do neither: of two parts of one window with one letter it only shows the first."""
+    panel = iface.findChild(QWidget, name)
+    buttons = [one for one in panel.findChildren(QAbstractButton) if one.text()]
+    assert buttons
+    assert [one.text() for one in buttons if letter_of(one.text())] == []
 
 
 def test_letters_go_round_by_giving_way():
