@@ -46,20 +46,25 @@ def keep_in_view(canvas: QgsMapCanvas, screen: Screen, places: Points) -> bool:
     needed = (np.ptp(pixels, axis=0) / size).max() * AROUND
     if needed > 1.0:
         canvas.zoomByFactor(float(needed))
-    middle = (places.min(axis=0) + places.max(axis=0)) / 2
-    canvas.setCenter(QgsPointXY(*middle))
+    middle, _ = _box(canvas, places)
+    canvas.setCenter(QgsPointXY(*middle.tolist()))
     canvas.refresh()
     return True
 
 
 def show_places(canvas: QgsMapCanvas, places: Points) -> None:
     """Show the smallest part of the map that has all of (n, 2) map coordinates, however it is rotated."""
+    middle, half = _box(canvas, places)
+    # QGIS takes an extent for that of the map before it is rotated about its middle.
+    canvas.setExtent(QgsRectangle(*(middle - half).tolist(), *(middle + half).tolist()))
+    canvas.refresh()
+
+
+def _box(canvas: QgsMapCanvas, places: Points) -> tuple[Points, Points]:
+    """Return the middle, (2,) map coordinates, of the box about ``places`` that is upright on the screen, and
+    half its width and height in map units."""
     turn = math.radians(canvas.rotation())
-    # QGIS takes an extent for that of the map before it is rotated clockwise about its middle.
     to_screen = np.array([[math.cos(turn), -math.sin(turn)], [math.sin(turn), math.cos(turn)]])
     seen = places @ to_screen
     low, high = seen.min(axis=0), seen.max(axis=0)
-    middle = to_screen @ ((low + high) / 2)
-    half = (high - low) / 2
-    canvas.setExtent(QgsRectangle(*(middle - half).tolist(), *(middle + half).tolist()))
-    canvas.refresh()
+    return to_screen @ ((low + high) / 2), (high - low) / 2

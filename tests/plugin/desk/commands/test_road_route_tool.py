@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import pytest
 from fleet_supervisor.plugin.wire.outbox import Answer
+from pyproj import Transformer
 from qgis.PyQt.QtCore import Qt
-from qgis.PyQt.QtTest import QTest
+from qgis.PyQt.QtWidgets import QApplication
 
+X, Y = 488000.0, 5190000.0
 AT = (50.0, 40.0)
 """Where r1 is."""
 LEFT_OUT = "The way to where you clicked last was not known yet"
@@ -157,8 +159,12 @@ def test_another_robots_click_does_not_go_on_with_this_ones_route(roads):
 
 
 def test_keys_alone_lead_a_route_and_send_it(roads):
-    x, y = 60.0, 40.0
-    roads.hand.iface.canvas.mapTool().take((x, y))
+    to_earth = Transformer.from_crs("EPSG:32633", "EPSG:4326")
+    for x, y in ((60, 40), (60, 60)):
+        lat, lon = to_earth.transform(X + x, Y + y)
+        QApplication.clipboard().setText(f"{lat}, {lon}")
+        roads.hand.key(Qt.Key.Key_V, Qt.KeyboardModifier.ControlModifier)
     roads.find_all()
-    QTest.keyClick(roads.hand.iface.canvas, Qt.Key.Key_Return)
+    assert roads.ends == [(60, 40), (60, 60)]
+    roads.hand.key(Qt.Key.Key_Return)
     assert roads.hand.sent()["op"] == "SetPath"

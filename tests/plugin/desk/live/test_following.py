@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fleet_supervisor.plugin.desk.live.following import show_places
+from fleet_supervisor.plugin.desk.live.following import keep_in_view, show_places
 from qgis.core import QgsPointXY
 from qgis.gui import QgsMapCanvas
 from qgis.PyQt.QtTest import QTest
+
+from tests.plugin.desk.live.on_canvas import scene_of, show
 
 
 def is_shown(iface, x, y):
@@ -68,6 +70,18 @@ def test_all_of_the_places_that_are_gone_to_are_shown_and_little_else(canvas, ro
     parts = np.array([(at.x() / canvas.width(), at.y() / canvas.height()) for at in seen])
     assert (parts > -0.01).all() and (parts < 1.01).all()
     assert np.ptp(parts, axis=0).max() > 0.98
+
+
+@pytest.mark.parametrize("rotation", [0, 45, 200, 315])
+def test_who_is_followed_comes_into_view_and_stays_there_on_a_rotated_map(canvas, site, rotation):
+    places = np.array([(1000.0, 2000.0), (1090.0, 2000.0), (1000.0, 2090.0)])
+    overlay = show(canvas, site, scene_of(), rotation=rotation)
+    assert keep_in_view(canvas, overlay.screen(), places)
+    assert not keep_in_view(canvas, overlay.screen(), places)
+    to_pixel = canvas.getCoordinateTransform()
+    for place in places.tolist():
+        at = to_pixel.transform(QgsPointXY(*place))
+        assert 0 < at.x() < canvas.width() and 0 < at.y() < canvas.height()
 
 
 def _view(canvas: QgsMapCanvas) -> tuple[float, float, float]:
