@@ -39,6 +39,8 @@ WHICH = {
 }
 OLDER = 1000
 """Commands that are asked for at once."""
+MOST_ASKED = 20
+"""Robots that are asked for one by one; of more of them the commands of all are."""
 
 
 class CommandLog(QWidget):
@@ -121,10 +123,11 @@ class CommandLog(QWidget):
 
     def ask_for_older(self) -> None:
         """Ask the gateway for what was asked for before this desk came."""
-        whose = self._robots.currentText()
-        robot = self._desk.selected if whose == SELECTED else None if whose == EVERY_ROBOT else whose
+        robots = self.filter().robots
         try:
-            self._asked.add(self._desk.inquire(GetCommands(robot, OLDER)))
+            # Of very many robots the newest commands of all will do: the log holds no more.
+            for robot in sorted(robots) if robots and len(robots) <= MOST_ASKED else [None]:
+                self._asked.add(self._desk.inquire(GetCommands(robot, OLDER)))
         except FleetError as error:
             self._desk.complained.emit(str(error))
 

@@ -225,6 +225,22 @@ def test_older_commands_are_asked_for_and_sorted_in(log, gateway, wait):
     assert rows(log)[-1] == ("r1 · target at 3.00, 4.00", "expired")
 
 
+def test_older_commands_of_each_selected_robot_are_asked_for(log, at_desk, gateway, wait):
+    def asked(count):
+        before = len(gateway.asked("get_commands"))
+        QTest.mouseClick(log.findChild(QToolButton, "fleet_log_older"), LEFT)
+        wait(lambda: len(gateway.asked("get_commands")) == before + count)
+        return [question.get("robot") for question in gateway.asked("get_commands")[before:]]
+
+    choose(log, "fleet_log_robot", "Selected robots")
+    at_desk.desk.select_all(["r2", "r1"])
+    assert asked(2) == ["r1", "r2"]
+    at_desk.desk.select(None)
+    assert asked(1) == [None]
+    choose(log, "fleet_log_robot", "All robots")
+    assert asked(1) == [None]
+
+
 def test_a_command_of_another_day_tells_its_date_and_has_room_for_it(at_desk, gateway, wait):
     log = at_desk.dock.log
 
