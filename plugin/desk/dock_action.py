@@ -46,12 +46,13 @@ class DockAction:
         self.action.setObjectName(name)
         self.action.setCheckable(True)
         self.action.setToolTip(tip)
-        self._is_placed = False
+        self._is_placed = self._lacks_height = False
         iface.addDockWidget(AREA, dock)
         dock.hide()
         # Before the panel is shown. While QGIS starts would be too soon: it arranges its panels after that.
         self.action.toggled.connect(self._place)
         dock.setToggleVisibilityAction(self.action)
+        self.action.triggered.connect(self._make_room)
         self.action.triggered.connect(self._give_keyboard)
         iface.addPluginToMenu(menu, self.action)
 
@@ -65,11 +66,19 @@ class DockAction:
             return
         if window.dockWidgetArea(browser) == AREA and not browser.isFloating():
             window.tabifyDockWidget(browser, self.dock)
+            self._lacks_height = True
 
     def _is_known_to_qgis(self) -> bool:
         """Tell whether QGIS has put the panel where it was when it was closed last."""
         arrangement = bytes(QgsSettings().value("UI/state", QByteArray()) or b"")
         return self.dock.objectName().encode("utf-16-be") in arrangement
+
+    def _make_room(self, opened: bool) -> None:
+        """Give a panel that is new beside the browser half of the column: layers would leave it a strip."""
+        if opened and self._lacks_height:
+            self._lacks_height = False
+            wanted = [self.dock.sizeHint().height()]
+            self._iface.mainWindow().resizeDocks([self.dock], wanted, Qt.Orientation.Vertical)
 
     def _give_keyboard(self, opened: bool) -> None:
         """Let who opened the panel by its key go on in it by keys."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from fleet_supervisor.plugin.supervisor import FleetSupervisor
 from qgis.core import QgsSettings
-from qgis.PyQt.QtCore import Qt
+from qgis.PyQt.QtCore import QSize, Qt
 from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import QApplication, QDockWidget, QWidget
 
@@ -57,6 +57,35 @@ def test_its_key_opens_it_in_the_room_of_the_browser_and_keys_go_on_in_it(
     QTest.keyClick(iface, Qt.Key.Key_F12, held)
     assert dock.isHidden()
     assert not browser.isHidden()
+
+
+class LayerTree(QWidget):
+    """As high as the layers of a project are many."""
+
+    def sizeHint(self):
+        return QSize(256, 2000)
+
+
+@pytest.mark.parametrize(("name", "held", "first"), PANELS)
+def test_above_the_layers_it_has_room_and_the_next_time_what_the_user_left_it(
+    loaded, browser, iface, name, held, first
+):
+    layers = QDockWidget("Layers", iface)
+    layers.setWidget(LayerTree())
+    iface.addDockWidget(Qt.DockWidgetArea.LeftDockWidgetArea, layers)
+    iface.resize(1280, 800)
+    QApplication.processEvents()
+    dock = iface.findChild(QDockWidget, name)
+    QTest.keyClick(iface, Qt.Key.Key_F12, held)
+    QApplication.processEvents()
+    assert dock.height() > min(0.4 * iface.height(), dock.sizeHint().height() - 1)
+    iface.resizeDocks([dock], [200], Qt.Orientation.Vertical)
+    QApplication.processEvents()
+    made = dock.height()
+    for _ in ("closed", "opened again"):
+        QTest.keyClick(iface, Qt.Key.Key_F12, held)
+        QApplication.processEvents()
+    assert dock.height() == made
 
 
 def test_a_panel_that_qgis_has_put_where_it_was_stays_there(loaded, browser, iface):
