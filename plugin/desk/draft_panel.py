@@ -70,7 +70,7 @@ class DraftPanel(QWidget):
         """Say how a command stands, from now on at each of its steps until something else happens."""
         known = self._desk.book.get(command)
         stands = COMMAND_STATES[CommandState.QUEUED] if known is None else how_it_stands(known)
-        self._remarked(f"{words}: {stands}")
+        self._remarked(f"{words}. {stands[0].upper()}{stands[1:]}.")
         self._kept = command, words
 
     def _take_steps(self, reports: Sequence[CommandReport]) -> None:
