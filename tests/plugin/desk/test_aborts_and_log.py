@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from fleet_supervisor.plugin.desk.wall_clock import short_time
 from fleet_supervisor.robot_bridge.messages import CommandState
 from qgis.PyQt.QtWidgets import (
     QApplication,
@@ -93,7 +94,8 @@ def test_the_log_shows_each_step_with_time_who_and_how_far_off(at_desk, gateway,
         ["by r1", "acknowledged", ""],
         ["by r1", "reached", "0.07 m off"],
     ]
-    assert all(len(model.index(row, 0, top).data()) == 8 for row in range(4))
+    times = [model.index(row, 0, top).data() for row in range(4)]
+    assert times == [short_time(step.at) for step in gateway.commands[command].steps]
 
 
 def test_the_line_below_the_robots_follows_the_command_that_was_sent_last(at_desk, gateway, iface, wait):
