@@ -30,7 +30,7 @@ from .drafting.target_check import TargetCheck
 from .drafts import Draft, DraftBoard, Point, in_brief
 from .observation_book import ObservationBook
 from .orders import Orders
-from .picture import RobotPicture
+from .picture import Gone, RobotPicture
 from .placement import Placement
 from .placement_book import PlacementBook
 from .queue_book import QueueBook
@@ -47,6 +47,8 @@ class Desk(QObject):
     pulled = pyqtSignal()
     """A twentieth of a second went by: positions, ages and countdowns may have changed."""
     site_changed = pyqtSignal()
+    robots_removed = pyqtSignal(object)
+    """Robots are there no more, and others have moved up into their rows: the Gone."""
     link_changed = pyqtSignal()
     commands_changed = pyqtSignal(list)
     selection_changed = pyqtSignal()
@@ -224,6 +226,21 @@ class Desk(QObject):
             )
         self.drafts.done()
 
+    def _let_go(self, gone: Gone) -> None:
+        """Forget robots that an administrator has removed; what they did stays in the log."""
+        self.queues.forget(gone.names)
+        self.robots_removed.emit(gone)
+        self.select_all(robot for robot in self.selection if robot not in gone.names)
+        self._check_targets.take(gone.names)
+        self.queues_changed.emit(sorted(gone.names))
+        draft = self.drafts.draft
+        if draft is not None and draft.robot in gone.names:
+            words = draft.in_words()
+            self.failed.emit(
+                tr("{words} was not sent: robot {robot} was removed.", words=words, robot=draft.robot)
+            )
+            self.drafts.done()
+
     def _look_at_draft_anew(self) -> None:
         """Check the draft on the map once more: the site has been published anew beneath it."""
         if self.checks.is_under_way:
@@ -232,7 +249,9 @@ class Desk(QObject):
             self._try(lambda: self.checks.again(lambda _: None))
 
     def _take_news(self, news: News) -> None:
-        self.picture.merge(news.robots)
+        gone = self.picture.merge(news.robots)
+        if gone.names:
+            self._let_go(gone)
         changed = self.book.merge(news.commands.values())
         if changed:
             self._check_targets.take(report.robot for report in changed)

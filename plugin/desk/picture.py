@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -13,7 +13,7 @@ from ...robot_bridge.messages import RobotReport, RobotState, robot_report
 from ..wire.sightings import STATES, Sightings
 from .name_order import name_order
 
-__all__ = ["STATES", "RobotArrays", "RobotPicture", "RobotView"]
+__all__ = ["STATES", "Gone", "RobotArrays", "RobotPicture", "RobotView"]
 
 _FRESH, _STALE, _LOST, _OFFLINE = range(len(STATES))
 Numbers = npt.NDArray[np.float64]
@@ -39,9 +39,16 @@ class RobotView:
         return self.told.get("x") is not None and self.told.get("y") is not None
 
 
+class Gone(NamedTuple):
+    """Robots that are there no more, and (n,) the rows that they had."""
+
+    names: frozenset[str]
+    rows: npt.NDArray[np.intp]
+
+
 @dataclass(frozen=True)
 class RobotArrays:
-    """The robots at one moment, as arrays of one row each; a robot keeps its row until the site changes.
+    """The robots at one moment, as arrays of one row each; a robot keeps its row in one arrangement.
 
     ``xy`` (n, 2) metres in the site frame, ``theta`` (n,) radians in the site frame, ``v`` (n,) metres a
     second, ``accuracy`` (n,) metres, each NaN where not known; ``state`` (n,) index into :data:`STATES`;
@@ -69,6 +76,8 @@ class RobotPicture:
         self.lost_after = lost_after
         self.generation = 0
         """Counts how often everything was forgotten: rows of another generation are other robots."""
+        self.arrangement = 0
+        """Counts how often rows became other robots': all were forgotten, or one was removed."""
         self.revision = 0
         """Counts how often something was taken in."""
         self._seen = Sightings()
@@ -80,17 +89,30 @@ class RobotPicture:
     def __len__(self) -> int:
         return len(self._seen)
 
-    def merge(self, sightings: Sightings) -> None:
-        """Take in newer sightings; one that arrived before what is known is passed over."""
-        if len(sightings):
+    def merge(self, sightings: Sightings) -> Gone:
+        """Take in newer sightings; one that arrived before what is known is passed over.
+
+        Return the robots that are there no more.
+        """
+        gone = self._gone_by(sightings)
+        if not sightings.tells_nothing:
             self._seen.merge(sightings)
             self.revision += 1
+        if gone.names:
+            self._names, self._by_name, self._orders = [], [], []
+            self.arrangement += 1
+        return gone
+
+    def _gone_by(self, sightings: Sightings) -> Gone:
+        rows = self._seen.gone_by(sightings)
+        return Gone(frozenset(self._seen.names[row] for row in rows), np.array(rows, dtype=np.intp))
 
     def clear(self) -> None:
         """Forget every robot."""
         self._seen = Sightings()
         self._names, self._by_name, self._orders = [], [], []
         self.generation += 1
+        self.arrangement += 1
         self.revision += 1
 
     def row(self, name: str) -> int | None:

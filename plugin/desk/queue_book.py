@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from ...robot_bridge.messages import QueueReport
 from ..wire.queue_news import QueueNews
@@ -28,6 +28,11 @@ class QueueBook:
         new = [robot for robot, report in news.queues.items() if self.queues.get(robot) != report]
         self.queues.update(news.queues)
         return [*gone, *new]
+
+    def forget(self, robots: Iterable[str]) -> None:
+        """Forget the queues of robots that are there no more."""
+        for robot in robots:
+            self.queues.pop(robot, None)
 
     def get(self, robot: str) -> QueueReport | None:
         """Return a robot's queue, None for one that has none."""

@@ -22,9 +22,10 @@ class RobotFeed(QObject):
         self._desk, self._fleet = desk, fleet
         self._turn = desk.beat.turn()
         self._rows: dict[str, int] = {}
-        self._generation = -1
+        self._arrangement = -1
         desk.pulled.connect(self._pulled)
         desk.site_changed.connect(self.feed)
+        desk.robots_removed.connect(self.feed)
 
     def remove(self) -> None:
         """Feed nothing more."""
@@ -37,8 +38,8 @@ class RobotFeed(QObject):
             self._fleet.robots = None
             return
         robots = desk.picture.arrays(now)
-        if self._generation != desk.picture.generation or len(self._rows) != len(robots.names):
-            self._generation = desk.picture.generation
+        if self._arrangement != desk.picture.arrangement or len(self._rows) != len(robots.names):
+            self._arrangement = desk.picture.arrangement
             self._rows = {name: row for row, name in enumerate(robots.names)}
         frame = frame_of(desk.site)
         self._fleet.robots = RobotsNow(

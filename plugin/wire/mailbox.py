@@ -71,10 +71,10 @@ class Mailbox:
     def put_robots(self, robots: Sightings) -> None:
         """Leave what was told of robots; it replaces what is older of the same robots."""
         with self._lock:
-            if len(self._news.robots):
-                self._news.robots.merge(robots)
-            else:
+            if self._news.robots.tells_nothing:
                 self._news.robots = robots
+            else:
+                self._news.robots.merge(robots)
 
     def put_commands(self, reports: Iterable[CommandReport]) -> None:
         """Leave reports of commands, which hold all their steps; those longest unchanged go first."""

@@ -9,13 +9,18 @@ import numpy as np
 import numpy.typing as npt
 
 from ...robot_bridge.messages import POSITION_ALWAYS, POSITION_NUMBERS
+from .absence import absence
 from .sightings import AT, COLUMNS, STATES, WORDED, Sightings
 
 _STATE_CODES = {state.value: code for code, state in enumerate(STATES)}
 
 
-def sightings(told: Sequence[dict[str, Any]], received: float) -> Sightings:
+def sightings(
+    told: Sequence[dict[str, Any]], received: float, params: dict[str, Any] | None = None
+) -> Sightings:
     """Return the reports of one message, all of which arrived at ``received``.
+
+    Its ``params`` tell which robots are there no more.
 
     :raises ValueError: when a number is none, or not finite, or a text is none; it names it and the robot.
     :raises KeyError: when a report lacks its robot, state, age or link.
@@ -36,7 +41,8 @@ def sightings(told: Sequence[dict[str, Any]], received: float) -> Sightings:
     numbers[AT["state"]] = [_state_code(values["state"]) for values in told]
     numbers[AT["stopped"]] = [values.get("stopped", False) is True for values in told]
     numbers[AT["received"]] = received
-    return Sightings(names, numbers, [word for word in words if word is not None])
+    known = [word for word in words if word is not None]
+    return Sightings(names, numbers, known, **absence(params or {}))
 
 
 def _numbers_of(name: str, names: list[str], values: list[Any]) -> npt.NDArray[np.float64]:

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import json
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -17,6 +16,7 @@ from ...robot_bridge.messages import (
     POSITION_TEXTS,
     POSITION_VALUE,
 )
+from .absence import absence, texts
 from .sightings import AT, COLUMNS, STATES, Sightings
 
 _STATE_CODES = {state.value: code for code, state in enumerate(STATES)}
@@ -34,7 +34,7 @@ def sightings_in(frame: bytes, received: float) -> Sightings:
     if not isinstance(head, dict) or head.get("method") != "positions":
         raise ValueError("a binary frame without the head of positions")
     params = head["params"]
-    robots, columns, words = (_texts(name, params[name]) for name in ("robots", "columns", "words"))
+    robots, columns, words = (texts(name, params[name]) for name in ("robots", "columns", "words"))
     if len(set(robots)) < len(robots) or len(set(columns)) < len(columns):
         raise ValueError("a robot or a column that is named twice")
     table = np.frombuffer(frame, dtype=POSITION_VALUE, offset=begin).reshape(len(columns), len(robots))
@@ -49,13 +49,7 @@ def sightings_in(frame: bytes, received: float) -> Sightings:
     numbers[AT["state"]] = np.array(_states(words))[numbers[AT["state"]].astype(np.intp)]
     _check("state", numbers[AT["state"]], robots, len(STATES))
     numbers[AT["received"]] = received
-    return Sightings(robots, numbers, words)
-
-
-def _texts(name: str, values: Any) -> list[str]:
-    if not isinstance(values, list) or not set(map(type, values)) <= {str}:
-        raise ValueError(f"{name} is not a list of texts")
-    return values
+    return Sightings(robots, numbers, words, **absence(params))
 
 
 def _states(words: list[str]) -> list[float]:

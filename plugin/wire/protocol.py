@@ -134,7 +134,7 @@ class DeskProtocol:
 
     def _notified(self, method: str, params: dict[str, Any]) -> None:
         if method == "positions":
-            self._mailbox.put_robots(sightings(params["robots"], self._clock()))
+            self._mailbox.put_robots(sightings(params["robots"], self._clock(), params))
         elif method == COMMAND_NEWS:
             self._mailbox.put_commands([command_in(params)])
         elif method == "emergency":

@@ -7,6 +7,7 @@ somebody looks at.
 
 from __future__ import annotations
 
+from collections.abc import Collection, Iterable
 from typing import Any
 
 import numpy as np
@@ -34,15 +35,23 @@ Numbers = npt.NDArray[np.float64]
 
 
 class Sightings:
-    """The newest that was told of each robot, one row each. A robot keeps its row.
+    """The newest that was told of each robot, one row each. A robot keeps its row until one is removed.
 
     ``names`` has the n names, no two the same; ``numbers`` is (len(COLUMNS), n); ``words`` are the texts that
-    it points at. All are the table's own from then on.
+    it points at. All are the table's own from then on. With ``everything`` there are no other robots;
+    ``removed`` are gone for good.
     """
 
     def __init__(
-        self, names: list[str] | None = None, numbers: Numbers | None = None, words: list[str] | None = None
+        self,
+        names: list[str] | None = None,
+        numbers: Numbers | None = None,
+        words: list[str] | None = None,
+        *,
+        removed: Iterable[str] = (),
+        everything: bool = False,
     ) -> None:
+        self.removed, self.everything = set(removed), everything
         self.names = [] if names is None else names
         self._numbers = np.empty((len(COLUMNS), 0)) if numbers is None else numbers
         self._rows = dict(zip(self.names, range(len(self.names)), strict=True))
@@ -54,6 +63,24 @@ class Sightings:
 
     def __contains__(self, name: str) -> bool:
         return name in self._rows
+
+    @property
+    def tells_nothing(self) -> bool:
+        """Whether there is nothing in it."""
+        return not (self.names or self.removed or self.everything)
+
+    def gone_by(self, newer: Sightings) -> list[int]:
+        """Return the rows of the robots that are there no more, as ``newer`` tells."""
+        if newer.everything:
+            return [row for row, name in enumerate(self.names) if name not in newer]
+        return sorted(row for name in newer.removed if (row := self.row(name)) is not None)
+
+    def drop(self, rows: Collection[int]) -> None:
+        """Take robots out; those below them move up."""
+        kept = np.delete(np.arange(len(self)), list(rows))
+        self.names = [self.names[row] for row in kept.tolist()]
+        self._numbers = self._numbers[:, kept]
+        self._rows = dict(zip(self.names, range(len(self.names)), strict=True))
 
     def column(self, name: str) -> Numbers:
         """Return one of :data:`COLUMNS`, a view that holds until the next :meth:`merge`."""
@@ -87,6 +114,10 @@ class Sightings:
 
     def merge(self, newer: Sightings) -> None:
         """Take over what is in ``newer``, which is used up, unless it arrived before what is known."""
+        if gone := self.gone_by(newer):
+            self.drop(gone)
+        self.everything |= newer.everything
+        self.removed = (self.removed | newer.removed).difference(newer.names)
         numbers, received = newer._numbers[:, : len(newer)], AT["received"]
         self._say_in_own_words(numbers, newer._words)
         if newer.names == self.names and (numbers[received] >= self.column("received")).all():

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from ..picture import Gone
 from .alarm import Alarm, AlarmChange, AlarmEvent, Key
 from .latches import PairLatch, RowLatch
 from .rules import RULES, Situation, too_close
@@ -92,6 +93,15 @@ class AlarmBoard:
         self._rows = {kind: RowLatch() for kind in RULES}
         self._pairs = PairLatch()
         self._alarms.clear()
+        self._ordered = None
+
+    def drop(self, gone: Gone) -> None:
+        """Forget robots that are there no more, with their alarms. The log stays."""
+        for latch in (*self._rows.values(), self._pairs):
+            latch.drop(gone.rows)
+        for key, alarm in list(self._alarms.items()):
+            if {alarm.robot, alarm.other} & gone.names:
+                del self._alarms[key]
         self._ordered = None
 
     def _let_go(self) -> None:

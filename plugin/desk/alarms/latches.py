@@ -32,6 +32,13 @@ class RowLatch:
         self.on[rises], self.on[falls] = True, False
         return rises, falls
 
+    def drop(self, rows: Ints) -> None:
+        """Forget robots that are there no more; those below them move up."""
+        rows = rows[rows < len(self.on)]
+        self.on = np.delete(self.on, rows)
+        self._holds_since = np.delete(self._holds_since, rows)
+        self._over_since = np.delete(self._over_since, rows)
+
     def _grow(self, count: int) -> None:
         more = count - len(self.on)
         if more > 0:
@@ -57,6 +64,13 @@ class PairLatch:
         falls = np.setdiff1d(self._on, on)[:MOST_AT_ONCE]
         self._on = np.setdiff1d(np.union1d(self._on, rises), falls)
         return _pairs(rises), _pairs(falls)
+
+    def drop(self, rows: Ints) -> None:
+        """Forget the pairs of robots that are there no more; those below them move up."""
+        pairs = np.array(_pairs(self._on), dtype=np.int64).reshape(-1, 2)
+        pairs = pairs[~np.isin(pairs, rows).any(axis=1)]
+        pairs -= np.searchsorted(np.sort(rows), pairs)
+        self._on = np.sort((pairs[:, 0] << PAIR_SHIFT) + pairs[:, 1])
 
 
 def _pairs(keys: Ints) -> list[tuple[int, int]]:

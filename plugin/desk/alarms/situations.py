@@ -20,6 +20,7 @@ class Situations:
         self._desk = desk
         self._ground = ground
         self._before: tuple[float, Floats] = (0.0, np.empty((0, 2)))
+        self._arrangement = desk.picture.arrangement
 
     def at(self, moment: float, limits: Thresholds) -> Situation:
         """Return how things are at ``moment`` of the desk's clock; the site has to be known."""
@@ -40,6 +41,9 @@ class Situations:
 
     def _speeds(self, robots: RobotArrays, moment: float) -> Floats:
         then, places = self._before
+        if self._arrangement != self._desk.picture.arrangement:
+            # Where other robots were.
+            self._arrangement, places = self._desk.picture.arrangement, places[:0]
         self._before = moment, robots.xy
         seen = np.full(len(robots.v), np.nan)
         if moment > then and 0 < len(places) <= len(robots.xy):

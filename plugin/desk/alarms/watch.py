@@ -11,6 +11,7 @@ from ...language import tr
 from ...sites.surface_store import SurfaceStore
 from ...wire.status import Phase
 from ..desk import Desk
+from ..picture import Gone
 from .alarm import AlarmChange, AlarmEvent, Key
 from .board import AlarmBoard
 from .message_log import AlarmMessages
@@ -43,10 +44,12 @@ class AlarmWatch(QObject):
         self._told = ""
         self.board = AlarmBoard(read_limits())
         desk.pulled.connect(self._pulled)
+        desk.robots_removed.connect(self._drop)
 
     def remove(self) -> None:
         """Look no more."""
         self._desk.pulled.disconnect(self._pulled)
+        self._desk.robots_removed.disconnect(self._drop)
         self._ground.remove()
 
     def why_not(self) -> str:
@@ -91,6 +94,10 @@ class AlarmWatch(QObject):
             self.changed.emit()
         if self._turn.has_come(1 if len(self._desk.picture) <= MANY else 2):
             self.look()
+
+    def _drop(self, gone: Gone) -> None:
+        self.board.drop(gone)
+        self.changed.emit()
 
     def _tell(self, events: list[AlarmEvent]) -> None:
         self._messages.write([event.alarm for event in events if event.change is AlarmChange.BEGAN])

@@ -94,6 +94,19 @@ class RobotLayer(QObject):
         if not self._waiting:
             self._show_written()
 
+    def drop(self, robots: Iterable[str]) -> None:
+        """Take robots out of the layer that are there no more."""
+        known = [robot for robot in robots if robot in self._ids]
+        if self._layer is not None and known:
+            self._marking = True
+            self._layer.dataProvider().deleteFeatures([self._ids[robot] for robot in known])
+            self._marking = False
+            self._show_written()
+        for robot in known:
+            del self._ids[robot], self._written[robot]
+        # A round that is under way goes by rows that are others' now.
+        self._waiting = range(0)
+
     def clear(self) -> None:
         """Take every robot out of the layer."""
         if self._layer is not None and self._ids:

@@ -46,7 +46,7 @@ class Trails:
     def __init__(self) -> None:
         self.length = LENGTHS[0]
         self.generation = 0
-        """Counts how often everything was forgotten, or trails got another length."""
+        """Counts how often something was forgotten, or trails got another length."""
         self._forget()
 
     def __len__(self) -> int:
@@ -59,7 +59,16 @@ class Trails:
 
     def clear(self) -> None:
         """Forget every trail."""
+        self.length = LENGTHS[0]
         self._forget()
+        self.generation += 1
+
+    def drop(self, rows: npt.NDArray[np.intp]) -> None:
+        """Forget the trails of robots that are there no more; those below them move up."""
+        rows = rows[rows < len(self)]
+        self._ring = np.delete(self._ring, rows, axis=1)
+        self._taken = np.delete(self._taken, rows)
+        self._last, self._last_time = np.delete(self._last, rows, axis=0), np.delete(self._last_time, rows)
         self.generation += 1
 
     def extend(self, xy: Points, now: float) -> None:
@@ -111,8 +120,8 @@ class Trails:
 
     def _provide(self, robots: int) -> None:
         length = next(length for length in LENGTHS if robots <= length.robots)
-        # There never come fewer robots before everything is forgotten, so trails only grow shorter.
-        if length != self.length:
+        # They only grow shorter until all are forgotten: what was cut off does not come back.
+        if length.samples < self.length.samples:
             self._cut(length)
         missing = robots - len(self)
         if missing > 0:

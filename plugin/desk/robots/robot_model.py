@@ -42,7 +42,7 @@ class RobotModel(QAbstractTableModel):
         super().__init__(parent)
         self.deviations = Deviations(book)
         self._fleet: FleetRows = fleet_rows(picture, book, self.deviations, 0.0)
-        self._generation = picture.generation
+        self._arrangement = picture.arrangement
         self._order: Rows = np.empty(0, dtype=np.intp)
         self._row_at: Rows = np.empty(0, dtype=np.intp)
         self._sorted_by = (TITLES.index("Robot"), Qt.SortOrder.AscendingOrder)
@@ -91,9 +91,9 @@ class RobotModel(QAbstractTableModel):
         """Show what is known at ``moment`` of the desk's clock."""
         picture = self._fleet.picture
         fleet = fleet_rows(picture, self._fleet.book, self.deviations, moment)
-        if picture.generation != self._generation:
-            # Rows of another generation are other robots.
-            self._generation = picture.generation
+        if picture.arrangement != self._arrangement:
+            # Rows of another arrangement are other robots.
+            self._arrangement = picture.arrangement
             self.beginResetModel()
             self._fleet = fleet
             self._take(self._wanted())

@@ -58,6 +58,7 @@ class RobotTable(QTableView):
         desk.pulled.connect(self._pulled)
         # The robots known so far may be gone, or be others by the same names.
         desk.site_changed.connect(self.refresh)
+        desk.robots_removed.connect(self.refresh)
 
     @property
     def robots(self) -> RobotModel:
