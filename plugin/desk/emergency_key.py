@@ -15,6 +15,10 @@ class EmergencyKey(QObject):
         self._action = action
         QgsApplication.instance().focusWindowChanged.connect(self._lend)
 
+    def remove(self) -> None:
+        """Lend the key to no more dialogs."""
+        QgsApplication.instance().focusWindowChanged.disconnect(self._lend)
+
     def _lend(self) -> None:
         dialog = QApplication.activeModalWidget()
         if dialog is not None and self._action not in dialog.actions():

@@ -40,6 +40,10 @@ class ProjectMatch(QObject):
         self._watch.opened.connect(self._compare)
         desk.site_changed.connect(self._compare)
 
+    def remove(self) -> None:
+        """Compare no more."""
+        self._watch.remove()
+
     def _compare(self) -> None:
         if self._told:
             self.over.emit(self._told)

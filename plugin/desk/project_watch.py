@@ -25,6 +25,13 @@ class ProjectWatch(QObject):
         project.readProject.connect(self._read)
         project.projectSaved.connect(self._complete)
 
+    def remove(self) -> None:
+        """Hear of the project no more: it is there longer than the plugin, and keeps each connection."""
+        self._soon.stop()
+        self._project.cleared.disconnect(self._cleared)
+        self._project.readProject.disconnect(self._read)
+        self._project.projectSaved.disconnect(self._complete)
+
     @property
     def is_reading(self) -> bool:
         """Whether layers are being read: a project that is new has no file yet."""

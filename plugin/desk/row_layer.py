@@ -82,7 +82,8 @@ class RowLayer:
             self._go_on()
 
     def remove(self) -> None:
-        """Take the layer out of the project, and show nothing in the next one."""
+        """Take the layer out of the project for good, and show nothing in the next one."""
+        self._watch.remove()
         self._soon.stop()
         self._shown = (), None
         self._take_out()

@@ -84,6 +84,8 @@ class DeskWindow(QObject):
         self.queue_marks.remove()
         self.road_layers.remove()
         self.view.remove()
+        self._project_match.remove()
+        self._key.remove()
         self.notices.withdraw()
         for action in self.menu_entries():
             self._iface.removePluginMenu(MENU, action)

@@ -90,6 +90,7 @@ class LiveView(QObject):
         self._desk.canvas.destinationCrsChanged.disconnect(self._way_changed)
         self._desk.project.transformContextChanged.disconnect(self._way_changed)
         self._desk.canvas.extentsChanged.disconnect(self._frame.start)
+        self._project.remove()
         self._hovering.remove()
         self.layer.remove()
         if not sip.isdeleted(self.overlay):

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import gc
+from collections import Counter
 from pathlib import Path
 
 from qgis.core import QgsApplication, QgsProject
-from qgis.PyQt.QtCore import QCoreApplication, QEvent, QThread, QTimer
+from qgis.PyQt.QtCore import QCoreApplication, QEvent, QMetaMethod, QThread, QTimer
 from qgis.PyQt.QtWidgets import QAction, QApplication, QDockWidget, QToolBar
 
 
@@ -30,3 +31,29 @@ def left_behind(iface):
         "providers": len(QgsApplication.processingRegistry().providers()),
         "children": len(iface.children()),
     }
+
+
+def connected_to(*objects):
+    """Return how many receivers each signal of ``objects`` has, as in ``QgsProject.readProject``.
+
+    Of those that last longer than the plugin each keeps what was connected and not disconnected, also when
+    the receiver is long gone.
+    """
+    QCoreApplication.sendPostedEvents(None, QEvent.Type.DeferredDelete)
+    QApplication.processEvents()
+    gc.collect()
+    found = Counter()
+    for one in objects:
+        kind = one.metaObject()
+        methods = map(kind.method, range(kind.methodCount()))
+        names = {bytes(m.name()).decode() for m in methods if m.methodType() == QMetaMethod.MethodType.Signal}
+        for name in names:
+            try:
+                signal = getattr(one, name, None)
+            except TypeError:
+                # Of an argument that Python does not know: nothing of a plugin is connected to it.
+                continue
+            # Python does not know every signal, and some have the name of a method.
+            if hasattr(signal, "emit"):
+                found[f"{kind.className()}.{name}"] += one.receivers(signal)
+    return found

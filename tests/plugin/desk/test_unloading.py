@@ -12,7 +12,9 @@ from qgis.PyQt.QtWidgets import (
     QLineEdit,
 )
 
-from tests.plugin.desk.left_behind import left_behind
+from tests.plugin.desk.left_behind import connected_to, left_behind
+
+PANELS = ("fleet_plan_panel", "fleet_observations", "fleet_replay")
 
 
 def test_unloading_leaves_nothing_twice(iface, gateway, make_robot, wait):
@@ -40,6 +42,36 @@ def test_unloading_leaves_nothing_twice(iface, gateway, make_robot, wait):
         assert plugin.window is None
         assert left_behind(iface) == before
     assert iface.canvas.mapTool() is before_tool
+
+
+def test_qgis_keeps_no_connection_to_what_was_unloaded(iface, gateway, make_robot, wait):
+    """Each reload would leave some more, for as long as QGIS runs."""
+    lasting = (
+        iface,
+        iface.canvas,
+        iface.bar,
+        iface.locator,
+        QgsProject.instance(),
+        QgsApplication.instance(),
+    )
+    gateway.show(make_robot("r1"))
+    after = []
+    # Qt and QGIS connect some of their own for the first time.
+    for _ in range(2):
+        plugin = FleetSupervisor(iface)
+        plugin.initGui()
+        window = plugin.window
+        window.dock.findChild(QLineEdit, "fleet_url").setText(gateway.url)
+        window.actions.connect.trigger()
+        wait(lambda window=window: len(window.desk.picture) == 1)
+        for action in iface.plugins.actions():
+            if action.objectName() in PANELS:
+                action.trigger()
+        during = connected_to(*lasting)
+        plugin.unload()
+        after.append(connected_to(*lasting))
+    assert during["QgsProject.readProject"] > after[0]["QgsProject.readProject"]
+    assert after[1] - after[0] == {}
 
 
 def test_unloading_while_a_gateway_hangs_does_not_hang(iface, gateway, wait):
