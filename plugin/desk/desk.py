@@ -24,6 +24,7 @@ from .beat import PULL_EVERY_MS, Beat
 from .checks import LayerCheck, check_bounds, check_map
 from .command_book import CommandBook
 from .drafting.draft_checker import DraftChecker
+from .drafting.draft_sending import DraftSending
 from .drafting.order_check import check_orders
 from .drafting.slices import Steps
 from .drafting.target_check import TargetCheck
@@ -105,9 +106,10 @@ class Desk(QObject):
         self._check_targets = TargetCheck(self.book, self.queues)
         self.checks = DraftChecker(self.drafts, self._checked, self)
         self.checks.found.connect(self._found)
-        self.checks.overtaken.connect(self._overtaken)
         self._check_layers.changed.connect(self.checks.begin_anew)
-        self.orders.refused.connect(self._refused)
+        self.sending = DraftSending(self.drafts, self.checks, self.orders, self)
+        self.sending.failed.connect(self.failed)
+        self.sending.complained.connect(self.complained)
         self.orders.accepted.connect(self.remarked)
         self.orders.slow.connect(self.failed)
         self.orders.settled.connect(self.settled)
@@ -318,14 +320,6 @@ class Desk(QObject):
         if draft.findings.faults:
             self.complained.emit(in_brief(draft.findings.faults))
 
-    def _overtaken(self, draft: Draft) -> None:
-        self.failed.emit(
-            tr(
-                "{in_words} was not sent: the draft was changed before it had been checked. Send it anew.",
-                in_words=draft.in_words(),
-            )
-        )
-
     # --- what the operator does ---
 
     @property
@@ -344,62 +338,6 @@ class Desk(QObject):
             self.selection = selection
             self.selection_changed.emit()
 
-    def send_draft(self) -> None:
-        """Send the draft once it was looked at afresh; without one, or when it cannot be sent, say so."""
-        draft = self.drafts.draft
-        if draft is None:
-            self.complained.emit(
-                tr(
-                    "There is nothing to send. Select a robot, then set a cone target or draw a route on "
-                    "the map."
-                )
-            )
-            return
-        try:
-            self.order_draft(self._send)
-        except FleetError as error:
-            self.failed.emit(tr("{in_words} was not sent: {error}", in_words=draft.in_words(), error=error))
-
-    def order_draft(self, order: Callable[[Draft], None]) -> None:
-        """Look at the draft on the map afresh, then do something with it.
-
-        Not if it is another by then, nor if the operator has not seen the warnings that there are now.
-
-        :raises FleetError: when it cannot be looked at.
-        """
-        draft = self.drafts.draft
-        assert draft is not None
-        self.checks.again(lambda looked_at: self._order(looked_at, draft.findings.warnings, order))
-
-    def _order(self, draft: Draft, known: tuple[str, ...], order: Callable[[Draft], None]) -> None:
-        unseen = [text for text in draft.findings.warnings if text not in known]
-        if not unseen or draft.fault:
-            order(draft)
-            return
-        self.failed.emit(
-            tr(
-                "{in_words} was not sent, since only now this is known: {warnings} Ask for it again to send "
-                "it all the same.",
-                in_words=draft.in_words(),
-                warnings=in_brief(unseen),
-            )
-        )
-
-    def _send(self, draft: Draft) -> None:
-        if self._try(lambda: self.orders.send(draft)):
-            self.drafts.done()
-
-    def _withdraw(self) -> None:
-        """Send no draft any more that is still looked at: the operator wants robots to stand."""
-        draft = self.drafts.draft
-        if self.checks.withdraw() and draft is not None:
-            self.failed.emit(
-                tr(
-                    "{in_words} was not sent: robots were told to stop before it had been checked.",
-                    in_words=draft.in_words(),
-                )
-            )
-
     def abort_selected(self) -> None:
         """Ask every selected robot to give up its task."""
         if not self.selection:
@@ -408,17 +346,17 @@ class Desk(QObject):
             )
         for robot in self.selection:
             self._try(lambda robot=robot: self.orders.abort(robot))
-        self._withdraw()
+        self.sending.withdraw()
 
     def abort_all(self) -> None:
         """Ask every robot to give up its task, at once and without a question."""
         self._try(self.orders.abort_all)
-        self._withdraw()
+        self.sending.withdraw()
 
     def emergency_stop(self) -> None:
         """Stop every robot at once and without a question, until a supervisor clears it."""
         self._try(self.orders.emergency_stop)
-        self._withdraw()
+        self.sending.withdraw()
         self.emergency_changed.emit()
 
     def clear_emergency(self, stop: str, reason: str) -> None:
@@ -482,9 +420,3 @@ class Desk(QObject):
             "the robots' own emergency stops now."
         )
         self.failed.emit(self._not_sent_yet)
-
-    def _refused(self, text: str, draft: Draft | None) -> None:
-        self.failed.emit(text)
-        if draft is not None and self.drafts.draft is None:
-            # Nothing the operator drew is lost because a gateway refused it.
-            self.drafts.put(draft)

@@ -86,7 +86,7 @@ class DraftTool(QgsMapTool):
     def keyPressEvent(self, event: QKeyEvent) -> None:
         if event.key() in SEND_KEYS:
             if not event.isAutoRepeat():
-                self.desk.send_draft()
+                self.desk.sending.send()
             event.accept()
         elif event.key() == Qt.Key.Key_Escape:
             self.desk.drafts.put(None)

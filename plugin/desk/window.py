@@ -127,7 +127,7 @@ class DeskWindow(QObject):
             # A click on the button of the tool in hand keeps it, as QGIS's own do.
             action.triggered.connect(lambda _, tool=tool: tool.action().setChecked(True))
         actions.connect.triggered.connect(self._connect_or_not)
-        actions.send.triggered.connect(desk.send_draft)
+        actions.send.triggered.connect(desk.sending.send)
         actions.cancel.triggered.connect(lambda: desk.drafts.put(None))
         actions.follow.toggled.connect(lambda on: self._follow(Whom.SELECTED, on))
         actions.follow_all.toggled.connect(lambda on: self._follow(Whom.ALL, on))

@@ -73,7 +73,7 @@ class DraftCommands(QObject):
         :raises FleetError: when it must not or cannot be; it stays on the map then.
         """
         self._draft()
-        self._desk.order_draft(lambda draft: self._try(lambda: self._add(draft)))
+        self._desk.sending.order(lambda draft: self._try(lambda: self._add(draft)))
 
     def _add(self, draft: Draft) -> None:
         if draft.fault:

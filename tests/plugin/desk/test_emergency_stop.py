@@ -238,7 +238,7 @@ def test_what_the_gateway_refuses_while_it_is_in_force_comes_back_as_a_draft(sto
     stopped.desk.select("r1")
     stopped.actions.cone.trigger()
     iface.click(30, 30)
-    stopped.desk.send_draft()
+    stopped.desk.sending.send()
     wait(lambda: any("emergency stop is in force" in text for text in iface.texts()))
     assert stopped.desk.drafts.draft.message()[0] == SetPosEnd.__name__
 

@@ -53,7 +53,7 @@ def test_a_draft_is_held_against_the_site_that_was_published_anew(drawn, gateway
 
 def test_an_order_to_send_outlasts_it(drawn, gateway, site, wait, monkeypatch):
     monkeypatch.setattr(slices, "SLICE_SECONDS", 0.0)
-    drawn.desk.send_draft()
+    drawn.desk.sending.send()
     drawn.desk.connection._mailbox.put_site(replace(site, version="2"))
     drawn.desk.pull()
     assert drawn.desk.site.version == "2" and drawn.desk.checks.has_order
