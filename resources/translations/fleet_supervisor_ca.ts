@@ -1582,33 +1582,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/desk.py" />
-            <source>There is nothing to send. Select a robot, then set a cone target or draw a route on the map.</source>
-            <translation>No hi ha res a enviar. Seleccioneu un robot, i poseu un objectiu de con o dibuixeu una ruta al mapa.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/desk.py" />
             <source>the desk is not connected to a gateway. Connect first; to stop a robot now use the robot's own emergency stop.</source>
             <translation>la consola no està connectada a cap passarel·la. Connecteu abans; per aturar ara un robot feu servir la seva parada d'emergència.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/desk.py" />
-            <source>{in_words} was not sent, since only now this is known: {warnings} Ask for it again to send it all the same.</source>
-            <translation>{in_words}: no s'ha enviat, perquè fins ara no se sabia això: {warnings} Torneu-ho a demanar per enviar-ho igualment.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/desk.py" />
-            <source>{in_words} was not sent: robots were told to stop before it had been checked.</source>
-            <translation>{in_words}: no s'ha enviat, perquè s'ha ordenat aturar els robots abans d'acabar la comprovació.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/desk.py" />
-            <source>{in_words} was not sent: the draft was changed before it had been checked. Send it anew.</source>
-            <translation>{in_words}: no s'ha enviat, perquè l'esborrany ha canviat abans d'acabar la comprovació. Torneu-lo a enviar.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/desk.py" />
-            <source>{in_words} was not sent: {error}</source>
-            <translation>{in_words} no s'ha enviat: {error}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/desk.py" />
@@ -1734,6 +1709,31 @@
             <location filename="../../plugin/desk/drafting/datum_path.py" />
             <source>the default operation of PROJ</source>
             <translation>l'operació per defecte de PROJ</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/draft_sending.py" />
+            <source>There is nothing to send. Select a robot, then set a cone target or draw a route on the map.</source>
+            <translation>No hi ha res a enviar. Seleccioneu un robot, i poseu un objectiu de con o dibuixeu una ruta al mapa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/draft_sending.py" />
+            <source>{in_words} was not sent, since only now this is known: {warnings} Ask for it again to send it all the same.</source>
+            <translation>{in_words}: no s'ha enviat, perquè fins ara no se sabia això: {warnings} Torneu-ho a demanar per enviar-ho igualment.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/draft_sending.py" />
+            <source>{in_words} was not sent: robots were told to stop before it had been checked.</source>
+            <translation>{in_words}: no s'ha enviat, perquè s'ha ordenat aturar els robots abans d'acabar la comprovació.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/draft_sending.py" />
+            <source>{in_words} was not sent: the draft was changed before it had been checked. Send it anew.</source>
+            <translation>{in_words}: no s'ha enviat, perquè l'esborrany ha canviat abans d'acabar la comprovació. Torneu-lo a enviar.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/draft_sending.py" />
+            <source>{in_words} was not sent: {error}</source>
+            <translation>{in_words} no s'ha enviat: {error}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/drafting/keepout_check.py" />
@@ -2665,6 +2665,11 @@
             <location filename="../../plugin/desk/plans/draft_plan.py" />
             <source>Preview of the cone plan</source>
             <translation>Vista prèvia del pla de cons</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/draft_plan.py" />
+            <source>There is no store where robots load or unload cones: choose a layer of points under Stores, or write under Aboard how many cones each robot has to place.</source>
+            <translation>No hi ha cap magatzem on els robots carreguin o descarreguin cons: trieu una capa de punts a Magatzems, o escriviu a A bord quants cons per col·locar porta cada robot.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driven_plan.py" />

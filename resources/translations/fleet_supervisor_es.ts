@@ -1582,33 +1582,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/desk.py" />
-            <source>There is nothing to send. Select a robot, then set a cone target or draw a route on the map.</source>
-            <translation>No hay nada que enviar. Seleccione un robot, y ponga un objetivo de cono o dibuje una ruta en el mapa.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/desk.py" />
             <source>the desk is not connected to a gateway. Connect first; to stop a robot now use the robot's own emergency stop.</source>
             <translation>la consola no está conectada a ninguna pasarela. Conéctese antes; para detener ahora un robot use su propia parada de emergencia.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/desk.py" />
-            <source>{in_words} was not sent, since only now this is known: {warnings} Ask for it again to send it all the same.</source>
-            <translation>{in_words}: no se envió, porque hasta ahora no se sabía esto: {warnings} Pídalo otra vez para enviarlo de todos modos.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/desk.py" />
-            <source>{in_words} was not sent: robots were told to stop before it had been checked.</source>
-            <translation>{in_words}: no se envió, porque se ordenó detener los robots antes de terminar la comprobación.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/desk.py" />
-            <source>{in_words} was not sent: the draft was changed before it had been checked. Send it anew.</source>
-            <translation>{in_words}: no se envió, porque el borrador cambió antes de terminar la comprobación. Envíelo de nuevo.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/desk.py" />
-            <source>{in_words} was not sent: {error}</source>
-            <translation>{in_words} no se envió: {error}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/desk.py" />
@@ -1734,6 +1709,31 @@
             <location filename="../../plugin/desk/drafting/datum_path.py" />
             <source>the default operation of PROJ</source>
             <translation>la operación por defecto de PROJ</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/draft_sending.py" />
+            <source>There is nothing to send. Select a robot, then set a cone target or draw a route on the map.</source>
+            <translation>No hay nada que enviar. Seleccione un robot, y ponga un objetivo de cono o dibuje una ruta en el mapa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/draft_sending.py" />
+            <source>{in_words} was not sent, since only now this is known: {warnings} Ask for it again to send it all the same.</source>
+            <translation>{in_words}: no se envió, porque hasta ahora no se sabía esto: {warnings} Pídalo otra vez para enviarlo de todos modos.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/draft_sending.py" />
+            <source>{in_words} was not sent: robots were told to stop before it had been checked.</source>
+            <translation>{in_words}: no se envió, porque se ordenó detener los robots antes de terminar la comprobación.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/draft_sending.py" />
+            <source>{in_words} was not sent: the draft was changed before it had been checked. Send it anew.</source>
+            <translation>{in_words}: no se envió, porque el borrador cambió antes de terminar la comprobación. Envíelo de nuevo.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/draft_sending.py" />
+            <source>{in_words} was not sent: {error}</source>
+            <translation>{in_words} no se envió: {error}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/drafting/keepout_check.py" />
@@ -2665,6 +2665,11 @@
             <location filename="../../plugin/desk/plans/draft_plan.py" />
             <source>Preview of the cone plan</source>
             <translation>Vista previa del plan de conos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/draft_plan.py" />
+            <source>There is no store where robots load or unload cones: choose a layer of points under Stores, or write under Aboard how many cones each robot has to place.</source>
+            <translation>No hay ningún almacén donde los robots carguen o descarguen conos: elija una capa de puntos en Almacenes, o escriba en A bordo cuántos conos por colocar lleva cada robot.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driven_plan.py" />

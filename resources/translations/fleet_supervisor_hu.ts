@@ -1576,33 +1576,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/desk.py" />
-            <source>There is nothing to send. Select a robot, then set a cone target or draw a route on the map.</source>
-            <translation>Nincs mit küldeni. Jelöljön ki robotot, majd tegyen bójacélt vagy rajzoljon útvonalat a térképre.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/desk.py" />
             <source>the desk is not connected to a gateway. Connect first; to stop a robot now use the robot's own emergency stop.</source>
             <translation>a kezelőpult nincs átjáróhoz kapcsolva. Előbb kapcsolódjon; robotot most a saját vészleállítójával állíthat meg.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/desk.py" />
-            <source>{in_words} was not sent, since only now this is known: {warnings} Ask for it again to send it all the same.</source>
-            <translation>{in_words}: nem lett elküldve, mert csak most derült ki: {warnings} Kérje újra, ha mégis el akarja küldeni.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/desk.py" />
-            <source>{in_words} was not sent: robots were told to stop before it had been checked.</source>
-            <translation>{in_words}: nem lett elküldve, mert a robotok az ellenőrzés vége előtt megállási utasítást kaptak.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/desk.py" />
-            <source>{in_words} was not sent: the draft was changed before it had been checked. Send it anew.</source>
-            <translation>{in_words}: nem lett elküldve, mert a vázlat az ellenőrzés vége előtt megváltozott. Küldje el újra.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/desk.py" />
-            <source>{in_words} was not sent: {error}</source>
-            <translation>{in_words} nem lett elküldve: {error}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/desk.py" />
@@ -1728,6 +1703,31 @@
             <location filename="../../plugin/desk/drafting/datum_path.py" />
             <source>the default operation of PROJ</source>
             <translation>a PROJ alapértelmezett művelete</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/draft_sending.py" />
+            <source>There is nothing to send. Select a robot, then set a cone target or draw a route on the map.</source>
+            <translation>Nincs mit küldeni. Jelöljön ki robotot, majd tegyen bójacélt vagy rajzoljon útvonalat a térképre.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/draft_sending.py" />
+            <source>{in_words} was not sent, since only now this is known: {warnings} Ask for it again to send it all the same.</source>
+            <translation>{in_words}: nem lett elküldve, mert csak most derült ki: {warnings} Kérje újra, ha mégis el akarja küldeni.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/draft_sending.py" />
+            <source>{in_words} was not sent: robots were told to stop before it had been checked.</source>
+            <translation>{in_words}: nem lett elküldve, mert a robotok az ellenőrzés vége előtt megállási utasítást kaptak.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/draft_sending.py" />
+            <source>{in_words} was not sent: the draft was changed before it had been checked. Send it anew.</source>
+            <translation>{in_words}: nem lett elküldve, mert a vázlat az ellenőrzés vége előtt megváltozott. Küldje el újra.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/drafting/draft_sending.py" />
+            <source>{in_words} was not sent: {error}</source>
+            <translation>{in_words} nem lett elküldve: {error}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/drafting/keepout_check.py" />
@@ -2652,6 +2652,11 @@
             <location filename="../../plugin/desk/plans/draft_plan.py" />
             <source>Preview of the cone plan</source>
             <translation>A bójaterv előnézete</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/draft_plan.py" />
+            <source>There is no store where robots load or unload cones: choose a layer of points under Stores, or write under Aboard how many cones each robot has to place.</source>
+            <translation>Nincs raktár, ahol a robotok bóját vesznek fel vagy raknak le: válasszon pontréteget a Raktárak alatt, vagy írja a Rajta oszlopba, hány kihelyezendő bója van az egyes robotokon.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driven_plan.py" />

@@ -11,6 +11,10 @@ class JobError(AssignmentError):
     """Targets, robots or stores that cannot be planned for: numbers that are none, names used twice."""
 
 
+class MissingStoreError(JobError):
+    """Robots have to load or unload cones, and no store is given."""
+
+
 class UnservedError(AssignmentError):
     """Targets that no robot can serve; ``targets`` are their ids."""
 

@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from .errors import JobError
+from .errors import JobError, MissingStoreError
 
 Floats = NDArray[np.float64]
 
@@ -145,7 +145,7 @@ def _check(job: Job) -> None:
     for target in job.targets:
         _check_target(target, max(robot.capacity for robot in job.robots))
     if not job.stores and _needs_store(job):
-        raise JobError("There is no store where robots load or unload cones: give at least one.")
+        raise MissingStoreError("There is no store where robots load or unload cones: give at least one.")
 
 
 def _needs_store(job: Job) -> bool:

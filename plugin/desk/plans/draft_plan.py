@@ -11,7 +11,7 @@ from qgis.PyQt import sip
 from qgis.PyQt.QtCore import QObject, pyqtSignal
 
 from ....robot_bridge.assignment import editing
-from ....robot_bridge.assignment.errors import AssignmentError
+from ....robot_bridge.assignment.errors import AssignmentError, MissingStoreError
 from ....robot_bridge.assignment.job import COLLECT, Job, Robot, Target
 from ....robot_bridge.assignment.plan import Plan
 from ....robot_bridge.assignment.solving import AUTOMATIC, PREVIEW, Wanted, assign
@@ -142,6 +142,13 @@ class DraftPlan(QObject):
         try:
             job = Job(targets, self._robots(), stores, self.settings.finish)
             wanted = Wanted(self.settings.objective, PREVIEW if preview else AUTOMATIC, self.settings.seconds)
+        except MissingStoreError as error:
+            raise PlanningError(
+                tr(
+                    "There is no store where robots load or unload cones: choose a layer of points under "
+                    "Stores, or write under Aboard how many cones each robot has to place."
+                )
+            ) from error
         except AssignmentError as error:
             raise PlanningError(str(error)) from error
         ways = PlanWays(self._desk.project, frame, self.settings)

@@ -85,7 +85,10 @@ def test_the_plan_is_on_the_map_with_numbers_times_and_a_colour_for_each_robot(p
     [
         (lambda dock: dock.form.cones.setCurrentIndex(0), "No layer of cones is chosen"),
         (lambda dock: [untick(dock, row) for row in range(2)], "No robot that is there is chosen"),
-        (lambda dock: [write(dock, row, ABOARD, "0") for row in range(2)], "There is no store"),
+        (
+            lambda dock: [write(dock, row, ABOARD, "0") for row in range(2)],
+            "under Stores, or write under Aboard",
+        ),
         (lambda dock: dock.form.selected_only.setChecked(True), "no selected features"),
         (lambda dock: write(dock, 0, CARRIES, "many"), "Carries of r1 is 'many'"),
     ],
