@@ -63,6 +63,7 @@ class PlanDock(ActionDock):
         self.progress = QProgressBar()
         self._turn = desk.beat.turn()
         self.question: QMessageBox | None = None
+        self._refusals: list[str] = []
         self._generation = desk.picture.generation
         self._lay_out()
         self._wire()
@@ -88,7 +89,15 @@ class PlanDock(ActionDock):
                     "go on with their queues then."
                 )
             )
-        elif self._try(lambda: self.drafts.make(preview=preview)):
+            return
+        for why in self._refusals:
+            self._desk.settled.emit(why)
+        self._refusals.clear()
+        try:
+            self.drafts.make(preview=preview)
+        except FleetError as error:
+            self._refuse(str(error))
+        else:
             self.driven.clear()
 
     def ask_to_send(self) -> None:
@@ -181,6 +190,11 @@ class PlanDock(ActionDock):
         self._desk.canvas.setCenter(QgsPointXY(east, north))
         self._desk.canvas.refresh()
 
+    def _refuse(self, why: str) -> None:
+        """Say why there is no plan; it hangs there until another one is asked for."""
+        self._refusals.append(why)
+        self._desk.failed.emit(why)
+
     def _try(self, action: Callable[[], object]) -> bool:
         try:
             action()
@@ -239,7 +253,7 @@ class PlanDock(ActionDock):
         bar.by_itself_changed.connect(self._set_by_itself)
         self.drafts.changed.connect(self._refresh)
         self.driven.changed.connect(self._refresh)
-        self.drafts.refused.connect(desk.failed)
+        self.drafts.refused.connect(self._refuse)
         self.driven.failed.connect(desk.failed)
         self.driven.remarked.connect(desk.remarked)
         self.driven.settled.connect(desk.settled)

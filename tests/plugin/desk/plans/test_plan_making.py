@@ -99,6 +99,17 @@ def test_what_is_missing_is_named(panel, wait, iface, spoil, expected):
     wait(lambda: any(expected in text for text in iface.texts()), 10, expected)
 
 
+def test_what_was_missing_is_told_no_longer_once_another_plan_is_asked_for(panel, wait, iface):
+    for row in range(2):
+        write(panel, row, ABOARD, "0")
+    press(panel, "fleet_plan_preview")
+    wait(lambda: any("There is no store" in text for text in iface.texts()), 10, "what is missing")
+    for row in range(2):
+        write(panel, row, ABOARD, "6")
+    planned(panel, wait)
+    wait(lambda: not any("There is no store" in text for text in iface.texts()), 10, "the text going")
+
+
 def test_unloading_takes_panel_layers_and_tasks_away(panel, plugin, wait, iface, endless):
     planned(panel, wait)
     endless()
