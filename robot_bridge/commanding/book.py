@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-from collections import Counter
 from collections.abc import Awaitable, Callable, Coroutine, Iterable, Sequence
 from typing import Any
 
@@ -25,12 +24,12 @@ from ..command_life.open_command import (
 from ..command_life.open_commands import OpenCommands
 from ..command_life.states import is_open, may_become
 from ..errors import DataRefusedError, RefusedError, StoreError
-from ..messages import Command, CommandReport, CommandState, OpAck, SendPos, SetPath, SetPosEnd
-from ..polyline import Polyline
+from ..messages import Command, CommandReport, CommandState, OpAck, SendPos, SetPath
 from ..store import commands
 from ..store.commands import StoredCommand
 from ..store.database import Database, to_its_end
 from .holding import HeldRobots
+from .reader import CommandReader
 from .writing import (
     Also,
     Draft,
@@ -56,7 +55,7 @@ MOST_LATE = 1000
 """acknowledgements of ended commands that wait for the database."""
 
 
-class CommandBook:
+class CommandBook(CommandReader):
     """Holds the open commands and takes them through their lives.
 
     Every change is committed before it is shown: ``changed`` is called with each command's new report, and
@@ -74,6 +73,7 @@ class CommandBook:
         check: Callable[[Command], None],
         consider: Callable[[Command], Awaitable[None]],
     ) -> None:
+        super().__init__(OpenCommands())
         self._database = database
         self.tolerance = tolerance
         self._clock = clock
@@ -89,7 +89,6 @@ class CommandBook:
         """Tells whether a robot may have come further since it was seen last."""
         self.fence: Callable[[Sequence[Command]], Awaitable[Sequence[RefusedError | None]]] = _let_pass
         """Tells of messages of orders that are fenced why each must not be sent, None where it may be."""
-        self._open = OpenCommands()
         self._held = HeldRobots(database, self._look_up)
         self._late: set[tuple[str, int]] = set()
 
@@ -97,51 +96,6 @@ class CommandBook:
         """Take up the commands that an earlier gateway left open."""
         for stored in await self._database.run(commands.still_open):
             self._open.put(self._restored(stored))
-
-    def count(self) -> Counter[CommandState]:
-        """Return how many open commands are in each state."""
-        return Counter(command.report.state for command in self._open)
-
-    def busy_with(self, robot: str) -> str | None:
-        """Return the id of the command that makes the robot drive, if any."""
-        moving = [c.report.command for c in self._open.of(robot) if c.is_motion]
-        return moving[-1] if moving else None
-
-    def task(self, robot: str) -> tuple[SetPosEnd | SetPath, float] | None:
-        """Return what the robot is to drive, and how many metres of it (of a path) it has driven."""
-        for command in reversed(self._open.of(robot)):
-            if isinstance(command.message, (SetPosEnd, SetPath)):
-                return command.message, command.driven or 0.0
-        return None
-
-    def line(self, robot: str) -> Polyline | None:
-        """Return the path that the robot has taken on as a line, None where it has none."""
-        moving = [c for c in self._open.of(robot) if c.is_motion]
-        return moving[-1].line if moving else None
-
-    def is_carrying_out(self, robot: str, command: str) -> bool:
-        """Tell whether the command is the robot's task, and nobody has asked for its end."""
-        mine = self._open.of(robot)
-        task = self._open.get(command)
-        aborted = any(c.is_abort and task is not None and c.sa_id > task.sa_id for c in mine)
-        return command == self.busy_with(robot) and not aborted
-
-    def is_open(self, command: str) -> bool:
-        """Tell whether a command has a step to come."""
-        return self._open.get(command) is not None
-
-    def robot_of(self, command: str) -> str | None:
-        """Return the robot of an open command."""
-        known = self._open.get(command)
-        return None if known is None else known.report.robot
-
-    def awaits_stop(self, robot: str) -> bool:
-        """Tell whether the Abort of an emergency stop is on its way to the robot."""
-        return any(c.is_emergency and c.is_on_its_way for c in self._open.of(robot))
-
-    def undelivered(self) -> dict[int, str]:
-        """Return the robot of every message that waits in SA, by the message's id."""
-        return {sa_id: command.report.robot for sa_id, command in self._open.queued.items()}
 
     async def issue(self, orders: list[Order], also: Also | None = None) -> list[CommandReport]:
         """Store new commands with their messages, all or none, and ``also`` more; return them as stored.
@@ -222,10 +176,6 @@ class CommandBook:
         late = [c for c in self._open.queued.values() if c.expired(now, expire_after)]
         if late:
             await to_its_end(self._expire([c.report.command for c in late]))
-
-    def robots(self) -> set[str]:
-        """Return the robots that have a command with a step to come."""
-        return {command.report.robot for command in self._open}
 
     async def give_up(self, robot: str, reason: str) -> None:
         """End every command of a robot, which will not carry it out."""
