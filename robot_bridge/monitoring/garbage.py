@@ -17,7 +17,7 @@ MOST_GONE = 1000
 """Connections that go before the next look at all objects, whatever else there is to do. Each leaves 90
 objects that hold each other, 12 kB in all."""
 REST = 50.0
-"""How many times as long as such a look took none follows: with much to be stored it takes up to a second."""
+"""How many times as long as such a look took none follows: everybody waits while it is done."""
 
 
 def spare_what_lasts() -> None:
