@@ -169,19 +169,19 @@ class AsPlacedPage(QWidget):
     def _lay_out(self) -> None:
         rows = QVBoxLayout(self)
         rows.setContentsMargins(0, 4, 0, 0)
-        middle, foot = QHBoxLayout(), QHBoxLayout()
+        files, foot = QHBoxLayout(), QHBoxLayout()
+        self.report.setEnabled(False)
+        files.addWidget(self.report)
         for row, text, name, action in (
-            (middle, tr("Refresh"), "fleet_placed_refresh", self.refresh_wanted.emit),
-            (foot, tr("Save as CSV…"), "fleet_placed_save", self._save_as),
+            (foot, tr("Refresh"), "fleet_placed_refresh", self.refresh_wanted.emit),
+            (files, tr("Save as CSV…"), "fleet_placed_save", self._save_as),
             (foot, tr("Plan collecting"), "fleet_placed_collect", self._collect),
         ):
             row.addWidget(push_button(name, text, pressed=action))
-        self.report.setEnabled(False)
-        middle.addWidget(self.report)
         rows.addWidget(self.which)
         rows.addWidget(self.figures)
         rows.addWidget(self.table, 1)
-        rows.addLayout(middle)
+        rows.addLayout(files)
         rows.addLayout(foot)
 
 
