@@ -6,7 +6,7 @@ from qgis.core import QgsSettings
 from qgis.gui import QgisInterface, QgsDockWidget
 from qgis.PyQt.QtCore import QByteArray, Qt
 from qgis.PyQt.QtGui import QIcon
-from qgis.PyQt.QtWidgets import QAction, QDockWidget
+from qgis.PyQt.QtWidgets import QAction, QDockWidget, QMainWindow
 
 from .actions import ICONS
 
@@ -60,7 +60,7 @@ class DockAction:
         if self._is_placed or not opened:
             return
         self._is_placed = True
-        window = self._iface.mainWindow()
+        window: QMainWindow = self._iface.mainWindow()
         browser = window.findChild(QDockWidget, BROWSER)
         if browser is None or self._is_known_to_qgis():
             return
@@ -77,8 +77,8 @@ class DockAction:
         """Give a panel that is new beside the browser half of the column: layers would leave it a strip."""
         if opened and self._lacks_height:
             self._lacks_height = False
-            wanted = [self.dock.sizeHint().height()]
-            self._iface.mainWindow().resizeDocks([self.dock], wanted, Qt.Orientation.Vertical)
+            window: QMainWindow = self._iface.mainWindow()
+            window.resizeDocks([self.dock], [self.dock.sizeHint().height()], Qt.Orientation.Vertical)
 
     def _give_keyboard(self, opened: bool) -> None:
         """Let who opened the panel by its key go on in it by keys."""
