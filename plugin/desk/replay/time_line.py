@@ -103,7 +103,7 @@ class TimeLine(QWidget):
         if self.until <= self.since:
             return
         self._paint_marks(painter, middle)
-        x = self.pixel(self.moment)
+        x = float(float(self.pixel(self.moment)))
         painter.setPen(QPen(PLAYHEAD, 2.0))
         painter.drawLine(QPointF(x, 6), QPointF(x, self.height() - 6))
         painter.setBrush(PLAYHEAD)
