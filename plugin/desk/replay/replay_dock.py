@@ -64,11 +64,16 @@ class ReplayDock(ActionDock):
 
     def remove(self) -> None:
         """Stop the clock, take the layer out of the project, leave the live map alone."""
-        self._soon.stop()
+        self._leave_rest()
         self.fetching.forget()
         self.clockwork.remove()
         self.layer.remove()
         self.map.remove()
+
+    @property
+    def is_busy(self) -> bool:
+        """Whether something of a history is still being fetched or shown."""
+        return self.fetching.is_busy or bool(self._left) or self.layer.is_busy
 
     def load(self) -> None:
         """Fetch the time in the form and begin to show it."""
@@ -89,7 +94,7 @@ class ReplayDock(ActionDock):
             self._desk.failed.emit(tr("The replay was not loaded: {error}", error=error))
             return
         self._robots = robots
-        self._soon.stop()
+        self._leave_rest()
         self.layer.remove()
         self.map.begin(self._desk.site)
         self.line.show_time(since, until)
@@ -152,6 +157,11 @@ class ReplayDock(ActionDock):
             self._soon.start(0)
         show()
 
+    def _leave_rest(self) -> None:
+        """Show no more of the history that came last."""
+        self._soon.stop()
+        self._left = []
+
     def _show_lines(self) -> None:
         if self._desk.site is not None:
             self.layer.show(self.fetching.history, self._desk.site)
@@ -189,7 +199,7 @@ class ReplayDock(ActionDock):
         # bear the same names.
         self._generation = self._desk.picture.generation
         self.fetching.forget()
-        self._soon.stop()
+        self._leave_rest()
         self.form.show_busy(False)
         self.clockwork.play(False)
         self.layer.remove()

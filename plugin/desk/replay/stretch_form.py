@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 
-from qgis.PyQt.QtCore import QDateTime, pyqtSignal
+from qgis.PyQt.QtCore import QDateTime, Qt, pyqtSignal
 from qgis.PyQt.QtWidgets import QCheckBox, QComboBox, QDateTimeEdit, QGridLayout, QPushButton, QWidget
 
 from ...language import tr
@@ -65,7 +65,7 @@ class StretchForm(QWidget):
         grid.addWidget(self.load, 0, 1)
         grid.addWidget(self.since, 1, 0)
         grid.addWidget(self.until, 2, 0)
-        grid.addWidget(self.selected, 3, 0, 1, 2)
+        grid.addWidget(self.selected, 3, 0, 1, 2, Qt.AlignmentFlag.AlignLeft)
         grid.setColumnStretch(0, 1)
 
     def _last_changed(self, *_: object) -> None:

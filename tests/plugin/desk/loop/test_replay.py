@@ -81,8 +81,7 @@ def click(widget, at=None):
 
 def load(dock, operator):
     click(dock.form.load)
-    operator.wait("the positions", lambda: not dock.fetching.is_busy and len(dock.fetching.history), 10)
-    operator.wait("the lines", lambda: not dock.layer.is_busy, 10)
+    operator.wait("the positions", lambda: not dock.is_busy and len(dock.fetching.history), 10)
 
 
 def shown(dock, robot):

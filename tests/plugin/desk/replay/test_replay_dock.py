@@ -28,8 +28,7 @@ def loaded(at_desk, gateway, iface, wait):
     next(action for action in iface.plugins.actions() if action.objectName() == "fleet_replay").trigger()
     dock = iface.findChild(object, "fleet_replay_dock")
     dock.form.load.click()
-    wait(lambda: not dock.fetching.is_busy and len(dock.fetching.history) == 10, what="the positions")
-    wait(lambda: lines() and not dock.layer.is_busy, what="the lines")
+    wait(lambda: not dock.is_busy and len(dock.fetching.history) == 10, what="the positions")
     wait(lambda: dock.line.marks, what="the mark of the abort")
     return dock
 
@@ -97,10 +96,13 @@ def test_what_came_is_shown_part_by_part_and_the_window_looks_for_events_in_betw
 
 
 def test_of_a_history_that_is_fetched_anew_nothing_more_is_shown(loaded, wait):
+    assert not loaded.is_busy
     loaded.fetching.ended.emit("")
+    assert loaded.is_busy
     loaded.load()
-    assert not loaded._soon.isActive() and not lines()
-    wait(lambda: lines() and not loaded.layer.is_busy, what="the lines of the new one")
+    assert loaded._left == []
+    wait(lambda: not loaded.is_busy, what="the new one")
+    assert len(loaded.fetching.history) == 10 and lines()
 
 
 def test_while_time_is_held_the_map_goes_on_until_it_is_whole_and_follows_its_view(
