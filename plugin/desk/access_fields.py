@@ -27,7 +27,7 @@ class AccessFields(QWidget):
         self._token = QLineEdit()
         self._token.setObjectName("fleet_token")
         self._token.setEchoMode(QLineEdit.EchoMode.Password)
-        self._keep = QCheckBox(tr("&Keep in QGIS"))
+        self._keep = QCheckBox(tr("Keep in QGIS"))
         self._keep.setObjectName("fleet_keep_token")
         self._keep.setToolTip(tr("Encrypted, under the master password of the QGIS authentication manager"))
         self._keep.setEnabled(self._store.is_there)
@@ -94,7 +94,7 @@ class AccessFields(QWidget):
         grid.setContentsMargins(0, 0, 0, 0)
         grid.setHorizontalSpacing(6)
         grid.setVerticalSpacing(4)
-        for row, (text, field) in enumerate(((tr("&Token"), self._token), (tr("CA &file"), self._ca))):
+        for row, (text, field) in enumerate(((tr("Token"), self._token), (tr("CA file"), self._ca))):
             label = QLabel(text)
             label.setBuddy(field)
             grid.addWidget(label, row, 0)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from qgis.core import QgsApplication
 from qgis.PyQt.QtCore import QObject, Qt, pyqtSignal
+from qgis.PyQt.QtGui import QIcon
 from qgis.PyQt.QtWidgets import QAction, QMenu, QToolButton, QWidget
 
 from ..language import tr
@@ -13,6 +13,7 @@ from ..settings.connection_dialog import ConnectionDialog
 from ..settings.connections import Connections
 from ..settings.connections_dialog import ConnectionsDialog
 from ..settings.gateway_connection import GatewayConnection
+from .actions import ICONS
 
 NONE_CHOSEN = tr("Connections that are kept under a name")
 
@@ -31,7 +32,7 @@ class ConnectionMenu(QObject):
         self._more: list[QAction] = []
         self.button = QToolButton()
         self.button.setObjectName("fleet_connections_button")
-        self.button.setIcon(QgsApplication.getThemeIcon("/mIconConnect.svg"))
+        self.button.setIcon(QIcon(str(ICONS / "connections.svg")))
         self.button.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
         self.button.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.menu = QMenu(self.button)

@@ -163,7 +163,8 @@ class ConnectionPanel(QWidget):
         grid.setContentsMargins(0, 0, 0, 0)
         grid.setHorizontalSpacing(6)
         grid.setVerticalSpacing(4)
-        for row, (text, field) in enumerate(((tr("&Gateway"), self._url), (tr("&Operator"), self._operator))):
+        # The one letter leads into the panel; the others would be those of QGIS's menus in some language.
+        for row, (text, field) in enumerate(((tr("&Gateway"), self._url), (tr("Operator"), self._operator))):
             label = QLabel(text)
             label.setBuddy(field)
             grid.addWidget(label, row, 0)
@@ -196,7 +197,7 @@ def _connect_button(connect: QAction) -> QToolButton:
 def _more_button() -> QToolButton:
     button = QToolButton()
     button.setObjectName("fleet_access_button")
-    button.setText(tr("&Access…"))
+    button.setText(tr("Access…"))
     button.setToolTip(tr("Token and CA file, for a gateway with accounts and TLS"))
     button.setCheckable(True)
     button.setFocusPolicy(Qt.FocusPolicy.StrongFocus)

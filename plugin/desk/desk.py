@@ -172,6 +172,7 @@ class Desk(QObject):
             self._take_site(news.site, news.is_greeting)
         self._take_news(news)
         self.orders.watch()
+        self.preview.watch()
 
     def _pass_on(self) -> None:
         if self.clock() - self._pulled_at > LATE_S:

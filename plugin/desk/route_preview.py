@@ -14,10 +14,11 @@ from ..errors import NotSentError
 from ..language import tr
 from ..wire.outbox import Answer, Order
 from .drafts import Point
+from .orders import SLOW_AFTER
 from .way_wishes import SHORTEST, WayWishes
 
 UNANSWERED_AFTER = 3.0
-"""Seconds after which a question is taken to be lost, so that the next is asked."""
+"""Seconds after which a question that follows the mouse is taken to be lost, so that the next is asked."""
 
 
 @dataclass(frozen=True)
@@ -62,13 +63,13 @@ class RoutePreview(QObject):
     @property
     def awaits_click(self) -> bool:
         """Whether a way to where the operator clicked is still to be answered."""
-        if self._asked is None or self._clock() - self._asked[2] >= UNANSWERED_AFTER:
+        if not self._waits():
             return False
         return self._asked[1].taken or (self._next is not None and self._next.taken)
 
     def want(self, question: Question) -> None:
         """Ask for a way, now or when the question before is answered; raises NotSentError."""
-        if self._asked is not None and self._clock() - self._asked[2] < UNANSWERED_AFTER:
+        if self._waits():
             if self._next is None or not self._next.taken or question.taken:
                 self._next = question
             return
@@ -87,22 +88,43 @@ class RoutePreview(QObject):
         if self._asked is None or answer.order.key != self._asked[0]:
             return True
         question, self._asked = self._asked[1], None
-        self._show(question, answer)
-        following, self._next = self._next, None
-        if following is not None:
-            try:
-                self._ask(following)
-            except NotSentError:
-                self.forget()
+        self._show(question, *_way_in(answer))
+        self._ask_next()
         return True
 
-    def _show(self, question: Question, answer: Answer) -> None:
-        self.route, self.wishes, self.why_not = None, question.wishes, answer.error or ""
-        if answer.error is None:
-            try:
-                self.route = route_report(answer.result or {})
-            except (KeyError, TypeError, ValueError):
-                self.why_not = tr("the gateway's answer holds no way; it may be older than this plugin")
+    def watch(self) -> None:
+        """Give up a question that waits for its answer too long, and say so of one that was taken.
+
+        One that only follows the mouse is given up when another waits behind it.
+        """
+        if self._asked is None or self._waits():
+            return
+        question = self._asked[1]
+        if not question.taken and self._next is None:
+            return
+        self._asked = None
+        if question.taken:
+            self._show(question, None, _unanswered())
+        self._ask_next()
+
+    def _waits(self) -> bool:
+        """Whether a question is asked whose answer may still come in time."""
+        if self._asked is None:
+            return False
+        _, question, asked_at = self._asked
+        return self._clock() - asked_at < (SLOW_AFTER if question.taken else UNANSWERED_AFTER)
+
+    def _ask_next(self) -> None:
+        following, self._next = self._next, None
+        if following is None:
+            return
+        try:
+            self._ask(following)
+        except NotSentError:
+            self.forget()
+
+    def _show(self, question: Question, route: RouteReport | None, why_not: str) -> None:
+        self.route, self.wishes, self.why_not = route, question.wishes, why_not
         self.shown.emit()
         if question.taken and self.route is not None:
             self.answered.emit(question, self.route)
@@ -120,6 +142,24 @@ class RoutePreview(QObject):
         key = f"route-{id(self)}-{next(self._numbers)}"
         self._submit(Order(key, request.method, to_json(request), self._clock()))
         self._asked = key, question, self._clock()
+
+
+def _way_in(answer: Answer) -> tuple[RouteReport | None, str]:
+    """Return the way that an answer holds, and why it holds none."""
+    if answer.error is not None:
+        return None, answer.error
+    try:
+        return route_report(answer.result or {}), ""
+    except (KeyError, TypeError, ValueError):
+        return None, tr("the gateway's answer holds no way; it may be older than this plugin")
+
+
+def _unanswered() -> str:
+    return tr(
+        "The gateway has not answered for {seconds:g} s which way leads to where you clicked, so the route "
+        "does not go there. Click there again.",
+        seconds=SLOW_AFTER,
+    )
 
 
 def _restrictions(wishes: WayWishes) -> dict[str, Any]:

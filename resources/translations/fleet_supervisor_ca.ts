@@ -75,18 +75,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/access_fields.py" />
-            <source>&amp;Keep in QGIS</source>
-            <translation>&amp;Desa a QGIS</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/access_fields.py" />
-            <source>&amp;Token</source>
-            <translation>&amp;Testimoni</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/access_fields.py" />
-            <source>CA &amp;file</source>
-            <translation>&amp;Fitxer de CA</translation>
+            <source>CA file</source>
+            <translation>Fitxer de CA</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/access_fields.py" />
@@ -100,8 +90,18 @@
         </message>
         <message>
             <location filename="../../plugin/desk/access_fields.py" />
+            <source>Keep in QGIS</source>
+            <translation>Desa a QGIS</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/access_fields.py" />
             <source>The site's ca.pem</source>
             <translation>El ca.pem del recinte</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/access_fields.py" />
+            <source>Token</source>
+            <translation>Testimoni</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/access_fields.py" />
@@ -142,11 +142,6 @@
             <location filename="../../plugin/desk/accounts/account_model.py" />
             <source>Since</source>
             <translation>Des de</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/accounts/account_model.py" />
-            <source>Token</source>
-            <translation>Testimoni</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/accounts/account_model.py" />
@@ -1213,11 +1208,6 @@
         </message>
         <message>
             <location filename="../../plugin/desk/command_log/log_panel.py" />
-            <source>Older commands: {why}</source>
-            <translation>Ordres més antigues: {why}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/command_log/log_panel.py" />
             <source>Open</source>
             <translation>Obertes</translation>
         </message>
@@ -1255,6 +1245,34 @@
             <location filename="../../plugin/desk/command_log/log_panel.py" />
             <source>{what} of {robot} leads to no place.</source>
             <translation>{what} de {robot} no porta a cap lloc.</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/desk/command_log/older_commands.py" />
+            <source>%n older commands came.</source>
+            <translation>
+                <numerusform>Ha arribat %n ordre més antiga.</numerusform>
+                <numerusform>Han arribat %n ordres més antigues.</numerusform>
+            </translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/older_commands.py" />
+            <source>No older commands came.</source>
+            <translation>No ha arribat cap ordre més antiga.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/older_commands.py" />
+            <source>Older commands: {why}</source>
+            <translation>Ordres més antigues: {why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/older_commands.py" />
+            <source>The gateway knows no others.</source>
+            <translation>La passarel·la no en coneix cap altra.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/older_commands.py" />
+            <source>The log reaches no further back: the newest {asked} of each chosen robot, or of all, are asked for, and {kept} kept. Older ones are in the gateway's database.</source>
+            <translation>El registre no va més enrere: es demanen les {asked} ordres més noves de cada robot triat, o de tots, i se'n guarden {kept}. Les més antigues són a la base de dades de la passarel·la.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/commands/coordinates_dialog.py" />
@@ -1497,18 +1515,13 @@
         </message>
         <message>
             <location filename="../../plugin/desk/connection_panel.py" />
-            <source>&amp;Access…</source>
-            <translation>&amp;Accés…</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/connection_panel.py" />
             <source>&amp;Gateway</source>
             <translation>&amp;Passarel·la</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/connection_panel.py" />
-            <source>&amp;Operator</source>
-            <translation>&amp;Operador</translation>
+            <source>Access…</source>
+            <translation>Accés…</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/connection_panel.py" />
@@ -2501,6 +2514,14 @@
             <source>{placed}{gone}; {off}</source>
             <translation>{placed}{gone}; {off}</translation>
         </message>
+        <message numerus="yes">
+            <location filename="../../plugin/desk/plans/as_placed_page.py" />
+            <source>%n cones</source>
+            <translation>
+                <numerusform>%n con</numerusform>
+                <numerusform>%n cons</numerusform>
+            </translation>
+        </message>
         <message>
             <location filename="../../plugin/desk/plans/as_placed_page.py" />
             <source>As-placed report</source>
@@ -2563,11 +2584,6 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/as_placed_page.py" />
-            <source>The report could not be written as {path}: {error}. Choose another place.</source>
-            <translation>L'informe no s'ha pogut escriure a {path}: {error}. Trieu un altre lloc.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/as_placed_page.py" />
             <source>everything</source>
             <translation>tot</translation>
         </message>
@@ -2580,6 +2596,11 @@
             <location filename="../../plugin/desk/plans/as_placed_page.py" />
             <source>the plan that is driven</source>
             <translation>el pla que s'executa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed_page.py" />
+            <source>{cones} written to {path}</source>
+            <translation>s'ha escrit a {path}: {cones}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/as_placed_pdf.py" />
@@ -2926,14 +2947,6 @@
             <location filename="../../plugin/desk/plans/plan_layers.py" />
             <source>Cones as placed</source>
             <translation>Cons tal com s'han col·locat</translation>
-        </message>
-        <message numerus="yes">
-            <location filename="../../plugin/desk/plans/plan_rows.py" />
-            <source>%n cones</source>
-            <translation>
-                <numerusform>%n con</numerusform>
-                <numerusform>%n cons</numerusform>
-            </translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/desk/plans/plan_rows.py" />
@@ -3839,13 +3852,13 @@
         </message>
         <message>
             <location filename="../../plugin/desk/robots/detail_rows.py" />
-            <source>{state}, last heard {age:.1f} s ago over {link}</source>
-            <translation>{state}, últim missatge fa {age:.1f} s per {link}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/robots/detail_rows.py" />
             <source>{told}, by {operator}</source>
             <translation>{told}, per {operator}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/last_heard.py" />
+            <source>{state}, last heard {age} ago over {link}</source>
+            <translation>{state}, últim missatge fa {age} per {link}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/robots/last_image.py" />
@@ -4006,6 +4019,11 @@
             <location filename="../../plugin/desk/robots/robot_table.py" />
             <source>no such place</source>
             <translation>cap lloc així</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/route_preview.py" />
+            <source>The gateway has not answered for {seconds:g} s which way leads to where you clicked, so the route does not go there. Click there again.</source>
+            <translation>La passarel·la no ha respost des de fa {seconds:g} s quin camí porta on heu fet clic, així que la ruta no hi va. Torneu-hi a fer clic.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/route_preview.py" />
@@ -7740,6 +7758,21 @@
             <location filename="../../plugin/settings/connection_dialog.py" />
             <source>&amp;Authentication</source>
             <translation>&amp;Autenticació</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connection_dialog.py" />
+            <source>&amp;Operator</source>
+            <translation>&amp;Operador</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connection_dialog.py" />
+            <source>&amp;Token</source>
+            <translation>&amp;Testimoni</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connection_dialog.py" />
+            <source>CA &amp;file</source>
+            <translation>&amp;Fitxer de CA</translation>
         </message>
         <message>
             <location filename="../../plugin/settings/connection_dialog.py" />

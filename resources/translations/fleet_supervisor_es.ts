@@ -75,18 +75,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/access_fields.py" />
-            <source>&amp;Keep in QGIS</source>
-            <translation>&amp;Guardar en QGIS</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/access_fields.py" />
-            <source>&amp;Token</source>
-            <translation>&amp;Testigo</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/access_fields.py" />
-            <source>CA &amp;file</source>
-            <translation>A&amp;rchivo de CA</translation>
+            <source>CA file</source>
+            <translation>Archivo de CA</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/access_fields.py" />
@@ -100,8 +90,18 @@
         </message>
         <message>
             <location filename="../../plugin/desk/access_fields.py" />
+            <source>Keep in QGIS</source>
+            <translation>Guardar en QGIS</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/access_fields.py" />
             <source>The site's ca.pem</source>
             <translation>El ca.pem del recinto</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/access_fields.py" />
+            <source>Token</source>
+            <translation>Testigo</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/access_fields.py" />
@@ -142,11 +142,6 @@
             <location filename="../../plugin/desk/accounts/account_model.py" />
             <source>Since</source>
             <translation>Desde</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/accounts/account_model.py" />
-            <source>Token</source>
-            <translation>Testigo</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/accounts/account_model.py" />
@@ -1213,11 +1208,6 @@
         </message>
         <message>
             <location filename="../../plugin/desk/command_log/log_panel.py" />
-            <source>Older commands: {why}</source>
-            <translation>Órdenes más antiguas: {why}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/command_log/log_panel.py" />
             <source>Open</source>
             <translation>Abiertas</translation>
         </message>
@@ -1255,6 +1245,34 @@
             <location filename="../../plugin/desk/command_log/log_panel.py" />
             <source>{what} of {robot} leads to no place.</source>
             <translation>{what} de {robot} no lleva a ningún lugar.</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/desk/command_log/older_commands.py" />
+            <source>%n older commands came.</source>
+            <translation>
+                <numerusform>Ha llegado %n orden más antigua.</numerusform>
+                <numerusform>Han llegado %n órdenes más antiguas.</numerusform>
+            </translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/older_commands.py" />
+            <source>No older commands came.</source>
+            <translation>No ha llegado ninguna orden más antigua.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/older_commands.py" />
+            <source>Older commands: {why}</source>
+            <translation>Órdenes más antiguas: {why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/older_commands.py" />
+            <source>The gateway knows no others.</source>
+            <translation>La pasarela no conoce ninguna otra.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/older_commands.py" />
+            <source>The log reaches no further back: the newest {asked} of each chosen robot, or of all, are asked for, and {kept} kept. Older ones are in the gateway's database.</source>
+            <translation>El registro no llega más atrás: se piden las {asked} órdenes más recientes de cada robot elegido, o de todos, y se guardan {kept}. Las más antiguas están en la base de datos de la pasarela.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/commands/coordinates_dialog.py" />
@@ -1497,18 +1515,13 @@
         </message>
         <message>
             <location filename="../../plugin/desk/connection_panel.py" />
-            <source>&amp;Access…</source>
-            <translation>&amp;Acceso…</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/connection_panel.py" />
             <source>&amp;Gateway</source>
             <translation>&amp;Pasarela</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/connection_panel.py" />
-            <source>&amp;Operator</source>
-            <translation>&amp;Operador</translation>
+            <source>Access…</source>
+            <translation>Acceso…</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/connection_panel.py" />
@@ -2501,6 +2514,14 @@
             <source>{placed}{gone}; {off}</source>
             <translation>{placed}{gone}; {off}</translation>
         </message>
+        <message numerus="yes">
+            <location filename="../../plugin/desk/plans/as_placed_page.py" />
+            <source>%n cones</source>
+            <translation>
+                <numerusform>%n cono</numerusform>
+                <numerusform>%n conos</numerusform>
+            </translation>
+        </message>
         <message>
             <location filename="../../plugin/desk/plans/as_placed_page.py" />
             <source>As-placed report</source>
@@ -2563,11 +2584,6 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/as_placed_page.py" />
-            <source>The report could not be written as {path}: {error}. Choose another place.</source>
-            <translation>El informe no se pudo escribir en {path}: {error}. Elija otro lugar.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/as_placed_page.py" />
             <source>everything</source>
             <translation>todo</translation>
         </message>
@@ -2580,6 +2596,11 @@
             <location filename="../../plugin/desk/plans/as_placed_page.py" />
             <source>the plan that is driven</source>
             <translation>el plan que se ejecuta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed_page.py" />
+            <source>{cones} written to {path}</source>
+            <translation>se ha escrito en {path}: {cones}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/as_placed_pdf.py" />
@@ -2926,14 +2947,6 @@
             <location filename="../../plugin/desk/plans/plan_layers.py" />
             <source>Cones as placed</source>
             <translation>Conos tal como se colocaron</translation>
-        </message>
-        <message numerus="yes">
-            <location filename="../../plugin/desk/plans/plan_rows.py" />
-            <source>%n cones</source>
-            <translation>
-                <numerusform>%n cono</numerusform>
-                <numerusform>%n conos</numerusform>
-            </translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/desk/plans/plan_rows.py" />
@@ -3839,13 +3852,13 @@
         </message>
         <message>
             <location filename="../../plugin/desk/robots/detail_rows.py" />
-            <source>{state}, last heard {age:.1f} s ago over {link}</source>
-            <translation>{state}, último mensaje hace {age:.1f} s por {link}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/robots/detail_rows.py" />
             <source>{told}, by {operator}</source>
             <translation>{told}, por {operator}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/last_heard.py" />
+            <source>{state}, last heard {age} ago over {link}</source>
+            <translation>{state}, último mensaje hace {age} por {link}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/robots/last_image.py" />
@@ -4006,6 +4019,11 @@
             <location filename="../../plugin/desk/robots/robot_table.py" />
             <source>no such place</source>
             <translation>ningún lugar así</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/route_preview.py" />
+            <source>The gateway has not answered for {seconds:g} s which way leads to where you clicked, so the route does not go there. Click there again.</source>
+            <translation>La pasarela no ha respondido desde hace {seconds:g} s qué camino lleva adonde hizo clic, así que la ruta no va allí. Vuelva a hacer clic allí.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/route_preview.py" />
@@ -7740,6 +7758,21 @@
             <location filename="../../plugin/settings/connection_dialog.py" />
             <source>&amp;Authentication</source>
             <translation>&amp;Autenticación</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connection_dialog.py" />
+            <source>&amp;Operator</source>
+            <translation>&amp;Operador</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connection_dialog.py" />
+            <source>&amp;Token</source>
+            <translation>&amp;Testigo</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connection_dialog.py" />
+            <source>CA &amp;file</source>
+            <translation>A&amp;rchivo de CA</translation>
         </message>
         <message>
             <location filename="../../plugin/settings/connection_dialog.py" />

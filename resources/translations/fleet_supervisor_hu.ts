@@ -75,18 +75,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/access_fields.py" />
-            <source>&amp;Keep in QGIS</source>
-            <translation>&amp;Őrzés a QGIS-ben</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/access_fields.py" />
-            <source>&amp;Token</source>
-            <translation>&amp;Token</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/access_fields.py" />
-            <source>CA &amp;file</source>
-            <translation>CA-&amp;fájl</translation>
+            <source>CA file</source>
+            <translation>CA-fájl</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/access_fields.py" />
@@ -100,8 +90,18 @@
         </message>
         <message>
             <location filename="../../plugin/desk/access_fields.py" />
+            <source>Keep in QGIS</source>
+            <translation>Őrzés a QGIS-ben</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/access_fields.py" />
             <source>The site's ca.pem</source>
             <translation>A telephely ca.pem fájlja</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/access_fields.py" />
+            <source>Token</source>
+            <translation>Token</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/access_fields.py" />
@@ -142,11 +142,6 @@
             <location filename="../../plugin/desk/accounts/account_model.py" />
             <source>Since</source>
             <translation>Ettől</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/accounts/account_model.py" />
-            <source>Token</source>
-            <translation>Token</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/accounts/account_model.py" />
@@ -1207,11 +1202,6 @@
         </message>
         <message>
             <location filename="../../plugin/desk/command_log/log_panel.py" />
-            <source>Older commands: {why}</source>
-            <translation>Régebbi parancsok: {why}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/command_log/log_panel.py" />
             <source>Open</source>
             <translation>Nyitott</translation>
         </message>
@@ -1249,6 +1239,33 @@
             <location filename="../../plugin/desk/command_log/log_panel.py" />
             <source>{what} of {robot} leads to no place.</source>
             <translation>{what} ({robot}) nem vezet sehová.</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/desk/command_log/older_commands.py" />
+            <source>%n older commands came.</source>
+            <translation>
+                <numerusform>%n régebbi parancs érkezett.</numerusform>
+            </translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/older_commands.py" />
+            <source>No older commands came.</source>
+            <translation>Nem érkezett régebbi parancs.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/older_commands.py" />
+            <source>Older commands: {why}</source>
+            <translation>Régebbi parancsok: {why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/older_commands.py" />
+            <source>The gateway knows no others.</source>
+            <translation>Az átjáró nem ismer többet.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/older_commands.py" />
+            <source>The log reaches no further back: the newest {asked} of each chosen robot, or of all, are asked for, and {kept} kept. Older ones are in the gateway's database.</source>
+            <translation>A napló nem nyúlik ennél régebbre: minden kiválasztott robot, vagy az összes robot legújabb {asked} parancsát kéri le, és {kept} parancsot őriz. A régebbiek az átjáró adatbázisában vannak.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/commands/coordinates_dialog.py" />
@@ -1491,18 +1508,13 @@
         </message>
         <message>
             <location filename="../../plugin/desk/connection_panel.py" />
-            <source>&amp;Access…</source>
-            <translation>&amp;Hozzáférés…</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/connection_panel.py" />
             <source>&amp;Gateway</source>
             <translation>&amp;Átjáró</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/connection_panel.py" />
-            <source>&amp;Operator</source>
-            <translation>&amp;Kezelő</translation>
+            <source>Access…</source>
+            <translation>Hozzáférés…</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/connection_panel.py" />
@@ -2488,6 +2500,13 @@
             <source>{placed}{gone}; {off}</source>
             <translation>{placed}{gone}; {off}</translation>
         </message>
+        <message numerus="yes">
+            <location filename="../../plugin/desk/plans/as_placed_page.py" />
+            <source>%n cones</source>
+            <translation>
+                <numerusform>%n bója</numerusform>
+            </translation>
+        </message>
         <message>
             <location filename="../../plugin/desk/plans/as_placed_page.py" />
             <source>As-placed report</source>
@@ -2550,11 +2569,6 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/as_placed_page.py" />
-            <source>The report could not be written as {path}: {error}. Choose another place.</source>
-            <translation>A jelentés nem írható ide: {path}: {error}. Válasszon másik helyet.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/plans/as_placed_page.py" />
             <source>everything</source>
             <translation>minden</translation>
         </message>
@@ -2567,6 +2581,11 @@
             <location filename="../../plugin/desk/plans/as_placed_page.py" />
             <source>the plan that is driven</source>
             <translation>a végrehajtás alatt lévő terv</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/as_placed_page.py" />
+            <source>{cones} written to {path}</source>
+            <translation>kiírva ide: {path} ({cones})</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/as_placed_pdf.py" />
@@ -2911,13 +2930,6 @@
             <location filename="../../plugin/desk/plans/plan_layers.py" />
             <source>Cones as placed</source>
             <translation>Kihelyezett bóják helye</translation>
-        </message>
-        <message numerus="yes">
-            <location filename="../../plugin/desk/plans/plan_rows.py" />
-            <source>%n cones</source>
-            <translation>
-                <numerusform>%n bója</numerusform>
-            </translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/desk/plans/plan_rows.py" />
@@ -3818,13 +3830,13 @@
         </message>
         <message>
             <location filename="../../plugin/desk/robots/detail_rows.py" />
-            <source>{state}, last heard {age:.1f} s ago over {link}</source>
-            <translation>{state}, utolsó hír {age:.1f} s óta, ezen: {link}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/robots/detail_rows.py" />
             <source>{told}, by {operator}</source>
             <translation>{told}, kérte: {operator}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/robots/last_heard.py" />
+            <source>{state}, last heard {age} ago over {link}</source>
+            <translation>{state}, utolsó hír {age} óta, ezen: {link}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/robots/last_image.py" />
@@ -3985,6 +3997,11 @@
             <location filename="../../plugin/desk/robots/robot_table.py" />
             <source>no such place</source>
             <translation>nincs ilyen hely</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/route_preview.py" />
+            <source>The gateway has not answered for {seconds:g} s which way leads to where you clicked, so the route does not go there. Click there again.</source>
+            <translation>Az átjáró {seconds:g} s óta nem válaszolt, melyik út vezet oda, ahová kattintott, ezért az útvonal nem megy oda. Kattintson oda újra.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/route_preview.py" />
@@ -7689,6 +7706,21 @@
             <location filename="../../plugin/settings/connection_dialog.py" />
             <source>&amp;Authentication</source>
             <translation>&amp;Hitelesítés</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connection_dialog.py" />
+            <source>&amp;Operator</source>
+            <translation>&amp;Kezelő</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connection_dialog.py" />
+            <source>&amp;Token</source>
+            <translation>&amp;Token</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/connection_dialog.py" />
+            <source>CA &amp;file</source>
+            <translation>CA-&amp;fájl</translation>
         </message>
         <message>
             <location filename="../../plugin/settings/connection_dialog.py" />

@@ -25,8 +25,9 @@ def work_by_keyboard(scene: Scene) -> None:
 def connect(scene: Scene) -> None:
     """Choose the connection in the menu beside Connect, and open it."""
     operator = scene.operator
-    operator.press("Alt+O")
-    for name, key in (("operator", "Tab"), ("connect_button", "Tab"), ("connections_button", "Space")):
+    operator.press("Alt+G")
+    on_the_way = ("url", "access_button", "operator", "connect_button")
+    for name, key in (*((name, "Tab") for name in on_the_way), ("connections_button", "Space")):
         operator.wait(
             f"{name} with the keyboard", lambda name=name: operator.widget(f"fleet_{name}")["focus"]
         )

@@ -15,7 +15,7 @@ from qgis.PyQt.QtWidgets import (
     QWidget,
 )
 
-from ....robot_bridge.messages import CommandReport, GetCommands
+from ....robot_bridge.messages import CommandReport
 from ...errors import FleetError
 from ...file_dialogs import file_to_write
 from ...language import tr, tr_count
@@ -30,6 +30,7 @@ from ..state_words import COMMAND_STATES, longest
 from ..time_column import TimeColumn
 from .entries import CSV_HEAD, Filter, Which, csv_rows, summary
 from .log_model import PAGE, LogModel
+from .older_commands import OlderCommands
 
 EVERY_ROBOT, SELECTED = tr("All robots"), tr("Selected robots")
 WHICH = {
@@ -37,10 +38,8 @@ WHICH = {
     Which.OPEN: tr("Open"),
     Which.FAILED: tr("Failed, aborted, expired"),
 }
-OLDER = 1000
-"""Commands that are asked for at once."""
-MOST_ASKED = 20
-"""Robots that are asked for one by one; of more of them the commands of all are."""
+MERGED = 500
+"""New commands that are sorted in one by one; of more of them all are listed anew."""
 
 
 class CommandLog(QWidget):
@@ -54,7 +53,7 @@ class CommandLog(QWidget):
         self._desk = desk
         self._model = LogModel(self)
         self._opened: str | None = None
-        self._asked: set[str] = set()
+        self._older = OlderCommands(desk, self)
         self._listed: set[str] = set()
         """The robots that can be chosen."""
         self.view = _tree(self._model)
@@ -74,13 +73,12 @@ class CommandLog(QWidget):
         desk.commands_changed.connect(self.show_reports)
         desk.site_changed.connect(self._site_changed)
         desk.selection_changed.connect(self._selection_changed)
-        desk.answered.connect(self._answered)
         self._allow()
 
     def show_reports(self, reports: list[CommandReport]) -> None:
         """Add what is new, and bring what is known up to date."""
         self._list_robots({report.robot for report in reports})
-        if len(reports) > OLDER // 2:
+        if len(reports) > MERGED:
             self.refresh()
             return
         if self._model.merge(reports):
@@ -123,13 +121,7 @@ class CommandLog(QWidget):
 
     def ask_for_older(self) -> None:
         """Ask the gateway for what was asked for before this desk came."""
-        robots = self.filter().robots
-        try:
-            # Of very many robots the newest commands of all will do: the log holds no more.
-            for robot in sorted(robots) if robots and len(robots) <= MOST_ASKED else [None]:
-                self._asked.add(self._desk.inquire(GetCommands(robot, OLDER)))
-        except FleetError as error:
-            self._desk.complained.emit(str(error))
+        self._older.ask(self.filter().robots)
 
     def _lay_out(self) -> None:
         tip = tr("Show where the chosen command leads to (double click)")
@@ -206,12 +198,6 @@ class CommandLog(QWidget):
     def _allow(self, *_what: object) -> None:
         report = self._model.report_at(self.view.currentIndex())
         self._go_button.setEnabled(report is not None and place_of(report) is not None)
-
-    def _answered(self, answer: object) -> None:
-        if answer.order.key in self._asked:
-            self._asked.discard(answer.order.key)
-            if answer.error is not None:
-                self._desk.complained.emit(tr("Older commands: {why}", why=answer.error))
 
     def _selection_changed(self) -> None:
         if self._robots.currentText() == SELECTED:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Iterable
 from dataclasses import dataclass
 from datetime import datetime, timezone
@@ -62,25 +60,16 @@ def tally(placements: list[PlacementReport]) -> Tally:
     return Tally(len(off), collected, max(off, default=0.0), sum(off) / len(off) if off else 0.0)
 
 
-def row(one: PlacementReport) -> list[str]:
+def csv_row(one: PlacementReport) -> list[object]:
     """Return the values of ``COLUMNS``; metres in the site frame, times in UTC."""
     return [
         one.cone or one.label or "",
         one.layout or "",
-        *(f"{value:.3f}" for value in (one.planned_x, one.planned_y, one.x, one.y, one.deviation)),
+        *(round(value, 3) for value in (one.planned_x, one.planned_y, one.x, one.y, one.deviation)),
         one.robot,
         utc_in_words(one.placed_at),
         utc_in_words(one.collected_at),
     ]
-
-
-def as_csv(placements: list[PlacementReport]) -> str:
-    """Return the report as CSV with a head line."""
-    out = io.StringIO()
-    writer = csv.writer(out, lineterminator="\n")
-    writer.writerow(COLUMNS)
-    writer.writerows(row(one) for one in placements)
-    return out.getvalue()
 
 
 def utc_in_words(at: float | None) -> str:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 from qgis.PyQt.QtCore import pyqtSignal
 from qgis.PyQt.QtWidgets import (
     QAbstractItemView,
@@ -17,14 +15,16 @@ from qgis.PyQt.QtWidgets import (
 )
 
 from ....robot_bridge.messages import PlacementReport
+from ...errors import FleetError
 from ...file_dialogs import file_to_write
-from ...language import tr
+from ...language import tr, tr_count
 from ...settings.preferences import export_path
 from ..column_heads import fit_heads
+from ..csv_files import write_csv
 from ..desk import Desk
 from ..push_button import push_button
 from ..wall_clock import time_of_day
-from .as_placed import as_csv, chosen, tally
+from .as_placed import COLUMNS, chosen, csv_row, tally
 from .as_placed_pdf import ReportError, open_report_dialog
 
 HEADS = (
@@ -106,8 +106,14 @@ class AsPlacedPage(QWidget):
         self.shown.emit()
 
     def save(self, path: str) -> None:
-        """Write the report as CSV; raises OSError."""
-        Path(path).write_text(as_csv(self.placements), encoding="utf-8")
+        """Write the report to ``path`` as CSV and say so."""
+        try:
+            count = write_csv(path, COLUMNS, map(csv_row, self.placements))
+        except FleetError as error:
+            self._desk.failed.emit(str(error))
+            return
+        cones = tr_count(count, "1 cone", "%n cones")
+        self._desk.remarked.emit(tr("{cones} written to {path}", cones=cones, path=path))
 
     def _chosen(self) -> list[PlacementReport]:
         what = self.which.currentData()
@@ -140,18 +146,8 @@ class AsPlacedPage(QWidget):
 
     def _save_as(self) -> None:
         path = file_to_write(self, tr("As-placed report"), export_path("as-placed.csv"), tr("CSV (*.csv)"))
-        if not path:
-            return
-        try:
+        if path:
             self.save(path)
-        except OSError as error:
-            self._desk.failed.emit(
-                tr(
-                    "The report could not be written as {path}: {error}. Choose another place.",
-                    path=path,
-                    error=error,
-                )
-            )
 
     def _open_report(self) -> None:
         # The user may have taken the layer out of the project.

@@ -9,6 +9,7 @@ import numpy as np
 from ....robot_bridge.messages import CommandReport, CommandState, SetPath, SetPosEnd
 from ...language import tr
 from ..state_words import COMMAND_STATES, ROBOT_STATES, longest
+from .last_heard import age_in_words
 
 
 @dataclass(frozen=True)
@@ -94,8 +95,4 @@ def number_in_words(title: str, value: float) -> str:
         return f"{value * 1000:.0f} ms" if value < 0.9995 else f"{value:.1f} s"
     if title == "Off":
         return f"{value:.2f} m" if value < 10 else f"{value:.1f} m"
-    if value < 99.95:
-        return f"{value:.1f} s"
-    if value < 3570:
-        return f"{value / 60:.0f} min"
-    return f"{value / 3600:.1f} h" if value < 48 * 3600 else f"{value / 86400:.1f} d"
+    return age_in_words(value)

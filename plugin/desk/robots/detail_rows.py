@@ -15,6 +15,7 @@ from ..queues.task_words import queue_in_words, task_in_words
 from ..queues.task_words import state_in_words as task_state
 from ..state_words import COMMAND_STATES, ROBOT_STATES
 from ..wall_clock import date_and_time, time_of_day
+from .last_heard import heard_in_words
 
 Row = tuple[str, str]
 TIMES = ("device_time", "fix_time")
@@ -37,12 +38,7 @@ MOST = 20
 def state_rows(view: RobotView, task: CommandReport | None, off: str, position: str, crs: str) -> list[Row]:
     """Return how a robot is now, as the operator needs it first."""
     told = view.told
-    heard = tr(
-        "{state}, last heard {age:.1f} s ago over {link}",
-        state=ROBOT_STATES[view.state],
-        age=view.age,
-        link=told.get("link"),
-    )
+    heard = heard_in_words(ROBOT_STATES[view.state], view.age, told.get("link"))
     rows = [(tr("State"), heard)]
     if position:
         rows.append((tr("Position, {crs}", crs=crs), position))

@@ -22,6 +22,7 @@ from ..state_words import COMMAND_STATES, ROBOT_STATES
 from .columns import COLUMNS, POSITION, TITLES, number_in_words, short_link
 from .deviations import Deviations
 from .fleet_rows import FleetRows, Rows, Which, fleet_rows
+from .last_heard import heard_in_words
 
 ROLES = frozenset(
     {
@@ -170,8 +171,7 @@ class RobotModel(QAbstractTableModel):
     def _tip(self, row: int) -> str:
         fleet, told = self._fleet, self._fleet.told(row)
         name, age = fleet.names[row], fleet.numbers["Age"][row]
-        state, link = ROBOT_STATES[self._state(row)], told.get("link")
-        heard = tr("{state}, last heard {age:.1f} s ago over {link}", state=state, age=age, link=link)
+        heard = heard_in_words(ROBOT_STATES[self._state(row)], age, told.get("link"))
         lines = [f"{name}: {heard}"]
         ping = fleet.numbers["Ping"][row]
         if np.isfinite(ping):

@@ -9,12 +9,21 @@ from pathlib import Path
 import pytest
 from fleet_supervisor.plugin.desk.menu_letters import with_letters
 from fleet_supervisor.plugin.desk.shortcuts import KEYS
+from fleet_supervisor.plugin.language import CONTEXT, FOLDER
 from qgis.gui import QgsGui
 from qgis.PyQt import sip
-from qgis.PyQt.QtCore import QEvent, Qt
+from qgis.PyQt.QtCore import QEvent, Qt, QTranslator
 from qgis.PyQt.QtGui import QFocusEvent
 from qgis.PyQt.QtTest import QTest
-from qgis.PyQt.QtWidgets import QAbstractButton, QApplication, QDialogButtonBox, QMenu, QPushButton, QWidget
+from qgis.PyQt.QtWidgets import (
+    QAbstractButton,
+    QApplication,
+    QDialogButtonBox,
+    QLabel,
+    QMenu,
+    QPushButton,
+    QWidget,
+)
 
 LANGUAGE = Path(__file__).parents[1] / "language"
 ROW = 12
@@ -105,6 +114,44 @@ def test_panels_leave_alt_and_letters_to_the_menus_of_qgis(plugin, iface, name):
     buttons = [one for one in panel.findChildren(QAbstractButton) if one.text()]
     assert buttons
     assert [one.text() for one in buttons if letter_of(one.text())] == []
+
+
+def test_the_fleet_panel_has_one_letter_which_leads_into_it(plugin):
+    panel = plugin.window.dock.connection_panel
+    parts = [*panel.findChildren(QAbstractButton), *panel.findChildren(QLabel)]
+    assert [one.text() for one in parts if letter_of(one.text())] == ["&Gateway"]
+
+
+def test_tab_leads_from_the_gateways_address_to_the_connections(plugin):
+    panel = plugin.window.dock.connection_panel
+    widget = panel.findChild(QWidget, "fleet_url")
+    visited = []
+    while "fleet_connections_button" not in visited:
+        widget = widget.nextInFocusChain()
+        assert widget.objectName() != "fleet_url", f"it leads round by {visited}"
+        if widget.focusPolicy() & Qt.FocusPolicy.TabFocus and widget.isVisibleTo(panel):
+            visited.append(widget.objectName())
+    before = ["fleet_access_button", "fleet_operator", "fleet_connect_button"]
+    assert visited == [*before, "fleet_connections_button"]
+
+
+MENUS_OF_QGIS = (
+    "Pro&ject", "&Edit", "&View", "&Layer", "&Settings", "&Plugins", "Vect&or", "&Raster", "&Database",
+    "&Web", "&Mesh", "Pro&cessing", "&Help",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("language", ["en", "hu", "ca", "es"])
+def test_no_menu_of_qgis_has_the_letter_of_the_fleet_panel(qgis_app, language):
+    qgis, ours = QTranslator(), QTranslator()
+    if language != "en":
+        assert ours.load(str(FOLDER / f"fleet_supervisor_{language}.qm"))
+        if not qgis.load(f"qgis_{language}", qgis_app.i18nPath()):
+            pytest.skip(f"this QGIS does not come in the language {language}")
+    menus = [qgis.translate("MainWindow", text) or text for text in MENUS_OF_QGIS]
+    assert "v" in map(letter_of, menus)
+    own = letter_of(ours.translate(CONTEXT, "&Gateway") or "&Gateway")
+    assert own not in map(letter_of, menus)
 
 
 def test_letters_go_round_by_giving_way():

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import pytest
-from fleet_supervisor.plugin.desk.route_preview import Question, RoutePreview, in_words
+from fleet_supervisor.plugin.desk.orders import SLOW_AFTER
+from fleet_supervisor.plugin.desk.route_preview import UNANSWERED_AFTER, Question, RoutePreview, in_words
 from fleet_supervisor.plugin.desk.way_wishes import SHORTEST, WayWishes, surfaces_of
 from fleet_supervisor.plugin.desk.way_wishes_dialog import WayWishesDialog
 from fleet_supervisor.plugin.wire.outbox import Answer
@@ -71,6 +72,42 @@ def test_a_lost_question_holds_nothing_up_and_its_late_answer_shows_nothing(prev
     assert gateway.goals() == [1.0, 2.0]
     assert preview.take(Answer(lost, result={"points": [[9, 9]], "metres": 9, "seconds": 9}))
     assert preview.route is None
+
+
+def test_a_click_that_stays_unanswered_is_told_once_and_its_late_answer_leads_no_leg(preview, gateway):
+    taken, refused = [], []
+    preview.answered.connect(lambda question, route: taken.append(question.goal))
+    preview.refused.connect(refused.append)
+    preview.want(to(1.0, taken=True))
+    gateway.now = SLOW_AFTER - 0.1
+    preview.want(to(2.0))
+    preview.watch()
+    assert (gateway.goals(), refused, preview.awaits_click) == ([1.0], [], True)
+    lost = gateway.orders[-1]
+    gateway.now = SLOW_AFTER
+    preview.watch()
+    preview.watch()
+    assert len(refused) == 1 and "5 s" in refused[0] and "Click there again" in refused[0]
+    assert gateway.goals() == [1.0, 2.0], "what the mouse leads to meanwhile"
+    assert not preview.awaits_click
+    preview.take(Answer(lost, result={"points": [[9, 9]], "metres": 9, "seconds": 9}))
+    assert taken == []
+
+
+def test_a_click_behind_a_lost_question_is_asked_though_the_mouse_stands_still(preview, gateway):
+    preview.want(to(1.0))
+    preview.want(to(2.0, taken=True))
+    gateway.now = UNANSWERED_AFTER
+    preview.watch()
+    assert gateway.goals() == [1.0, 2.0]
+
+
+def test_an_answer_that_is_late_is_shown_as_long_as_nothing_else_was_asked(preview, gateway):
+    preview.want(to(1.0))
+    gateway.now = SLOW_AFTER + 1
+    preview.watch()
+    gateway.answer(preview)
+    assert preview.route.metres == 1.4
 
 
 def test_why_there_is_no_way_is_said_and_a_click_there_refused(preview, gateway):

@@ -132,6 +132,13 @@ def test_an_answer_that_is_lost_holds_up_no_later_click(roads):
     assert roads.ends == [(70, 40)]
 
 
+def test_a_click_whose_answer_never_comes_is_told(roads):
+    roads.hand.click((60, 40), (60, 60))
+    roads.now += 10.0
+    assert roads.hand.complained("The gateway has not answered for 5 s which way leads to where you clicked")
+    assert len(roads.orders) == 1, "the second leg would begin where the first one does not lead"
+
+
 def test_leaving_the_tool_forgets_what_was_clicked_and_sends_nothing(roads):
     roads.hand.click((60, 40))
     roads.hand.iface.actionPan().trigger()

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import csv
-import io
+from dataclasses import replace
 
 import pytest
-from fleet_supervisor.plugin.desk.plans.as_placed import COLUMNS, as_csv, chosen, tally
+from fleet_supervisor.plugin.desk.plans.as_placed import COLUMNS, chosen, tally
 from fleet_supervisor.robot_bridge.messages import PlacementReport, to_json
 from qgis.core import QgsProject
 from qgis.PyQt.QtCore import Qt
@@ -45,25 +45,6 @@ def test_the_figures_are_those_of_the_deviations():
     assert tally([]).in_words() == "No cone was put down yet."
 
 
-def test_the_csv_reads_back_with_commas_quotes_and_lines_in_names():
-    ones = [placed(1, 'a,"b"\nc'), placed(2, None, label="by hand", collected_at=1_700_000_060.0)]
-    head, first, second = csv.reader(io.StringIO(as_csv(ones)))
-    assert tuple(head) == COLUMNS
-    assert first == [
-        'a,"b"\nc',
-        "row",
-        "10.000",
-        "20.000",
-        "10.050",
-        "20.000",
-        "0.050",
-        "r1",
-        "2023-11-14T22:13:20Z",
-        "",
-    ]
-    assert second[0] == "by hand" and second[-1] == "2023-11-14T22:14:20Z"
-
-
 @pytest.fixture
 def page(panel, gateway, wait):
     """The page As placed with a cone that has a name and one that has none."""
@@ -74,6 +55,40 @@ def page(panel, gateway, wait):
     panel.placed.which.setCurrentIndex(panel.placed.which.findText("everything"))
     wait(lambda: len(panel.placed.placements) == 2, 10, "the placed cones")
     return panel.placed
+
+
+def test_the_csv_reads_back_with_commas_quotes_and_lines_in_names(page, tmp_path):
+    page.placements = [
+        replace(placed(1, 'a,"b"\nc'), planned_x=-10.0),
+        placed(2, None, label="by hand", collected_at=1_700_000_060.0),
+    ]
+    page.save(str(tmp_path / "placed.csv"))
+    with (tmp_path / "placed.csv").open(encoding="utf-8-sig", newline="") as file:
+        head, first, second = csv.reader(file)
+    assert tuple(head) == COLUMNS
+    assert first[:2] == ['a,"b"\nc', "row"]
+    assert [float(value) for value in first[2:7]] == [-10.0, 20.0, 10.05, 20.0, 0.05]
+    assert first[7:] == ["r1", "2023-11-14T22:13:20Z", ""]
+    assert second[0] == "by hand" and second[-1] == "2023-11-14T22:14:20Z"
+
+
+def test_no_name_in_the_csv_is_a_formula_to_a_spreadsheet(page, tmp_path):
+    page.placements = [placed(1, "=cmd()")]
+    page.save(str(tmp_path / "placed.csv"))
+    assert "\n'=cmd(),row," in (tmp_path / "placed.csv").read_text(encoding="utf-8-sig")
+
+
+def test_what_was_written_is_told_and_what_cannot_be_written_harms_no_older_file(page, iface, tmp_path):
+    told = []
+    page._desk.remarked.connect(told.append)
+    target = tmp_path / "placed.csv"
+    page.save(str(target))
+    assert told == [f"2 cones written to {target}"]
+    before = target.read_bytes()
+    (tmp_path / "placed.csv.part").mkdir()
+    page.save(str(target))
+    assert any(f"{target} was not written" in text for text in iface.texts())
+    assert (target.read_bytes(), len(told)) == (before, 1)
 
 
 @pytest.fixture

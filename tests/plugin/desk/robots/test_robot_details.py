@@ -75,6 +75,14 @@ def test_diagnostics_are_shown_as_received_with_their_units(details, at_desk, ga
     assert now["Position, site frame"] == "50.12, 40.00"
 
 
+def test_what_was_not_heard_for_hours_is_told_in_hours(details, at_desk, monkeypatch):
+    at_desk.desk.select("r1")
+    clock = at_desk.desk.clock
+    monkeypatch.setattr(at_desk.desk, "clock", lambda: clock() + 7215.3)
+    details.refresh()
+    assert "last heard 2.0 h ago over" in dict(sections(details)["Now"])["State"]
+
+
 def test_nothing_received_is_left_out():
     assert received_rows({"robot": "r1", "odd": [1, 2], "v": 0.25}) == [
         ("robot", "r1"),

@@ -337,6 +337,13 @@ def test_states_stand_in_the_operators_words(table, monkeypatch):
     assert tip.startswith("a9: elveszett, last heard")
 
 
+def test_the_tip_tells_hours_of_what_was_not_heard_for_hours(table, at_desk):
+    row = column(table, "Robot").index("a9")
+    index = table.model().index(row, 0)
+    table.model().show(at_desk.desk.clock() + 7215.3)
+    assert "last heard 2.0 h ago over" in index.data(Qt.ItemDataRole.ToolTipRole)
+
+
 # --- many ---
 
 
