@@ -28,6 +28,7 @@ from .messages import (
     GetSurfaces,
     GetTrajectory,
     MakeCurrent,
+    PauseRobot,
     ResolveConflict,
     ResumeQueue,
     Send,
@@ -38,7 +39,7 @@ from .messages import (
 
 SLOW = (GetRoute, GetConflicts, GetSurfaces, GetTrajectory, GetImage)
 """Questions that are answered aside: they change nothing, and take long or bring much."""
-STOPPING = (EmergencyStop, AbortTask, AbortAll)
+STOPPING = (EmergencyStop, AbortTask, AbortAll, PauseRobot)
 MOVING = (
     Send,
     SetPositions,

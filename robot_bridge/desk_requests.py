@@ -47,6 +47,7 @@ from .messages import (
     MoveTask,
     OpenRoad,
     PauseQueue,
+    PauseRobot,
     QueueReport,
     RemoveTask,
     ResolveConflict,
@@ -247,6 +248,10 @@ async def _pause_queue(fleet: Fleet, request: PauseQueue, caller: Caller) -> Jso
     return to_json(await fleet.queues.pause(request, caller.operator))
 
 
+async def _pause_robot(fleet: Fleet, request: PauseRobot, caller: Caller) -> Json:
+    return to_json(await fleet.pauses.pause(request, caller.operator))
+
+
 async def _resume_queue(fleet: Fleet, request: ResumeQueue, caller: Caller) -> Json:
     return to_json(await fleet.queues.resume(request, caller.operator))
 
@@ -327,6 +332,7 @@ SERVICES: dict[type[DeskRequest], Service] = {
     RemoveTask: Service(Role.OPERATOR, _remove_task),
     MakeCurrent: Service(Role.OPERATOR, _make_current),
     PauseQueue: Service(Role.OPERATOR, _pause_queue),
+    PauseRobot: Service(Role.OPERATOR, _pause_robot),
     ResumeQueue: Service(Role.OPERATOR, _resume_queue),
     TakeOver: Service(Role.OPERATOR, _take_over),
     Send: Service(Role.OPERATOR, _send),

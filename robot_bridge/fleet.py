@@ -50,6 +50,7 @@ from .planning import Planner, StraightPlanner
 from .queueing.book import QueueBook
 from .queueing.driving import QueueDriving
 from .queueing.orders import QueueOrders
+from .queueing.pausing import RobotPauses
 from .removals import Removals
 from .road_traffic.closure_book import ClosureBook
 from .road_traffic.detours import Detours
@@ -121,6 +122,9 @@ class Fleet:
         )
         self.closures = ClosureBook(database, clock, self.roads, self._detours, announce)
         self._waiting = WaitingRobots(database, self._book, self._detours)
+        self.pauses = RobotPauses(
+            site, self.robots, self._book, self._queue_book, clock, self._waiting.row_of
+        )
         self.traffic = TrafficControl(
             clock,
             self.robots,

@@ -15,9 +15,7 @@ async def send_map(fleet: Fleet, request: SendMap) -> None:
 
     :raises RefusedError: for a robot that is not known, or is not there.
     """
-    if request.robot not in fleet.robots:
-        known = ", ".join(fleet.robots.names()) or "none yet"
-        raise RefusedError(f"robot {request.robot!r} is not known to this gateway; known are: {known}")
+    fleet.robots.check_known(request.robot)
     if fleet.robots.get(request.robot).state is RobotState.OFFLINE:
         raise RefusedError(
             f"robot {request.robot!r} is offline; it is sent the map by itself when it connects"

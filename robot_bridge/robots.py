@@ -12,9 +12,9 @@ from typing import TypeVar
 
 from .clock_watch import ClockStep
 from .command_life.arrival import standing
-from .errors import NotReadyError
+from .errors import NotReadyError, RefusedError
 from .liveness import liveness
-from .messages import RobotReport, RobotState, SendPos
+from .messages import RobotReport, RobotState, SendPos, check_robot_name
 from .pose_order import PoseOrder
 
 Report = TypeVar("Report")
@@ -76,6 +76,13 @@ class Robots:
         if robot is None:
             raise NotReadyError(f"robot {name!r} has not said Ready to this gateway; send Ready first")
         return robot
+
+    def check_known(self, name: str) -> None:
+        """Raise RefusedError for a robot that never said Ready, MessageError for what names none."""
+        check_robot_name(name)
+        if name not in self:
+            known = ", ".join(self.names()) or "none yet"
+            raise RefusedError(f"robot {name!r} is not known to this gateway; known are: {known}")
 
     def pose(self, name: str) -> SendPos | None:
         """Return where a robot was when it said so last, None for one that never did."""

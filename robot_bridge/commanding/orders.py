@@ -15,7 +15,6 @@ from ..messages import (
     MessageError,
     Send,
     TargetPosition,
-    check_robot_name,
     to_json,
 )
 from ..places import check_places, places_of
@@ -105,10 +104,7 @@ class Orders:
         return robot
 
     def _order(self, id: str, robot: str, op: str, params: dict[str, object], operator: str) -> Order:
-        check_robot_name(robot)
-        if robot not in self._robots:
-            known = ", ".join(self._robots.names()) or "none yet"
-            raise RefusedError(f"robot {robot!r} is not known to this gateway; known are: {known}")
+        self._robots.check_known(robot)
         if op not in COMMANDS:
             raise MessageError(f"op {op!r} cannot be sent to a robot; choose one of {', '.join(COMMANDS)}")
         message = decode_answer(op, params)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 
+from ..command_life.open_command import OpenCommand
 from ..command_life.open_commands import OpenCommands
 from ..messages import CommandState, SetPath, SetPosEnd
 from ..polyline import Polyline
@@ -42,6 +43,11 @@ class CommandReader:
         task = self._open.get(command)
         aborted = any(c.is_abort and task is not None and c.sa_id > task.sa_id for c in mine)
         return command == self.busy_with(robot) and not aborted
+
+    def carried_out(self, robot: str) -> OpenCommand | None:
+        """Return the command that makes the robot drive, None also where somebody has asked for its end."""
+        id = self.busy_with(robot)
+        return self._open.get(id) if id is not None and self.is_carrying_out(robot, id) else None
 
     def is_open(self, command: str) -> bool:
         """Tell whether a command has a step to come."""

@@ -17,6 +17,7 @@ from .queues import (
     MakeCurrent,
     MoveTask,
     PauseQueue,
+    PauseRobot,
     RemoveTask,
     ResumeQueue,
     SetQueue,
@@ -279,6 +280,7 @@ DeskRequest = (
     | RemoveTask
     | MakeCurrent
     | PauseQueue
+    | PauseRobot
     | ResumeQueue
     | GetQueue
     | TakeOver

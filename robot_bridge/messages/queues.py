@@ -247,6 +247,24 @@ class PauseQueue:
 
 
 @dataclass(frozen=True)
+class PauseRobot:
+    """Let a robot stand, whatever it is doing, until its queue is resumed; then it goes on from where it is.
+
+    It is sent Abort. What it was doing waits at the head of its queue, which is paused: a task of that, or
+    else a task made of the SetPosEnd or SetPath that it was sent. Needs no revision; asked again it changes
+    nothing.
+    """
+
+    method: ClassVar[str] = "pause_robot"
+    robot: str
+    reason: str | None = None
+
+    def __post_init__(self) -> None:
+        check_robot_name(self.robot)
+        check_reason(self.reason)
+
+
+@dataclass(frozen=True)
 class ResumeQueue:
     """Let a queue that is paused go on, with the task at its head."""
 

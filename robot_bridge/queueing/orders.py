@@ -32,7 +32,6 @@ from ..messages import (
     TakeOver,
     TaskKind,
     TaskState,
-    check_robot_name,
 )
 from ..places import check_keepouts, check_places
 from ..queues import edits, life, sharing
@@ -102,7 +101,7 @@ class QueueOrders:
         """Send a robot nothing more by itself."""
         reason = f"paused by {operator}{f': {request.reason}' if request.reason else ''}"
         async with self._book.holding([request.robot]):
-            self._check_known(request.robot)
+            self._robots.check_known(request.robot)
             try:
                 return await self._pause(request.robot, reason, operator)
             except OutdatedError:
@@ -121,7 +120,7 @@ class QueueOrders:
         revisions.update({share.robot: share.revision for share in request.shares})
         async with self._book.holding(names):
             for name in names:
-                self._check_known(name)
+                self._robots.check_known(name)
                 self._check_revision(name, revisions[name])
             before = {name: self._book.get(name) for name in names}
             after = sharing.taken_over(before, request, operator, self._clock())
@@ -150,7 +149,7 @@ class QueueOrders:
     async def read(self, request: GetQueue) -> list[QueueReport]:
         """Return queues as they are."""
         if request.robot is not None:
-            self._check_known(request.robot)
+            self._robots.check_known(request.robot)
         found = []
         for name in self._book.names() if request.robot is None else [request.robot]:
             ended = await self._database.read(queues.newest_ended, name, request.ended)
@@ -173,7 +172,7 @@ class QueueOrders:
     @contextlib.asynccontextmanager
     async def _editing(self, robot: str, revision: int) -> AsyncIterator[Queue]:
         async with self._book.holding([robot]):
-            self._check_known(robot)
+            self._robots.check_known(robot)
             self._check_revision(robot, revision)
             yield self._book.get(robot)
 
@@ -185,12 +184,6 @@ class QueueOrders:
         now = self._clock()
         gone = [life.ended(task, TaskState.REMOVED, now, why) for task in before.tasks if task.id not in kept]
         return await self._book.save(before, after, gone)
-
-    def _check_known(self, robot: str) -> None:
-        check_robot_name(robot)
-        if robot not in self._robots:
-            known = ", ".join(self._robots.names()) or "none yet"
-            raise RefusedError(f"robot {robot!r} is not known to this gateway; known are: {known}")
 
     def _check_revision(self, robot: str, revision: int) -> None:
         now = self._book.get(robot).revision

@@ -71,11 +71,12 @@ def settled(queue: Queue, report: CommandReport, legs: int, *, skips: bool) -> S
 def done_after_all(queue: Queue, legs: int) -> Queue | None:
     """Return the queue with its head as the current task again, if its last command was the last of ``legs``.
 
-    A task may be given back just when its robot comes to its end: then it is not to be done once more.
+    A task may be given back just when its robot comes to its end: then it is not to be done once more. One
+    that was made of a command has not got the id of that from here.
     """
     head = queue.tasks[0]
     last = dataclasses.replace(head, state=TaskState.CURRENT, leg=legs - 1)
-    return queue.with_head(last) if head.command == command_id(last) else None
+    return queue.with_head(last) if legs == 1 or head.command == command_id(last) else None
 
 
 def failed(queue: Queue, reason: str, at: float, *, skips: bool) -> Settled:

@@ -50,6 +50,10 @@ class WaitingRobots:
         """Return who waits, by name."""
         return dict(self._rows)
 
+    def row_of(self, robot: str) -> HoldRow | None:
+        """Return how a robot waits, None for one that does not."""
+        return self._rows.get(robot)
+
     def report(self) -> list[HoldReport]:
         """Return who waits as operators are told it."""
         return [hold_report(row) for row in self._rows.values()]

@@ -20,6 +20,7 @@ from robot_bridge.messages import (
     GetQueue,
     MakeCurrent,
     PauseQueue,
+    PauseRobot,
     QueueTask,
     ResolveConflict,
     ReviewObservation,
@@ -137,6 +138,33 @@ async def aborted_too_late(play):
     await play.until_done()
     play.check()
     play.check_cones([OTHER, PLACES["a"], PLACES["b"]], interrupted=True)
+
+
+async def halted(play):
+    """Robots that were sent beside their queues are paused, and go on: the cone is put down once."""
+    await play.begin(WebSocketRobot(play, "r1", BEGIN), SqlRobot(play, "r2", BEFORE_OTHER))
+    (x, y), way = PLACES["b"], [BEFORE_OTHER, (41.0, 90.0)]
+    await play.order("one", "SetPosEnd", x=x, y=y, cone=True)
+    await play.order("two", "SetPath", robot="r2", points=way)
+    await play.wait(2)
+    for name in play.robots:
+        await play.ask(lambda fleet, name=name: fleet.pauses.pause(PauseRobot(name), "Ada"))
+    await play.until(lambda: play.open_commands() == [])
+    kept = play.sql("select robot from queue_tasks order by robot")
+    assert kept == [("r1",), ("r2",)] or play.was_disturbed
+    await play.stand_for(6)
+    await play.resume_all()
+    await play.until(lambda: play.is_done() or play.is_held("r2", "off what is left of the path"))
+    put_down = play.robots["r1"].record.placed
+    if not play.is_done():
+        # It had started anew, and was paused on its way back to where its path begins.
+        assert play.how == START_ANEW and play.was_disturbed
+        await play.until(lambda: play.open_commands() == [])
+    else:
+        play.check()
+        assert play.robots["r2"].record.ends[-1] == way[-1]
+    assert set(put_down) == {(x, y)}
+    assert len(put_down) == 1 or play.how == START_ANEW
 
 
 async def made_current(play):
@@ -336,6 +364,7 @@ SCENARIOS = {
         paused,
         aborted,
         aborted_too_late,
+        halted,
         made_current,
         taken_over,
         stopped,

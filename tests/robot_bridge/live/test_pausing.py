@@ -1,0 +1,73 @@
+"""Real robots are paused on their way, with the real programs: they stand, and go on from there, once."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+END = (66.0, 24.0)
+
+
+@pytest.fixture
+def bridge(start_bridge, sample_site):
+    bridge = start_bridge(sample_site)
+    yield bridge
+    bridge.end()
+
+
+def watch(bridge):
+    """Return an operator's connection that hears of everything."""
+    desk = bridge.desk()
+    desk.ask("subscribe", {"rate": 20})
+    desk.queues.update({queue["robot"]: queue for queue in desk.ask("get_queue")["queues"]})
+    return desk
+
+
+def pause_on_the_way(desk, robot):
+    """Pause a robot once it drives; return where it stands when what it did waits in its queue."""
+    desk.until(lambda: (desk.robots[robot]["v"] or 0) > 1.0, 15)
+    report = desk.ask("pause_robot", {"robot": robot, "reason": "people on the road"})
+    assert (report["state"], report["reason"]) == ("paused", "paused by Ada: people on the road")
+    desk.queues.setdefault(robot, report)
+    desk.until(lambda: [one["state"] for one in desk.queues[robot]["tasks"]] == ["waiting"], 15)
+    desk.until(lambda: desk.robots[robot]["v"] == 0.0, 15)
+    return desk.robots[robot]["x"], desk.robots[robot]["y"]
+
+
+def go_on(desk, robot):
+    desk.ask("resume_queue", {"robot": robot, "revision": desk.queues[robot]["revision"]})
+    desk.until(lambda: desk.queues[robot]["tasks"] == [], 60)
+
+
+@pytest.mark.parametrize("sql", [False, True], ids=["websocket", "sql"])
+def test_a_route_that_was_sent_directly_is_driven_to_its_end_once_also_if_the_gateway_is_killed(bridge, sql):
+    bridge.start_robot("r1", (20.0, 20.0, 0.0), sql=sql)
+    desk = watch(bridge)
+    desk.wait_for_robots("r1")
+    desk.send("command-route", "r1", "SetPath", points=[[20.0, 20.0], [60.0, 20.0], END])
+    x, y = pause_on_the_way(desk, "r1")
+    assert 20.0 < x < 59.0
+    bridge.kill_gateway()
+    bridge.start_gateway()
+    desk = watch(bridge)
+    desk.wait_for_robots("r1")
+    assert desk.queues["r1"]["state"] == "paused"
+    assert math.dist((x, y), (desk.robots["r1"]["x"], desk.robots["r1"]["y"])) < 0.5
+    go_on(desk, "r1")
+    assert math.dist(END, (desk.robots["r1"]["x"], desk.robots["r1"]["y"])) < 0.3
+    ends = bridge.sql("select op, state from commands order by sa_id")
+    assert ends == [("SetPath", "aborted"), ("Abort", "reached"), ("SetPath", "reached")]
+    assert bridge.sql("select state, attempts from queue_tasks") == [("done", 2)]
+
+
+def test_a_cone_that_was_sent_directly_is_put_down_once(bridge):
+    bridge.start_robot("r1", (20.0, 20.0, 0.0))
+    desk = watch(bridge)
+    desk.wait_for_robots("r1")
+    desk.send("command-cone", "r1", "SetPosEnd", x=60.0, y=20.0, cone=True)
+    pause_on_the_way(desk, "r1")
+    assert bridge.sql("select count(*) from placements") == [(0,)]
+    go_on(desk, "r1")
+    ((x, y),) = bridge.sql("select x, y from placements")
+    assert math.dist((60.0, 20.0), (x, y)) < 0.3
