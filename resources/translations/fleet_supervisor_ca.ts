@@ -1825,11 +1825,6 @@
         </message>
         <message>
             <location filename="../../plugin/desk/drafting/surface_check.py" />
-            <source>({x:.2f}, {y:.2f}) m is</source>
-            <translation>({x:.2f}, {y:.2f}) m és</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/drafting/surface_check.py" />
             <source>The way to {to} leaves the road surface.</source>
             <translation>El camí fins a {to} surt de la superfície de via.</translation>
         </message>
@@ -1840,13 +1835,13 @@
         </message>
         <message>
             <location filename="../../plugin/desk/drafting/surface_check.py" />
-            <source>{off} of {points} points are</source>
-            <translation>{off} de {points} punts són</translation>
+            <source>{off} of {points} points are not on a road surface.</source>
+            <translation>{off} de {points} punts són fora de les superfícies de via.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/drafting/surface_check.py" />
-            <source>{where} not on a road surface.</source>
-            <translation>{where} fora de les superfícies de via.</translation>
+            <source>{place} is not on a road surface.</source>
+            <translation>{place} és fora de les superfícies de via.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/drafting/target_check.py" />

@@ -1825,11 +1825,6 @@
         </message>
         <message>
             <location filename="../../plugin/desk/drafting/surface_check.py" />
-            <source>({x:.2f}, {y:.2f}) m is</source>
-            <translation>({x:.2f}, {y:.2f}) m está</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/drafting/surface_check.py" />
             <source>The way to {to} leaves the road surface.</source>
             <translation>El camino hasta {to} se sale de la superficie de vía.</translation>
         </message>
@@ -1840,13 +1835,13 @@
         </message>
         <message>
             <location filename="../../plugin/desk/drafting/surface_check.py" />
-            <source>{off} of {points} points are</source>
-            <translation>{off} de {points} puntos están</translation>
+            <source>{off} of {points} points are not on a road surface.</source>
+            <translation>{off} de {points} puntos están fuera de las superficies de vía.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/drafting/surface_check.py" />
-            <source>{where} not on a road surface.</source>
-            <translation>{where} fuera de las superficies de vía.</translation>
+            <source>{place} is not on a road surface.</source>
+            <translation>{place} está fuera de las superficies de vía.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/drafting/target_check.py" />

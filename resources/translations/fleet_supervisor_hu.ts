@@ -1818,11 +1818,6 @@
         </message>
         <message>
             <location filename="../../plugin/desk/drafting/surface_check.py" />
-            <source>({x:.2f}, {y:.2f}) m is</source>
-            <translation>({x:.2f}, {y:.2f}) m</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/desk/drafting/surface_check.py" />
             <source>The way to {to} leaves the road surface.</source>
             <translation>A(z) {to} helyhez vezető út letér az útfelületről.</translation>
         </message>
@@ -1833,13 +1828,13 @@
         </message>
         <message>
             <location filename="../../plugin/desk/drafting/surface_check.py" />
-            <source>{off} of {points} points are</source>
-            <translation>{points} pontból {off}</translation>
+            <source>{off} of {points} points are not on a road surface.</source>
+            <translation>{points} pontból {off} nincs útfelületen.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/drafting/surface_check.py" />
-            <source>{where} not on a road surface.</source>
-            <translation>{where} nincs útfelületen.</translation>
+            <source>{place} is not on a road surface.</source>
+            <translation>{place} nincs útfelületen.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/drafting/target_check.py" />

@@ -100,13 +100,9 @@ def _gap(track: Track, shares: Sequence[Share]) -> float:
 
 
 def _told_of_points(off: Sequence[Track], points: int) -> str:
-    ((x, y),) = off[0]
-    where = (
-        tr("({x:.2f}, {y:.2f}) m is", x=x, y=y)
-        if len(off) == 1
-        else tr("{off} of {points} points are", off=len(off), points=points)
-    )
-    return tr("{where} not on a road surface.", where=where)
+    if len(off) == 1:
+        return tr("{place} is not on a road surface.", place=place_in_words(off[0]))
+    return tr("{off} of {points} points are not on a road surface.", off=len(off), points=points)
 
 
 def _told_of_legs(leave: Sequence[Track], legs: int) -> str:

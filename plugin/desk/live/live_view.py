@@ -21,10 +21,10 @@ from .hover_card import card
 from .hovering import Hovering
 from .overlay import FleetOverlay
 from .plans import Plans
-from .plans_painting import MANY
 from .robot_layer import RobotLayer
 from .scene import Placer, Scene
 from .trails import Trails
+from .ways_image import MANY
 
 FRAME_MS = 15
 """For what the operator does; what robots do is painted when it was pulled."""

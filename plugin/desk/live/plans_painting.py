@@ -17,13 +17,11 @@ from .scene import PlacedScene
 from .screen import Screen
 from .sprites import Sprites
 from .strokes import broken, lines
-from .ways_image import WaysImage
+from .ways_image import MANY, WaysImage
 
 Points = npt.NDArray[np.float64]
 Marks = Callable[[float, float], Sprites]
 """Gives the marks of a pixel ratio and a size."""
-MANY = 60
-"""With more plans targets are small, and only selected robots have their lines and distances."""
 SMALL = 0.5
 
 

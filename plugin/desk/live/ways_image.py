@@ -14,7 +14,7 @@ from .screen_image import screen_image
 from .strokes import polygon, route
 
 MANY = 60
-"""With more ways they are thin."""
+"""With more plans ways are thin and targets small, and only selected robots have lines and distances."""
 FILL_SECONDS = 0.003
 """What painting ways may take of one frame."""
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from datetime import datetime
-
 from qgis.core import QgsDateTimeRange, QgsInterval, QgsTemporalNavigationObject
 from qgis.gui import QgsMapCanvas
 from qgis.PyQt import sip
@@ -122,8 +120,3 @@ class Clockwork(QObject):
 def local(at: float) -> QDateTime:
     """Return seconds since 1970 by this computer's clock."""
     return QDateTime.fromMSecsSinceEpoch(round(at * 1000))
-
-
-def in_words(at: float) -> str:
-    """Return a moment as in ``2026-11-21 14:03:20``, by this computer's clock."""
-    return datetime.fromtimestamp(at).strftime("%Y-%m-%d %H:%M:%S")

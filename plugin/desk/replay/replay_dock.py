@@ -12,7 +12,8 @@ from ...errors import FleetError
 from ...language import tr, tr_count
 from ..desk import Desk
 from ..dock_action import ActionDock
-from .clockwork import SPEEDS, Clockwork, in_words
+from ..wall_clock import date_and_time
+from .clockwork import SPEEDS, Clockwork
 from .fetching import Fetching
 from .past_commands import marks
 from .replay_layer import ReplayLayer
@@ -131,7 +132,7 @@ class ReplayDock(ActionDock):
             tr(
                 "Loading … {positions}, up to {moment}",
                 positions=tr_count(len(self.fetching.history), "1 position", "%n positions"),
-                moment=in_words(self.fetching.reached),
+                moment=date_and_time(self.fetching.reached),
             )
         )
 
@@ -217,7 +218,7 @@ class ReplayDock(ActionDock):
             self.banner.setText(tr("REPLAY · {told}", told=self._told))
             return
         self.banner.setText(
-            tr("REPLAY, not live · {moment} · {told}", moment=in_words(moment), told=self._told)
+            tr("REPLAY, not live · {moment} · {told}", moment=date_and_time(moment), told=self._told)
         )
 
     def _lay_out(self) -> None:

@@ -32,7 +32,7 @@ JUMP = 20.0
 
 
 class ReplayMap(QgsMapCanvas):
-    """Follows the layers and the CRS of ``live``; its view is its own."""
+    """Follows the layers, the CRS and the rotation of ``live``; its view is its own."""
 
     def __init__(self, live: QgsMapCanvas, parent: QWidget | None = None):
         super().__init__(parent)
@@ -54,6 +54,7 @@ class ReplayMap(QgsMapCanvas):
         self.setCanvasColor(live.canvasColor())
         live.layersChanged.connect(self.follow)
         live.destinationCrsChanged.connect(self.follow)
+        live.rotationChanged.connect(self.follow)
 
     def sizeHint(self) -> QSize:
         # A canvas would ask for more room than the live one has.
@@ -64,6 +65,7 @@ class ReplayMap(QgsMapCanvas):
         self._soon.stop()
         self._live.layersChanged.disconnect(self.follow)
         self._live.destinationCrsChanged.disconnect(self.follow)
+        self._live.rotationChanged.disconnect(self.follow)
         self.stopRendering()
         self.setLayers([])
         self.unsetMapTool(self._pan)
@@ -90,9 +92,10 @@ class ReplayMap(QgsMapCanvas):
         corners = np.array([least - AROUND, greatest + AROUND])
         show_places(self, self._place().to_map(corners))
 
-    def follow(self) -> None:
-        """Take over the live map's layers and CRS."""
+    def follow(self, *_what: object) -> None:
+        """Take over the live map's layers, CRS and rotation."""
         self.setDestinationCrs(self._live.mapSettings().destinationCrs())
+        self.setRotation(self._live.rotation())
         layers = [layer for layer in self._live.layers() if layer.customProperty(MARK) in (None, OWN_LAYER)]
         if layers != self.layers():
             self.setLayers(layers)

@@ -12,7 +12,7 @@ from qgis.PyQt.QtWidgets import QToolTip, QWidget
 
 from ....robot_bridge.messages import CommandState
 from ..live.strokes import flat, lines
-from .clockwork import in_words
+from ..wall_clock import date_and_time
 from .past_commands import Mark
 
 EDGE = 9.0
@@ -135,7 +135,7 @@ class TimeLine(QWidget):
             at = self._moment_at(event.pos().x()) if mark is None else mark.at
             QToolTip.showText(
                 self.mapToGlobal(event.pos()),
-                in_words(at) + ("" if mark is None else f"\n{mark.text}"),
+                date_and_time(at) + ("" if mark is None else f"\n{mark.text}"),
                 self,
             )
             return True

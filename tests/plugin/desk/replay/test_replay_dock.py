@@ -46,6 +46,11 @@ def test_where_the_panel_is_low_and_narrow_the_map_gives_way_to_the_time_line(lo
     assert loaded.line.geometry().bottom() <= loaded.widget().height()
 
 
+def test_the_map_turns_with_the_live_one(loaded, at_desk):
+    at_desk.desk.canvas.setRotation(30.0)
+    assert loaded.map.rotation() == 30.0
+
+
 def test_another_gateway_of_the_same_site_is_not_shown_the_history_of_the_one_before(
     loaded, at_desk, gateway, site, make_robot, wait
 ):
