@@ -69,8 +69,10 @@ class Desk(QObject):
     """What ``failed`` told with this text is over: it need not hang there any longer."""
     complained = pyqtSignal(str)
     """A text that the operator needs in order to go on."""
+    noted = pyqtSignal(str)
+    """What came of something small: a text that is seen for a while, whatever else is told of drafts."""
     remarked = pyqtSignal(str)
-    """A text that the operator may want to see."""
+    """A text that the operator may want to see where drafts are told of, while there is none."""
 
     def __init__(
         self,

@@ -70,6 +70,7 @@ class DeskWindow(QObject):
         self._draft_menu.setObjectName("fleet_draft_menu")
         self._draft_menu.setIcon(self.actions.cone.icon())
         self.draft_commands = DraftCommands(self.desk, self.queue_edits, self.actions, iface.mainWindow())
+        self.robot_pauses = RobotPauses(self.desk, self.queue_edits, self.actions, self)
         self._wire_actions()
         self._place()
 
@@ -142,6 +143,7 @@ class DeskWindow(QObject):
         desk.failed.connect(self.notices.error)
         desk.settled.connect(self.notices.take_down)
         desk.complained.connect(self.notices.warning)
+        desk.noted.connect(self.notices.info)
         self._project_match.differs.connect(self.notices.error)
         self._project_match.over.connect(self.notices.take_down)
         desk.link_changed.connect(self._show_link)

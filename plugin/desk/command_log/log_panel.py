@@ -110,7 +110,7 @@ class CommandLog(QWidget):
         except FleetError as error:
             self._desk.failed.emit(str(error))
             return
-        self._desk.remarked.emit(
+        self._desk.noted.emit(
             tr(
                 "{commands} and {steps} written to {path}",
                 commands=tr_count(len(self._model.shown), "1 command", "%n commands"),

@@ -65,7 +65,7 @@ class OlderCommands(QObject):
         else:
             self._look_at(_commands_in(answer), wish)
         if wish.waiting == 0 and not wish.is_refused:
-            self._desk.remarked.emit(_in_words(wish))
+            self._desk.noted.emit(_in_words(wish))
 
     def _look_at(self, told: list[str], wish: Wish) -> None:
         # The book has taken them in by now, and let go of the oldest where it was full.

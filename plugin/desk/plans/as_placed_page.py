@@ -113,7 +113,7 @@ class AsPlacedPage(QWidget):
             self._desk.failed.emit(str(error))
             return
         cones = tr_count(count, "1 cone", "%n cones")
-        self._desk.remarked.emit(tr("{cones} written to {path}", cones=cones, path=path))
+        self._desk.noted.emit(tr("{cones} written to {path}", cones=cones, path=path))
 
     def _chosen(self) -> list[PlacementReport]:
         what = self.which.currentData()

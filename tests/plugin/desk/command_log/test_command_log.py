@@ -264,9 +264,9 @@ def test_a_command_of_another_day_tells_its_date_and_has_room_for_it(at_desk, ga
     assert log.view.columnWidth(0) == narrow
 
 
-def remarks(at_desk):
+def notes(at_desk):
     told = []
-    at_desk.desk.remarked.connect(told.append)
+    at_desk.desk.noted.connect(told.append)
     return told
 
 
@@ -279,13 +279,16 @@ def long_ago(number):
     return CommandReport(f"old-{number}", "r1", "Abort", {}, "bert", CommandState.EXPIRED, steps)
 
 
-def test_it_is_told_how_many_older_commands_came_and_that_there_are_no_others(log, at_desk, gateway, wait):
-    told = remarks(at_desk)
+def test_it_is_told_how_many_older_commands_came_and_that_there_are_no_others(
+    log, at_desk, gateway, iface, wait
+):
+    told = notes(at_desk)
     gateway.commands = {"old-0": long_ago(0), "old-1": long_ago(1), **gateway.commands}
     press_older(log)
     wait(lambda: len(told) == 1, what="what came of it")
     press_older(log)
     wait(lambda: len(told) == 2, what="what came of it")
+    assert any("No older commands came." in text for text in iface.texts())
     assert told == [
         "2 older commands came. The gateway knows no others.",
         "No older commands came. The gateway knows no others.",
@@ -293,7 +296,7 @@ def test_it_is_told_how_many_older_commands_came_and_that_there_are_no_others(lo
 
 
 def test_of_several_robots_it_is_told_once(log, at_desk, gateway, wait):
-    told = remarks(at_desk)
+    told = notes(at_desk)
     choose(log, "fleet_log_robot", "Selected robots")
     at_desk.desk.select_all(["r2", "r1"])
     press_older(log)
@@ -302,7 +305,7 @@ def test_of_several_robots_it_is_told_once(log, at_desk, gateway, wait):
 
 
 def test_it_is_told_where_the_log_reaches_no_further_back(log, at_desk, gateway, wait, monkeypatch):
-    told = remarks(at_desk)
+    told = notes(at_desk)
     monkeypatch.setattr("fleet_supervisor.plugin.desk.command_log.older_commands.OLDER", 5)
     gateway.commands = {"old-0": long_ago(0), **gateway.commands}
     press_older(log)
@@ -312,7 +315,7 @@ def test_it_is_told_where_the_log_reaches_no_further_back(log, at_desk, gateway,
 
 
 def test_it_is_told_that_a_full_log_keeps_no_older_commands(log, at_desk, gateway, wait, monkeypatch):
-    told = remarks(at_desk)
+    told = notes(at_desk)
     monkeypatch.setattr("fleet_supervisor.plugin.desk.command_book.MOST_COMMANDS", 4)
     gateway.commands = {"old-0": long_ago(0), **gateway.commands}
     press_older(log)
@@ -322,7 +325,7 @@ def test_it_is_told_that_a_full_log_keeps_no_older_commands(log, at_desk, gatewa
 
 
 def test_refused_older_commands_are_said(log, at_desk, gateway, iface, wait):
-    told = remarks(at_desk)
+    told = notes(at_desk)
     gateway.refuse["get_commands"] = "the database is away"
     QTest.mouseClick(log.findChild(QToolButton, "fleet_log_older"), LEFT)
     wait(lambda: any("the database is away" in text for text in iface.texts()))

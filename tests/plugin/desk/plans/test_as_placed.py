@@ -80,7 +80,7 @@ def test_no_name_in_the_csv_is_a_formula_to_a_spreadsheet(page, tmp_path):
 
 def test_what_was_written_is_told_and_what_cannot_be_written_harms_no_older_file(page, iface, tmp_path):
     told = []
-    page._desk.remarked.connect(told.append)
+    page._desk.noted.connect(told.append)
     target = tmp_path / "placed.csv"
     page.save(str(target))
     assert told == [f"2 cones written to {target}"]
