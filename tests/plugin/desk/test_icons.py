@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from qgis.PyQt.QtGui import QColor, QIcon, QImage, QPainter
+from qgis.PyQt.QtWidgets import QToolButton
 
 ICONS = Path(__file__).parents[3] / "resources" / "icons"
 SIZE = 24
@@ -50,6 +51,13 @@ def share_that_stands_out(icon, ground):
 @pytest.mark.parametrize("file", sorted(ICONS.glob("*.svg")), ids=lambda file: file.stem)
 def test_an_icon_stands_out_from_what_it_lies_on(qgis_app, file, ground):
     assert share_that_stands_out(QIcon(str(file)), GROUNDS[ground]) >= PART
+
+
+@pytest.mark.parametrize("ground", GROUNDS)
+def test_the_button_of_the_connections_stands_out_too(plugin, ground):
+    """QGIS's own icon of a connection is dark in each of its themes."""
+    button = plugin.window.dock.findChild(QToolButton, "fleet_connections_button")
+    assert share_that_stands_out(button.icon(), GROUNDS[ground]) >= PART
 
 
 def test_an_icon_in_the_colour_of_its_ground_does_not(qgis_app, tmp_path):
