@@ -78,6 +78,8 @@ class Actions(QObject):
             self.closures,
             self.follow,
             self.follow_all,
+            self.pause,
+            self.go_on,
             self.abort,
             self.abort_all,
             self.emergency,
@@ -212,6 +214,12 @@ class Actions(QObject):
         )
 
     def _make_for_stopping(self) -> None:
+        tip = tr(
+            "Every selected robot stands at once and keeps its task, until it is let go on with Continue"
+        )
+        self.pause = self._made("fleet_pause_robot", tr("Pause robot"), "pause_robot.svg", tip)
+        tip = tr("Let the selected robots that are paused go on with their tasks, from where they stand")
+        self.go_on = self._made("fleet_continue", tr("Continue"), "continue.svg", tip)
         tip = tr("Every selected robot gives up its task at once")
         self.abort = self._made("fleet_abort", tr("Abort robot"), "abort.svg", tip)
         tip = tr("Every robot gives up its task, at once and without a question")

@@ -20,6 +20,8 @@ KEYS = {
     "fleet_close_road": "Alt+F8",
     "fleet_send": "Ctrl+Shift+F8",
     "fleet_enqueue": "Ctrl+Shift+F9",
+    "fleet_pause_robot": "Alt+F10",
+    "fleet_continue": "Alt+Shift+F10",
     "fleet_abort": "Ctrl+F10",
     "fleet_abort_all": "Ctrl+Shift+F10",
     "fleet_coordinates": "Shift+F11",

@@ -26,6 +26,7 @@ from .notices import Notices
 from .project_match import ProjectMatch
 from .queues.queue_edits import QueueEdits
 from .queues.queue_marks import QueueMarks
+from .queues.robot_pauses import RobotPauses
 from .road_layers import RoadLayers
 from .road_route_tool import RoadRouteTool
 from .route_tool import RouteTool

@@ -458,6 +458,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/actions.py" />
+            <source>Continue</source>
+            <translation>Continua</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
             <source>Coordinates …</source>
             <translation>Coordenades …</translation>
         </message>
@@ -490,6 +495,11 @@
             <location filename="../../plugin/desk/actions.py" />
             <source>Every selected robot gives up its task at once</source>
             <translation>Cada robot seleccionat abandona la tasca de seguida</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Every selected robot stands at once and keeps its task, until it is let go on with Continue</source>
+            <translation>Cada robot seleccionat s'atura de seguida i conserva la tasca, fins que se'l deixa seguir amb Continua</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/actions.py" />
@@ -533,6 +543,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/actions.py" />
+            <source>Let the selected robots that are paused go on with their tasks, from where they stand</source>
+            <translation>Deixa que els robots seleccionats que estan en pausa segueixin amb les seves tasques, des d'on són</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
             <source>Make the change again that was taken back (Ctrl+Shift+Z over the map)</source>
             <translation>Torna a fer el canvi desfet (Ctrl+Maj+Z sobre el mapa)</translation>
         </message>
@@ -545,6 +560,11 @@
             <location filename="../../plugin/desk/actions.py" />
             <source>Override …</source>
             <translation>Imposa …</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Pause robot</source>
+            <translation>Posa robot en pausa</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/actions.py" />
@@ -3306,6 +3326,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/queues/queue_edits.py" />
+            <source>Pause of {robot}</source>
+            <translation>Pausa de {robot}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/queue_edits.py" />
             <source>Pausing the queue of {robot}</source>
             <translation>Posar en pausa la cua de {robot}</translation>
         </message>
@@ -3318,6 +3343,16 @@
             <location filename="../../plugin/desk/queues/queue_edits.py" />
             <source>Resuming the queue of {robot}</source>
             <translation>Reprendre la cua de {robot}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/queue_edits.py" />
+            <source>{robot} continues</source>
+            <translation>{robot} continua</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/queue_edits.py" />
+            <source>{robot} continues with {task}</source>
+            <translation>{robot} continua amb {task}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/queues/queue_panel.py" />
@@ -3371,8 +3406,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/queues/queue_panel.py" />
-            <source>Send the robot no further task; what it is doing it finishes (abort stops it)</source>
-            <translation>No enviïs més tasques al robot; el que fa ho acaba (avortar l'atura)</translation>
+            <source>Send the robot no further task; what it is doing it finishes (Pause robot stops it)</source>
+            <translation>No enviïs més tasques al robot; acaba el que està fent (Posa robot en pausa l'atura)</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/queues/queue_panel.py" />
@@ -3383,6 +3418,11 @@
             <location filename="../../plugin/desk/queues/queue_panel.py" />
             <source>{selected} has no queue. Add a target or a route with Add to queue.</source>
             <translation>{selected} no té cua. Afegiu un objectiu o una ruta amb Afegeix a la cua.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/robot_pauses.py" />
+            <source>No robot is selected, so none was paused. Select it in the table or on the map.</source>
+            <translation>No hi ha cap robot seleccionat, així que no se n'ha posat cap en pausa. Seleccioneu-lo a la taula o al mapa.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/queues/task_list.py" />

@@ -458,6 +458,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/actions.py" />
+            <source>Continue</source>
+            <translation>Continuar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
             <source>Coordinates …</source>
             <translation>Coordenadas …</translation>
         </message>
@@ -490,6 +495,11 @@
             <location filename="../../plugin/desk/actions.py" />
             <source>Every selected robot gives up its task at once</source>
             <translation>Cada robot seleccionado abandona su tarea al instante</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Every selected robot stands at once and keeps its task, until it is let go on with Continue</source>
+            <translation>Cada robot seleccionado se detiene al instante y conserva su tarea, hasta que se le deja seguir con Continuar</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/actions.py" />
@@ -533,6 +543,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/actions.py" />
+            <source>Let the selected robots that are paused go on with their tasks, from where they stand</source>
+            <translation>Deja que los robots seleccionados que están en pausa sigan con sus tareas, desde donde están</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
             <source>Make the change again that was taken back (Ctrl+Shift+Z over the map)</source>
             <translation>Volver a hacer el cambio deshecho (Ctrl+Mayús+Z sobre el mapa)</translation>
         </message>
@@ -545,6 +560,11 @@
             <location filename="../../plugin/desk/actions.py" />
             <source>Override …</source>
             <translation>Imponer …</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Pause robot</source>
+            <translation>Pausar robot</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/actions.py" />
@@ -3306,6 +3326,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/queues/queue_edits.py" />
+            <source>Pause of {robot}</source>
+            <translation>Pausa de {robot}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/queue_edits.py" />
             <source>Pausing the queue of {robot}</source>
             <translation>Pausar la cola de {robot}</translation>
         </message>
@@ -3318,6 +3343,16 @@
             <location filename="../../plugin/desk/queues/queue_edits.py" />
             <source>Resuming the queue of {robot}</source>
             <translation>Reanudar la cola de {robot}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/queue_edits.py" />
+            <source>{robot} continues</source>
+            <translation>{robot} continúa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/queue_edits.py" />
+            <source>{robot} continues with {task}</source>
+            <translation>{robot} continúa con {task}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/queues/queue_panel.py" />
@@ -3371,8 +3406,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/queues/queue_panel.py" />
-            <source>Send the robot no further task; what it is doing it finishes (abort stops it)</source>
-            <translation>No enviar más tareas al robot; lo que hace lo acaba (abortar lo detiene)</translation>
+            <source>Send the robot no further task; what it is doing it finishes (Pause robot stops it)</source>
+            <translation>No enviar más tareas al robot; termina lo que está haciendo (Pausar robot lo detiene)</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/queues/queue_panel.py" />
@@ -3383,6 +3418,11 @@
             <location filename="../../plugin/desk/queues/queue_panel.py" />
             <source>{selected} has no queue. Add a target or a route with Add to queue.</source>
             <translation>{selected} no tiene cola. Añada un objetivo o una ruta con Añadir a la cola.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/robot_pauses.py" />
+            <source>No robot is selected, so none was paused. Select it in the table or on the map.</source>
+            <translation>No hay ningún robot seleccionado, así que no se pausó ninguno. Selecciónelo en la tabla o en el mapa.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/queues/task_list.py" />

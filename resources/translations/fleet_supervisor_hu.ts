@@ -457,6 +457,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/actions.py" />
+            <source>Continue</source>
+            <translation>Folytatás</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
             <source>Coordinates …</source>
             <translation>Koordináták …</translation>
         </message>
@@ -489,6 +494,11 @@
             <location filename="../../plugin/desk/actions.py" />
             <source>Every selected robot gives up its task at once</source>
             <translation>Minden kijelölt robot azonnal feladja a feladatát</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Every selected robot stands at once and keeps its task, until it is let go on with Continue</source>
+            <translation>Minden kijelölt robot azonnal megáll, és megtartja a feladatát, amíg a Folytatás tovább nem engedi</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/actions.py" />
@@ -532,6 +542,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/actions.py" />
+            <source>Let the selected robots that are paused go on with their tasks, from where they stand</source>
+            <translation>A kijelölt, szüneteltetett robotok onnan folytatják a feladatukat, ahol állnak</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
             <source>Make the change again that was taken back (Ctrl+Shift+Z over the map)</source>
             <translation>A visszavont változás megismétlése (Ctrl+Shift+Z a térkép felett)</translation>
         </message>
@@ -544,6 +559,11 @@
             <location filename="../../plugin/desk/actions.py" />
             <source>Override …</source>
             <translation>Felülbírálás …</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/actions.py" />
+            <source>Pause robot</source>
+            <translation>Robot szüneteltetése</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/actions.py" />
@@ -3286,6 +3306,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/queues/queue_edits.py" />
+            <source>Pause of {robot}</source>
+            <translation>{robot} szüneteltetése</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/queue_edits.py" />
             <source>Pausing the queue of {robot}</source>
             <translation>{robot} várólistájának szüneteltetése</translation>
         </message>
@@ -3298,6 +3323,16 @@
             <location filename="../../plugin/desk/queues/queue_edits.py" />
             <source>Resuming the queue of {robot}</source>
             <translation>{robot} várólistájának folytatása</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/queue_edits.py" />
+            <source>{robot} continues</source>
+            <translation>{robot} folytatja</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/queue_edits.py" />
+            <source>{robot} continues with {task}</source>
+            <translation>{robot} ezzel folytatja: {task}</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/queues/queue_panel.py" />
@@ -3351,8 +3386,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/queues/queue_panel.py" />
-            <source>Send the robot no further task; what it is doing it finishes (abort stops it)</source>
-            <translation>A robot nem kap több feladatot; amit csinál, befejezi (a megszakítás leállítja)</translation>
+            <source>Send the robot no further task; what it is doing it finishes (Pause robot stops it)</source>
+            <translation>A robot nem kap több feladatot; amit csinál, befejezi (a Robot szüneteltetése megállítja)</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/queues/queue_panel.py" />
@@ -3363,6 +3398,11 @@
             <location filename="../../plugin/desk/queues/queue_panel.py" />
             <source>{selected} has no queue. Add a target or a route with Add to queue.</source>
             <translation>{selected} robotnak nincs várólistája. Adjon hozzá célt vagy útvonalat a Várólistára gombbal.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/queues/robot_pauses.py" />
+            <source>No robot is selected, so none was paused. Select it in the table or on the map.</source>
+            <translation>Nincs kijelölt robot, így egyik sem lett szüneteltetve. Jelölje ki a táblázatban vagy a térképen.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/queues/task_list.py" />

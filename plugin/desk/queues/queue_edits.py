@@ -11,6 +11,8 @@ from ....robot_bridge.messages import (
     MakeCurrent,
     MoveTask,
     PauseQueue,
+    PauseRobot,
+    QueueReport,
     QueueTask,
     RemoveTask,
     ResumeQueue,
@@ -19,8 +21,9 @@ from ...errors import FleetError
 from ...language import tr
 from ...wire.outbox import Answer
 from ..desk import Desk
+from .task_words import task_in_words
 
-Request = AddTasks | MoveTask | RemoveTask | MakeCurrent | PauseQueue | ResumeQueue
+Request = AddTasks | MoveTask | RemoveTask | MakeCurrent | PauseQueue | PauseRobot | ResumeQueue
 
 CHANGED_MEANWHILE = tr("Not done: the queue has changed since you saw it. This is how it stands now.")
 
@@ -75,6 +78,17 @@ class QueueEdits(QObject):
     def pause(self, robot: str) -> str | None:
         """Send a robot no further task."""
         return self._change(PauseQueue(robot), tr("Pausing the queue of {robot}", robot=robot))
+
+    def pause_robot(self, robot: str) -> str | None:
+        """Let a robot stand, and keep what it is doing."""
+        return self._change(PauseRobot(robot), tr("Pause of {robot}", robot=robot))
+
+    def go_on(self, queue: QueueReport) -> str | None:
+        """Let a robot go on with what is at the head of its queue, which is told."""
+        words = tr("{robot} continues", robot=queue.robot)
+        if queue.tasks:
+            words = tr("{robot} continues with {task}", robot=queue.robot, task=task_in_words(queue.tasks[0]))
+        return self._change(ResumeQueue(queue.robot, queue.revision), words)
 
     def resume(self, robot: str) -> str | None:
         """Let a queue that is paused go on."""

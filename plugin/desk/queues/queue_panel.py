@@ -106,7 +106,7 @@ class QueuePanel(QWidget):
         self._hold.setToolTip(
             tr("Let the robot go on with the task at the head of its queue")
             if paused
-            else tr("Send the robot no further task; what it is doing it finishes (abort stops it)")
+            else tr("Send the robot no further task; what it is doing it finishes (Pause robot stops it)")
         )
         # To hold is never in the way of anything: it waits for no answer.
         self._hold.setEnabled(self._desk.selected is not None and (waits or not paused))

@@ -8,7 +8,7 @@ import pytest
 from fleet_supervisor.robot_bridge.errors import RefusedError
 from fleet_supervisor.robot_bridge.jsonrpc import OUTDATED, REFUSED
 from fleet_supervisor.robot_bridge.messages import QueueTask, RobotState, TaskKind, to_json
-from fleet_supervisor.robot_bridge.queues import edits, life
+from fleet_supervisor.robot_bridge.queues import edits, keeping, life
 from fleet_supervisor.robot_bridge.queues.queue import Queue, queue_report
 
 
@@ -24,6 +24,7 @@ class SmallQueues:
             {
                 "get_queue": self._all,
                 "pause_queue": self._pause,
+                "pause_robot": self._halt,
                 "add_tasks": self._edit(self._added),
                 "move_task": self._edit(lambda q, p: edits.moved(q, p["task"], p.get("before"))),
                 "remove_task": self._edit(lambda q, p: edits.removed(q, p["task"])),
@@ -65,6 +66,12 @@ class SmallQueues:
     def _pause(self, params: dict) -> dict:
         queue = self.get(params["robot"]).paused("paused by anna", "anna", time.time())
         return {"result": _report(self._begun(queue))}
+
+    def _halt(self, params: dict) -> dict:
+        """As the real one where nothing was sent beside the queue."""
+        queue = self.get(params["robot"])
+        halted = keeping.halted(queue, [], "paused by anna", "anna", time.time())
+        return {"result": _report(self._begun(halted))}
 
     def _added(self, queue: Queue, params: dict) -> Queue:
         tasks = [QueueTask(**{**task, "kind": TaskKind(task["kind"])}) for task in params["tasks"]]

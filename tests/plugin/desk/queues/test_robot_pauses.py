@@ -1,0 +1,97 @@
+"""Pause robot and Continue, by menu and by key, for every selected robot."""
+
+from __future__ import annotations
+
+import pytest
+from fleet_supervisor.robot_bridge.jsonrpc import FORBIDDEN
+from fleet_supervisor.robot_bridge.messages import QueueState, QueueTask, TaskKind
+from qgis.PyQt.QtCore import Qt
+from qgis.PyQt.QtTest import QTest
+from qgis.PyQt.QtWidgets import QLabel
+
+ALT = Qt.KeyboardModifier.AltModifier
+SHIFT = Qt.KeyboardModifier.ShiftModifier
+
+
+@pytest.fixture
+def driving(at_desk, gateway, wait):
+    """A desk whose two robots do tasks of their queues."""
+    for robot in ("r1", "r2"):
+        cone = QueueTask(f"task-of-{robot}", 60.0, 50.0, kind=TaskKind.PLACE, cone=f"K-{robot}")
+        gateway.queues.give(robot, [cone])
+    wait(lambda: len(at_desk.desk.queues) == 2, what="both queues")
+    return at_desk
+
+
+def line(desk) -> str:
+    return desk.dock.findChild(QLabel, "fleet_draft_text").text()
+
+
+def is_paused(gateway, robot) -> bool:
+    return gateway.queues.get(robot).state is QueueState.PAUSED
+
+
+def test_by_the_menu_every_selected_robot_is_paused_and_goes_on(driving, gateway, wait):
+    driving.desk.select_all(["r1", "r2"])
+    driving.actions.pause.trigger()
+    wait(lambda: is_paused(gateway, "r1") and is_paused(gateway, "r2"), what="both pauses")
+    assert [one["robot"] for one in gateway.asked("pause_robot")] == ["r1", "r2"]
+    wait(lambda: line(driving) == "Pause of r2: done", what="the line")
+    wait(driving.actions.go_on.isEnabled, what="Continue")
+    driving.actions.go_on.trigger()
+    wait(lambda: not is_paused(gateway, "r1") and not is_paused(gateway, "r2"), what="both going on")
+    wait(lambda: line(driving) == "r2 continues with place cone K-r2 at 60.00, 50.00: done", what="the line")
+    wait(lambda: not driving.actions.go_on.isEnabled(), what="nothing to continue")
+
+
+def test_by_key_too(driving, gateway, iface, wait):
+    driving.desk.select("r1")
+    QTest.keyClick(iface, Qt.Key.Key_F10, ALT)
+    wait(lambda: is_paused(gateway, "r1") and driving.actions.go_on.isEnabled(), what="the pause")
+    assert gateway.asked("emergency_stop") == []
+    QTest.keyClick(iface, Qt.Key.Key_F10, ALT | SHIFT)
+    wait(lambda: not is_paused(gateway, "r1"), what="going on")
+    assert not is_paused(gateway, "r2")
+
+
+def test_the_reason_is_told_where_the_queue_is(driving, gateway, wait):
+    driving.desk.select("r1")
+    driving.dock.tabs.setCurrentWidget(driving.dock.queue_panel)
+    driving.actions.pause.trigger()
+    head = driving.dock.queue_panel.findChild(QLabel, "fleet_queue_head")
+    wait(lambda: "PAUSED" in head.text() and "paused by anna" in head.text(), what="who paused it")
+
+
+def test_only_where_a_selected_robot_is_paused_there_is_something_to_continue(driving, gateway, wait):
+    assert not driving.actions.go_on.isEnabled()
+    driving.desk.select("r1")
+    driving.actions.pause.trigger()
+    wait(driving.actions.go_on.isEnabled, what="Continue")
+    driving.desk.select("r2")
+    assert not driving.actions.go_on.isEnabled()
+    driving.desk.select_all(["r1", "r2"])
+    assert driving.actions.go_on.isEnabled()
+    driving.actions.go_on.trigger()
+    wait(lambda: not is_paused(gateway, "r1"), what="going on")
+    assert [one["robot"] for one in gateway.asked("resume_queue")] == ["r1"]
+
+
+def test_without_a_robot_it_says_so(at_desk, gateway, iface):
+    at_desk.actions.pause.trigger()
+    assert any("none was paused" in text for text in iface.texts())
+    assert gateway.asked("pause_robot") == []
+
+
+def test_who_may_not_is_told_by_the_gateway(driving, gateway, iface, wait):
+    refusal = "pause_robot: anna is viewer, and this takes operator"
+    gateway.answers["pause_robot"] = lambda params: {"error": {"code": FORBIDDEN, "message": refusal}}
+    driving.desk.select("r1")
+    driving.actions.pause.trigger()
+    wait(lambda: any(f"Pause of r1: {refusal}" in text for text in iface.texts()), what="the refusal")
+    assert not is_paused(gateway, "r1")
+
+
+def test_without_a_link_it_says_that_nothing_was_sent(plugin, iface):
+    plugin.window.desk.select("r1")
+    plugin.window.actions.pause.trigger()
+    assert any("Pause of r1 was NOT sent" in text for text in iface.texts())
