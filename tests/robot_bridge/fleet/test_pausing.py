@@ -4,13 +4,24 @@ from __future__ import annotations
 
 import asyncio
 import json
+import math
 
 import pytest
 from queue_line import LANE, PLACES, placed, task
 
 from robot_bridge.commanding.writing import write_drafts
 from robot_bridge.errors import RefusedError, UncertainError
-from robot_bridge.messages import AbortTask, EmergencyStop, PauseRobot, ResolveConflict
+from robot_bridge.messages import (
+    AbortTask,
+    EmergencyStop,
+    GetPath,
+    GetQueue,
+    MakeCurrent,
+    PauseRobot,
+    QueueTask,
+    ResolveConflict,
+    SetQueue,
+)
 
 LAP = [(20.0, 40.0), (50.0, 40.0), (50.0, 60.0), (20.0, 60.0), (20.0, 40.0)]
 
@@ -229,6 +240,21 @@ async def test_a_robot_that_never_was_here_cannot_be_paused(line):
         await pause(line, robot="r9")
 
 
+async def test_a_cone_that_was_there_all_the_same_is_not_placed_again_when_another_task_came_first(line):
+    await line.yard.send("x", x=60.0, y=40.0, cone=True)
+    await line.yard.take()
+    line.yard.now += 5  # nobody hears it for a while
+    await line.set(task("a"))
+    await pause(line)
+    await line.queues.make_current(MakeCurrent("r1", (await line.seen()).revision, "task-000a"), "Ada")
+    await line.reach(60.0, 40.0)
+    await line.resume()
+    await line.reach(*PLACES["a"])
+    assert await line.sent() == [(60.0, 40.0), "Abort", PLACES["a"]]
+    assert len(await placed(line)) == 1
+    assert (await line.seen()).tasks == []
+
+
 async def test_where_a_robot_waits_for_another_it_goes_on_after_the_pause(roads):
     await roads.wait_at_the_crossing()
     report = await roads.fleet.pauses.pause(PauseRobot("r1"), "Eve")
@@ -245,3 +271,38 @@ async def test_on_its_way_to_where_it_waits_both_parts_of_its_way_are_kept(roads
     await roads.take()
     report = await roads.fleet.pauses.pause(PauseRobot("r1"), "Eve")
     assert [(one.x, one.y) for one in report.tasks] == [(hold.x, hold.y), (90.0, 22.0)]
+
+
+async def test_a_target_that_it_waits_on_its_way_to_is_kept_as_one_task(roads):
+    await roads.ready()
+    await roads.at(16.0, 8.0, v=1.0)
+    await roads.send("cone", x=92.0, y=22.0, cone=True)
+    await roads.take()
+    outcome = await roads.fleet.receive("r1", "websocket", GetPath(), 7)
+    await roads.fleet.finish([outcome], [], acks=False)
+    await roads.take()
+    metres = math.dist((16, 8), (44, 22)) + 1
+    await roads.drive("two", [(44.0 - metres, 22.0), (56.0, 22.0), (56.0, 40.0)], robot="r2")
+    await roads.fleet.traffic.resolve(ResolveConflict("r1", "r2", "waiting"), "Ada")
+    report = await roads.fleet.pauses.pause(PauseRobot("r1"), "Eve")
+    assert [(one.kind.value, one.x, one.y) for one in report.tasks] == [("place", 92.0, 22.0)]
+
+
+async def test_a_task_of_its_queue_that_waits_for_another_robot_is_not_there_twice(roads):
+    ways = [(16.0, 8.0), (44.0, 22.0), (90.0, 22.0)], [(13.0, 22.0), (56.0, 22.0), (56.0, 40.0)]
+    await roads.ready()
+    await roads.at(*ways[0][0], v=1.0)
+    await roads.fleet.queues.set(SetQueue("r1", 0, [QueueTask("task-0001", 90.0, 22.0, path=ways[0])]), "Ada")
+    await roads.fleet.driving.advance()
+    await roads.take()
+    await roads.drive("two", ways[1], robot="r2")
+    await roads.fleet.traffic.resolve(ResolveConflict("r1", "r2", "waiting"), "Ada")
+    (hold,) = (await roads.fleet.traffic.conflicts()).waiting
+    await roads.take()
+    for share in (0.25, 0.5, 0.75, 1.0):
+        await roads.at(16.0 + share * (hold.x - 16.0), 8.0 + share * (hold.y - 8.0), v=1.0 - share)
+    await roads.fleet.driving.advance()
+    (before,) = await roads.fleet.queues.read(GetQueue("r1"))
+    assert [one.task for one in before.tasks] == ["task-0001"]
+    report = await roads.fleet.pauses.pause(PauseRobot("r1"), "Eve")
+    assert [one.task for one in report.tasks] == ["task-0001"]
