@@ -44,6 +44,19 @@ def test_by_the_menu_every_selected_robot_is_paused_and_goes_on(driving, gateway
     wait(lambda: not driving.actions.go_on.isEnabled(), what="nothing to continue")
 
 
+def test_both_are_in_menu_and_toolbar_beside_abort_robot(driving, gateway, wait):
+    actions, toolbar = driving.actions, driving.toolbar
+    for row in (driving.menu_entries(), toolbar.actions()):
+        at = row.index(actions.abort)
+        assert row[at - 2 : at] == [actions.pause, actions.go_on]
+    driving.desk.select("r1")
+    toolbar.show()
+    QTest.mouseClick(toolbar.widgetForAction(actions.pause), Qt.MouseButton.LeftButton)
+    wait(lambda: is_paused(gateway, "r1") and actions.go_on.isEnabled(), what="the pause")
+    QTest.mouseClick(toolbar.widgetForAction(actions.go_on), Qt.MouseButton.LeftButton)
+    wait(lambda: not is_paused(gateway, "r1"), what="going on")
+
+
 def test_by_key_too(driving, gateway, iface, wait):
     driving.desk.select("r1")
     QTest.keyClick(iface, Qt.Key.Key_F10, ALT)
