@@ -1,4 +1,4 @@
-"""A robot sent by a click is paused by a key on its way and continues by another: real gateway, real robot."""
+"""A robot sent by a click is paused and continues by keys: gateway and robot are real."""
 
 from __future__ import annotations
 
