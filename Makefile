@@ -12,8 +12,7 @@ DRAW := $(HEADLESS) PYTHONPATH=scripts $(RUN) -m pictures
 ARGS ?=
 JOBS ?= 3
 # pytest-qgis takes --dist for a sign that workers have QGIS, so without workers it must not be there.
-# In the order of their names: with the files of few tests last, which are the longest, two workers idle at the end.
-SIDE_BY_SIDE = $(if $(filter 0,$(JOBS)),,-n $(JOBS) --dist loadfile --no-loadscope-reorder)
+SIDE_BY_SIDE = $(if $(filter 0,$(JOBS)),,-n $(JOBS) --dist loadfile)
 PROFILE ?= default
 LINK ?=
 # For plugins.qgis.org: make package REPOSITORY=https://... TRACKER=https://...
