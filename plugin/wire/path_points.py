@@ -33,8 +33,6 @@ class PathPoints(Sequence[tuple[float, float]]):
             return np.array_equal(self._points, other._points)
         return NotImplemented
 
-    __hash__ = None  # type: ignore[assignment]
-
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> npt.NDArray[Any]:
         return np.array(self._points, dtype=dtype)
 

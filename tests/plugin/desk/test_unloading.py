@@ -17,17 +17,23 @@ from tests.plugin.desk.left_behind import connected_to, left_behind
 PANELS = ("fleet_plan_panel", "fleet_observations", "fleet_replay")
 
 
+def connected(iface, gateway, wait):
+    """Return the plugin, loaded and with one robot seen."""
+    plugin = FleetSupervisor(iface)
+    plugin.initGui()
+    plugin.window.dock.findChild(QLineEdit, "fleet_url").setText(gateway.url)
+    plugin.window.actions.connect.trigger()
+    wait(lambda: len(plugin.window.desk.picture) == 1)
+    return plugin
+
+
 def test_unloading_leaves_nothing_twice(iface, gateway, make_robot, wait):
     gateway.show(make_robot("r1"))
     before = left_behind(iface)
     before_tool = iface.canvas.mapTool()
     for _ in range(2):
-        plugin = FleetSupervisor(iface)
-        plugin.initGui()
+        plugin = connected(iface, gateway, wait)
         window = plugin.window
-        window.dock.findChild(QLineEdit, "fleet_url").setText(gateway.url)
-        window.actions.connect.trigger()
-        wait(lambda window=window: len(window.desk.picture) == 1)
         window.desk.select("r1")
         window.actions.cone.trigger()
         iface.click(60, 50)
@@ -58,12 +64,7 @@ def test_qgis_keeps_no_connection_to_what_was_unloaded(iface, gateway, make_robo
     after = []
     # Qt and QGIS connect some of their own for the first time.
     for _ in range(2):
-        plugin = FleetSupervisor(iface)
-        plugin.initGui()
-        window = plugin.window
-        window.dock.findChild(QLineEdit, "fleet_url").setText(gateway.url)
-        window.actions.connect.trigger()
-        wait(lambda window=window: len(window.desk.picture) == 1)
+        plugin = connected(iface, gateway, wait)
         for action in iface.plugins.actions():
             if action.objectName() in PANELS:
                 action.trigger()
