@@ -11,8 +11,8 @@ DRAW := $(HEADLESS) PYTHONPATH=scripts $(RUN) -m pictures
 # make install PROFILE=work LINK=1
 ARGS ?=
 JOBS ?= 3
-# pytest-qgis takes --dist for a sign that workers have QGIS, so without workers it must not be there.
-SIDE_BY_SIDE = $(if $(filter 0,$(JOBS)),,-n $(JOBS) --dist loadfile)
+# Which file comes when says tests/conftest.py. pytest-qgis takes --dist for a sign that workers have QGIS, so without workers it must not be there.
+SIDE_BY_SIDE = $(if $(filter 0,$(JOBS)),,-n $(JOBS) --dist loadfile --no-loadscope-reorder)
 PROFILE ?= default
 LINK ?=
 # For plugins.qgis.org: make package REPOSITORY=https://... TRACKER=https://...

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib.util
 import sys
+from collections import deque
 from pathlib import Path
 
 import pytest
@@ -30,6 +31,21 @@ register_plugin_package()
 # How long something takes on a busy machine says nothing of whether it is right.
 settings.register_profile("any machine", deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile("any machine")
+
+
+def pytest_collection_modifyitems(items):
+    """Deal out the files with many tests and those with few by turns.
+
+    Those with many reckon, those with few wait for real windows, databases and robots: workers that run one
+    kind all at once would first fight for the processors and then leave them idle.
+    """
+    files = {}
+    for item in items:
+        files.setdefault(item.path, []).append(item)
+    waiting = deque(sorted(files.values(), key=len, reverse=True))
+    items.clear()
+    while waiting:
+        items += waiting.popleft() if len(waiting) % 2 else waiting.pop()
 
 
 @pytest.fixture(scope="session")
