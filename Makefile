@@ -10,8 +10,9 @@ DRAW := $(HEADLESS) PYTHONPATH=scripts $(RUN) -m pictures
 # Given on the command line: make test ARGS="-k robotmap" JOBS=0 (ARGS=-rs says why tests were skipped),
 # make install PROFILE=work LINK=1
 ARGS ?=
-JOBS ?= 3
-# Which file comes when says tests/conftest.py. pytest-qgis takes --dist for a sign that workers have QGIS, so without workers it must not be there.
+JOBS ?= 4
+# Which file comes when says tests/conftest.py. pytest-qgis takes --dist for a sign that workers have QGIS, so
+# without workers it must not be there.
 SIDE_BY_SIDE = $(if $(filter 0,$(JOBS)),,-n $(JOBS) --dist loadfile --no-loadscope-reorder)
 PROFILE ?= default
 LINK ?=
