@@ -123,8 +123,9 @@ class Actions(QObject):
             tr("Draw route"),
             "route.svg",
             tr(
-                "Draw a route for the selected robot: click its points, drag points or lines to change it, "
-                "Backspace takes the last one back, Enter or Send sends, Esc cancels"
+                "Draw a route for the selected robot: click its points, right click ends drawing, drag "
+                "points or lines to change it, Backspace takes the last one back, Enter or Send sends, Esc "
+                "cancels"
             ),
             checkable=True,
         )
@@ -179,7 +180,8 @@ class Actions(QObject):
             "route_on_roads.svg",
             tr(
                 "Route along the roads for the selected robot: the way to the mouse is shown, a click takes "
-                "it; Backspace takes the last leg back, Enter or Send sends, Esc cancels"
+                "it, right click ends drawing; Backspace takes the last leg back, Enter or Send sends, Esc "
+                "cancels"
             ),
             checkable=True,
         )

@@ -1,4 +1,4 @@
-"""What the map tools that draw have in common: click for a point, Enter to send, Esc to cancel."""
+"""What the map tools that draw have in common: clicks draw, a right click ends it, Enter sends, Esc cancels."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ class DraftTool(QgsMapTool):
         if self.is_drag(pressed, event.pos()):
             return
         if event.button() == Qt.MouseButton.RightButton:
-            self.desk.drafts.put(None)
+            self.finish()
         elif event.button() == Qt.MouseButton.LeftButton:
             at = event.snapPoint()
             self._try(lambda: self._place(lambda: self.desk.placement().to_site(at)))
@@ -123,6 +123,12 @@ class DraftTool(QgsMapTool):
     def clicked(self, point: Point) -> None:
         """Take in a click at a point of the site frame."""
         raise NotImplementedError
+
+    def finish(self) -> None:
+        """Take in a right click, which with QGIS's own tools ends drawing: what is drawn stays.
+
+        A draft of one point is whole with its click, so there is nothing to end.
+        """
 
     def back(self) -> None:
         """Take back the last click."""

@@ -22,6 +22,8 @@ ROUTE = "route"
 START = "start"
 TARGETS = "targets"
 
+LEAST_POINTS = 2
+"""Points that a route needs."""
 MOST_STEPS = 100
 """Drafts that can be come back to."""
 
@@ -90,7 +92,7 @@ class Draft:
     @property
     def fault(self) -> str | None:
         """Why it cannot be sent, None if it can."""
-        if self.kind == ROUTE and len(self.points) < 2:
+        if self.kind == ROUTE and len(self.points) < LEAST_POINTS:
             return tr("a route needs at least two points: click the next one")
         if not self.is_checked:
             return tr("it has not been checked to its end")

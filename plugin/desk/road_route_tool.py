@@ -30,7 +30,7 @@ class RoadRouteTool(RouteTool):
         self._clicks: list[Point] = []
         """Where ways are still to lead; the first of them is asked for."""
         desk.preview.answered.connect(self._take)
-        desk.preview.refused.connect(lambda _: self._clicks.clear())
+        desk.preview.refused.connect(self._refused)
 
     def lead_so(self, wishes: WayWishes) -> None:
         """Lead legs by ``wishes`` from now on; what is shown to the mouse is asked for anew."""
@@ -43,10 +43,22 @@ class RoadRouteTool(RouteTool):
         super().deactivate()
 
     def hovered(self, event: QgsMapMouseEvent) -> None:
+        if self._is_finished:
+            return
         robot, start = self._from()
         self._way.lead_to(event, robot, start, self.wishes)
 
+    def finish(self) -> None:
+        if self._clicks:
+            # The ways to what was clicked are still to come, and belong to the route.
+            self._is_finished = True
+        else:
+            super().finish()
+        if self._is_finished:
+            self._way.hide()
+
     def clicked(self, point: Point) -> None:
+        self._is_finished = False
         draft = self.draft
         if draft is not None and not self.is_for_selected(draft):
             return
@@ -69,6 +81,11 @@ class RoadRouteTool(RouteTool):
         super()._changed()
         if self._clicks and self.desk.drafts.draft is None:
             self._leave_out()
+
+    def _refused(self) -> None:
+        self._clicks.clear()
+        if self.draft is None:
+            self._is_finished = False
 
     def _lead_on(self) -> None:
         robot, start = self._from()

@@ -14,7 +14,7 @@ from .commands.route_handles import RouteHandles, middle
 from .desk import Desk
 from .draft_tool import DraftTool
 from .drafting import route_editing
-from .drafts import ROUTE, Draft, Point
+from .drafts import LEAST_POINTS, ROUTE, Draft, Point
 
 BACKWARD, FORWARD = ("<", ","), (">", ".")
 
@@ -25,6 +25,8 @@ class RouteTool(DraftTool):
     A vertex is dragged; a leg that is dragged gets a vertex there. The vertex in hand, under the mouse or
     chosen by ``<`` and ``>``, is deleted by Delete and moved by Ctrl and the arrow keys; Insert puts one
     before it; R turns the route round.
+
+    A right click ends drawing: the next leg follows the mouse no more. Another click goes on from the end.
     """
 
     kind = ROUTE
@@ -35,11 +37,13 @@ class RouteTool(DraftTool):
         self._drag = RouteDrag(desk, self._handles)
         self._vertex: int | None = None
         self._points: tuple[Point, ...] = ()
+        self._is_finished = False
         desk.drafts.changed.connect(self._changed)
 
     def deactivate(self) -> None:
         self._drag.give_up()
         self._let_go()
+        self._is_finished = False
         super().deactivate()
 
     def canvasPressEvent(self, event: QgsMapMouseEvent) -> None:
@@ -65,7 +69,7 @@ class RouteTool(DraftTool):
             self._try(lambda: self.put(changed))
 
     def hovered(self, event: QgsMapMouseEvent) -> None:
-        if self.draft is None:
+        if self.draft is None or self._is_finished:
             return
         if self._vertex is not None:
             self.desk.drafts.point_at(None)
@@ -105,7 +109,20 @@ class RouteTool(DraftTool):
             return super().key(event)
         return True
 
+    def finish(self) -> None:
+        draft = self.draft
+        if draft is None:
+            return
+        if len(draft.points) < LEAST_POINTS:
+            self.desk.complained.emit(
+                tr("A route needs at least two points, so its drawing goes on: click the next one.")
+            )
+            return
+        self._is_finished = True
+        self.desk.drafts.point_at(None)
+
     def clicked(self, point: Point) -> None:
+        self._is_finished = False
         draft = self.draft
         if draft is None:
             draft = Draft(self.desk.selected, ROUTE, ())
@@ -155,8 +172,11 @@ class RouteTool(DraftTool):
 
     def _changed(self) -> None:
         # Where only a check has come to its end, the vertex stays in hand.
-        if self.draft is None or self.draft.points is not self._points:
+        draft = self.draft
+        if draft is None or draft.points is not self._points:
             self._let_go()
+        if draft is None or len(draft.points) < LEAST_POINTS:
+            self._is_finished = False
 
     def _let_go(self) -> None:
         self._vertex = None

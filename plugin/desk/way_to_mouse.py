@@ -30,7 +30,7 @@ class WayToMouse:
         self._band: QgsRubberBand | None = None
         self._mouse: QPoint | None = None
         desk.preview.shown.connect(self._show)
-        desk.selection_changed.connect(self._hide)
+        desk.selection_changed.connect(self.hide)
 
     def lead_to(
         self,
@@ -52,7 +52,7 @@ class WayToMouse:
 
     def clear(self) -> None:
         """Show nothing and ask nothing, until the mouse moves again."""
-        self._hide()
+        self.hide()
         self._desk.preview.forget()
 
     @property
@@ -62,7 +62,8 @@ class WayToMouse:
             return []
         return [QgsPointXY(self._band.getPoint(0, k)) for k in range(self._band.numberOfVertices())]
 
-    def _hide(self) -> None:
+    def hide(self) -> None:
+        """Show nothing until the mouse moves again; what was asked is still answered."""
         if self._mouse is not None:
             QToolTip.hideText()
         self._mouse = None

@@ -468,8 +468,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/actions.py" />
-            <source>Draw a route for the selected robot: click its points, drag points or lines to change it, Backspace takes the last one back, Enter or Send sends, Esc cancels</source>
-            <translation>Dibuixa una ruta per al robot seleccionat: feu clic als punts, arrossegueu punts o línies per canviar-la, Retrocés treu l'últim, Retorn o Envia l'envia, Esc cancel·la</translation>
+            <source>Draw a route for the selected robot: click its points, right click ends drawing, drag points or lines to change it, Backspace takes the last one back, Enter or Send sends, Esc cancels</source>
+            <translation>Dibuixa una ruta per al robot seleccionat: feu clic als punts, el clic dret acaba el dibuix, arrossegueu punts o línies per canviar-la, Retrocés treu l'últim, Retorn o Envia l'envia, Esc cancel·la</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/actions.py" />
@@ -578,8 +578,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/actions.py" />
-            <source>Route along the roads for the selected robot: the way to the mouse is shown, a click takes it; Backspace takes the last leg back, Enter or Send sends, Esc cancels</source>
-            <translation>Ruta per vies per al robot seleccionat: es mostra el recorregut fins al ratolí, un clic l'agafa; Retrocés treu l'últim tram, Retorn o Envia l'envia, Esc cancel·la</translation>
+            <source>Route along the roads for the selected robot: the way to the mouse is shown, a click takes it, right click ends drawing; Backspace takes the last leg back, Enter or Send sends, Esc cancels</source>
+            <translation>Ruta per vies per al robot seleccionat: es mostra el recorregut fins al ratolí, un clic l'agafa, el clic dret acaba el dibuix; Retrocés treu l'últim tram, Retorn o Envia l'envia, Esc cancel·la</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/actions.py" />
@@ -4094,6 +4094,11 @@
             <location filename="../../plugin/desk/route_preview.py" />
             <source>{seconds} s</source>
             <translation>{seconds} s</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/route_tool.py" />
+            <source>A route needs at least two points, so its drawing goes on: click the next one.</source>
+            <translation>Una ruta necessita almenys dos punts, així que el dibuix continua: feu clic al següent.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/route_tool.py" />

@@ -468,8 +468,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/actions.py" />
-            <source>Draw a route for the selected robot: click its points, drag points or lines to change it, Backspace takes the last one back, Enter or Send sends, Esc cancels</source>
-            <translation>Dibujar una ruta para el robot seleccionado: haga clic en sus puntos, arrastre puntos o líneas para cambiarla, Retroceso quita el último, Intro o Enviar la envía, Esc cancela</translation>
+            <source>Draw a route for the selected robot: click its points, right click ends drawing, drag points or lines to change it, Backspace takes the last one back, Enter or Send sends, Esc cancels</source>
+            <translation>Dibujar una ruta para el robot seleccionado: haga clic en sus puntos, el clic derecho termina el dibujo, arrastre puntos o líneas para cambiarla, Retroceso quita el último, Intro o Enviar la envía, Esc cancela</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/actions.py" />
@@ -578,8 +578,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/actions.py" />
-            <source>Route along the roads for the selected robot: the way to the mouse is shown, a click takes it; Backspace takes the last leg back, Enter or Send sends, Esc cancels</source>
-            <translation>Ruta por vías para el robot seleccionado: se muestra el recorrido hasta el ratón, un clic lo toma; Retroceso quita el último tramo, Intro o Enviar la envía, Esc cancela</translation>
+            <source>Route along the roads for the selected robot: the way to the mouse is shown, a click takes it, right click ends drawing; Backspace takes the last leg back, Enter or Send sends, Esc cancels</source>
+            <translation>Ruta por vías para el robot seleccionado: se muestra el recorrido hasta el ratón, un clic lo toma, el clic derecho termina el dibujo; Retroceso quita el último tramo, Intro o Enviar la envía, Esc cancela</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/actions.py" />
@@ -4094,6 +4094,11 @@
             <location filename="../../plugin/desk/route_preview.py" />
             <source>{seconds} s</source>
             <translation>{seconds} s</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/route_tool.py" />
+            <source>A route needs at least two points, so its drawing goes on: click the next one.</source>
+            <translation>Una ruta necesita al menos dos puntos, así que el dibujo continúa: haga clic en el siguiente.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/route_tool.py" />

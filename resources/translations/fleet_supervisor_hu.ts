@@ -467,8 +467,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/actions.py" />
-            <source>Draw a route for the selected robot: click its points, drag points or lines to change it, Backspace takes the last one back, Enter or Send sends, Esc cancels</source>
-            <translation>Útvonal rajzolása a kijelölt robotnak: kattintson a pontjaira, pontok vagy vonalak húzásával módosítsa, a Backspace visszaveszi az utolsót, az Enter vagy a Küldés elküldi, az Esc elveti</translation>
+            <source>Draw a route for the selected robot: click its points, right click ends drawing, drag points or lines to change it, Backspace takes the last one back, Enter or Send sends, Esc cancels</source>
+            <translation>Útvonal rajzolása a kijelölt robotnak: kattintson a pontjaira, jobb kattintás befejezi a rajzolást, pontok vagy vonalak húzásával módosítsa, a Backspace visszaveszi az utolsót, az Enter vagy a Küldés elküldi, az Esc elveti</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/actions.py" />
@@ -577,8 +577,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/actions.py" />
-            <source>Route along the roads for the selected robot: the way to the mouse is shown, a click takes it; Backspace takes the last leg back, Enter or Send sends, Esc cancels</source>
-            <translation>Útvonal az utakon a kijelölt robotnak: az egérig vezető út látszik, kattintás elfogadja; a Backspace visszaveszi az utolsó szakaszt, az Enter vagy a Küldés elküldi, az Esc elveti</translation>
+            <source>Route along the roads for the selected robot: the way to the mouse is shown, a click takes it, right click ends drawing; Backspace takes the last leg back, Enter or Send sends, Esc cancels</source>
+            <translation>Útvonal az utakon a kijelölt robotnak: az egérig vezető út látszik, kattintás elfogadja, jobb kattintás befejezi a rajzolást; a Backspace visszaveszi az utolsó szakaszt, az Enter vagy a Küldés elküldi, az Esc elveti</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/actions.py" />
@@ -4072,6 +4072,11 @@
             <location filename="../../plugin/desk/route_preview.py" />
             <source>{seconds} s</source>
             <translation>{seconds} s</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/route_tool.py" />
+            <source>A route needs at least two points, so its drawing goes on: click the next one.</source>
+            <translation>Egy útvonalhoz legalább két pont kell, ezért a rajzolás folytatódik: kattintson a következőre.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/route_tool.py" />

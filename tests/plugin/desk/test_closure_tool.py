@@ -70,3 +70,4 @@ def test_esc_puts_the_tool_and_its_cross_away_and_nothing_is_asked(tool, iface, 
 def test_a_right_click_asks_nothing(tool, iface):
     iface.click(30, 20, Qt.MouseButton.RightButton)
     assert iface.findChild(QDialog, "fleet_closure_dialog") is None
+    assert iface.canvas.mapTool() is tool

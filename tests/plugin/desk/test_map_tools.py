@@ -79,13 +79,11 @@ def test_enter_twice_sends_once_and_the_second_says_so(cone, iface, gateway, wai
     assert any("nothing to send" in text for text in iface.texts())
 
 
-@pytest.mark.parametrize("how", ["escape", "right click", "cancel"])
+@pytest.mark.parametrize("how", ["escape", "cancel"])
 def test_a_draft_is_cancelled_and_nothing_is_sent(cone, iface, gateway, how):
     iface.click(70, 55)
     if how == "escape":
         key(iface, Qt.Key.Key_Escape)
-    elif how == "right click":
-        iface.click(20, 20, Qt.MouseButton.RightButton)
     else:
         button = cone.dock.findChild(QToolButton, "fleet_cancel_button")
         QTest.mouseClick(button, Qt.MouseButton.LeftButton)

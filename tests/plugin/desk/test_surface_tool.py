@@ -101,6 +101,12 @@ def test_a_click_says_surface_name_and_coordinates(ready, iface):
     assert iface.said[2][0].startswith("No road surface at ")
 
 
+def test_a_right_click_says_nothing_and_keeps_the_tool(ready, iface):
+    iface.click(50, 50, Qt.MouseButton.RightButton)
+    assert iface.said == []
+    assert iface.canvas.mapTool() is ready.tool
+
+
 def test_the_tool_tip_goes_with_the_cursor(ready, iface):
     for (x, y), text in {(50, 50): "asphalt", (25, 25): "slippery", (80, 80): "no road surface"}.items():
         iface.hover(x, y)

@@ -37,6 +37,9 @@ class Hand:
         for x, y in points:
             self.iface.click(x, y)
 
+    def right_click(self, x, y) -> None:
+        self.iface.click(x, y, Qt.MouseButton.RightButton)
+
     def key(self, key, *modifiers) -> None:
         held = Qt.KeyboardModifier.NoModifier
         for modifier in modifiers:

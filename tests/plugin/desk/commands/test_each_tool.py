@@ -48,10 +48,13 @@ def test_escape_takes_the_draft_away_and_undo_brings_it_back(tool):
     assert tool.nothing_sent()
 
 
-def test_a_right_click_takes_the_draft_away(tool):
-    tool.iface.click(50, 50, Qt.MouseButton.RightButton)
-    assert tool.points is None
+def test_a_right_click_leaves_the_draft_as_it_is_and_enter_still_sends_it(tool):
+    before = tool.points
+    tool.right_click(50, 50)
+    assert tool.points == before
     assert tool.nothing_sent()
+    tool.key(Qt.Key.Key_Return)
+    assert tool.sent()["op"] == tool.op
 
 
 @pytest.mark.parametrize("key", [Qt.Key.Key_Backspace, Qt.Key.Key_Delete])

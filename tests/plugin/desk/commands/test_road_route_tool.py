@@ -86,18 +86,52 @@ def test_backspace_on_the_only_click_leaves_nothing(roads):
     assert roads.draft is None
 
 
-@pytest.mark.parametrize("how", ["escape", "right click", "cancel"])
+@pytest.mark.parametrize("how", ["escape", "cancel"])
 def test_what_was_cancelled_does_not_come_when_its_way_is_found(roads, how):
     roads.hand.click((60, 40))
     if how == "escape":
         roads.hand.key(Qt.Key.Key_Escape)
-    elif how == "right click":
-        roads.hand.iface.click(30, 30, Qt.MouseButton.RightButton)
     else:
         roads.hand.push("fleet_cancel")
     roads.find_all()
     assert roads.draft is None
     assert roads.hand.complained(LEFT_OUT)
+
+
+def test_a_right_click_ends_drawing_and_the_ways_to_what_was_clicked_still_come(roads):
+    roads.hand.move(55, 45)
+    roads.hand.click((60, 40), (60, 60))
+    roads.hand.right_click(30, 30)
+    roads.find_all()
+    assert roads.ends == [(60, 40), (60, 60)]
+    roads.hand.move(80, 60)
+    assert roads.orders == [], "the way still follows the mouse"
+    assert roads.hand.nothing_sent()
+    roads.hand.click((90, 60))
+    roads.find_all()
+    assert roads.ends == [(60, 40), (60, 60), (90, 60)]
+    roads.hand.move(95, 65)
+    assert len(roads.orders) == 1
+
+
+def test_a_right_click_takes_the_way_to_the_mouse_off_the_map(roads):
+    roads.hand.click((60, 40))
+    roads.find()
+    roads.hand.move(60, 60)
+    roads.find()
+    way = roads.hand.iface.canvas.mapTool()._way
+    assert way.line
+    roads.hand.right_click(60, 60)
+    assert way.line == []
+    assert roads.ends == [(60, 40)]
+
+
+def test_after_a_right_click_a_way_that_was_not_found_leaves_the_tool_ready_for_another(roads):
+    roads.hand.click((60, 40))
+    roads.hand.right_click(30, 30)
+    roads.find(error="no road comes near")
+    roads.hand.move(70, 40)
+    assert len(roads.orders) == 1, "no way is shown to the mouse any more"
 
 
 def test_who_sends_before_the_last_way_is_found_is_told_that_it_is_not_in_the_route(roads):

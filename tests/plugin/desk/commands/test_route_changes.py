@@ -35,6 +35,54 @@ def test_a_leg_is_dragged_and_gets_a_vertex_there(route):
     assert list(route.points) == like((40, 30), (60, 30), (75, 45), (60, 60))
 
 
+def test_a_right_click_ends_drawing_and_another_click_goes_on_from_there(route):
+    route.move(90, 80)
+    assert route.drafts.cursor is not None
+    route.right_click(90, 80)
+    assert list(route.points) == like(*CORNERS)
+    assert route.drafts.cursor is None
+    route.move(95, 85)
+    assert route.drafts.cursor is None, "the next leg still follows the mouse"
+    assert route.nothing_sent()
+    route.click((80, 60))
+    route.move(95, 85)
+    assert list(route.points) == like(*CORNERS, (80, 60))
+    assert route.drafts.cursor == pytest.approx((95, 85), abs=0.3)
+
+
+def test_a_route_whose_drawing_was_ended_is_changed_and_sent(route):
+    route.right_click(90, 80)
+    route.drag((60, 30), (70, 25))
+    route.key(Qt.Key.Key_Return)
+    assert route.sent()["params"]["points"] == like((40, 30), (70, 25), (60, 60))
+
+
+def test_the_next_route_is_drawn_with_its_leg_to_the_mouse(route):
+    route.right_click(90, 80)
+    route.key(Qt.Key.Key_Escape)
+    route.click((40, 30), (60, 30))
+    route.move(95, 85)
+    assert route.drafts.cursor == pytest.approx((95, 85), abs=0.3)
+
+
+def test_a_right_click_after_one_point_says_what_is_missing_and_keeps_it(hand):
+    hand.take("route").click((40, 30))
+    hand.right_click(60, 30)
+    assert hand.complained("A route needs at least two points")
+    assert list(hand.points) == like((40, 30))
+    hand.move(60, 30)
+    assert hand.drafts.cursor == pytest.approx((60, 30), abs=0.3)
+
+
+def test_a_right_click_before_the_first_point_does_nothing(hand):
+    hand.take("route").right_click(60, 30)
+    assert hand.points is None
+    assert not hand.is_told("A route needs")
+    hand.click((40, 30))
+    hand.move(60, 30)
+    assert hand.drafts.cursor == pytest.approx((60, 30), abs=0.3)
+
+
 def test_a_drag_beside_the_route_changes_nothing(route):
     before = route.drafts.draft
     route.drag((90, 80), (95, 85))

@@ -65,6 +65,14 @@ def test_a_click_selects_one_robot_and_beside_them_none(desk, iface):
     assert desk.selection == ()
 
 
+def test_a_right_click_changes_no_selection(desk, iface):
+    click(iface, 40, 50)
+    iface.click(60, 50, Qt.MouseButton.RightButton)
+    assert desk.selection == ("r2",)
+    iface.click(60, 90, Qt.MouseButton.RightButton)
+    assert desk.selection == ("r2",)
+
+
 @pytest.mark.parametrize("held", [SHIFT, CONTROL])
 def test_a_click_with_shift_or_ctrl_adds_and_takes_away(desk, iface, held):
     click(iface, 40, 50)
