@@ -1,4 +1,4 @@
-"""What the map tools that draw have in common: clicks draw, a right click ends it, Enter sends, Esc cancels."""
+"""What map tools that draw have in common: clicks draw, a right click ends it, Enter sends, Esc cancels."""
 
 from __future__ import annotations
 
