@@ -48,6 +48,7 @@ from .observation_book import ObservationBook
 from .places import keepout_refusals
 from .planning import Planner, StraightPlanner
 from .queueing.book import QueueBook
+from .queueing.context import QueueContext
 from .queueing.driving import QueueDriving
 from .queueing.orders import QueueOrders
 from .queueing.pausing import RobotPauses
@@ -109,9 +110,9 @@ class Fleet:
         self.orders = Orders(site, self.robots, self._book, database)
         self.emergency = EmergencyStops(self._book, database, clock, self.robots.names, announce, stops)
         self._queue_book = QueueBook(database, self.robots, announce)
-        about_queues = (site, self.robots, self._book, self._queue_book, database, clock)
-        self.queues = QueueOrders(*about_queues)
-        self.driving = QueueDriving(*about_queues)
+        about_queues = QueueContext(site, self.robots, self._book, self._queue_book, database, clock)
+        self.queues = QueueOrders(about_queues)
+        self.driving = QueueDriving(about_queues)
         self._detours = Detours(
             self.ways,
             self.roads,
@@ -122,9 +123,7 @@ class Fleet:
         )
         self.closures = ClosureBook(database, clock, self.roads, self._detours, announce)
         self._waiting = WaitingRobots(database, self._book, self._detours)
-        self.pauses = RobotPauses(
-            site, self.robots, self._book, self._queue_book, clock, self._waiting.row_of
-        )
+        self.pauses = RobotPauses(about_queues, self._waiting.row_of)
         self.traffic = TrafficControl(
             clock,
             self.robots,

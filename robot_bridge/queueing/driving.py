@@ -16,7 +16,6 @@ from sqlalchemy import Connection
 
 from ..command_life.open_command import Order
 from ..command_life.states import is_open
-from ..commanding.book import CommandBook
 from ..commanding.writing import Also, AlsoOf
 from ..errors import OutdatedError, RefusedError, StoreError
 from ..messages import (
@@ -34,13 +33,11 @@ from ..queues import life
 from ..queues.legs import legs, path_left, to_the_end
 from ..queues.life import Path
 from ..queues.queue import Queue, QueuedTask
-from ..robots import AWAY, Robots
-from ..served_site import ServedSite
+from ..robots import AWAY
 from ..store import commands as stored_commands
 from ..store import queues
 from ..store.commands import StoredCommand
-from ..store.database import Database
-from .book import QueueBook
+from .context import QueueContext
 from .precedence import Precedence
 from .settling import QueueSettling
 
@@ -53,23 +50,15 @@ LOOK_INTERVAL = 1.0
 class QueueDriving:
     """Keeps the robots' queues going."""
 
-    def __init__(
-        self,
-        site: ServedSite,
-        robots: Robots,
-        commands: CommandBook,
-        book: QueueBook,
-        database: Database,
-        clock: Callable[[], float],
-    ) -> None:
-        self._site = site
-        self._robots = robots
-        self._commands = commands
-        self._book = book
-        self._settling = QueueSettling(site, commands, book, database, clock)
-        self._precedence = Precedence(book, database)
-        self._database = database
-        self._clock = clock
+    def __init__(self, context: QueueContext) -> None:
+        self._site = context.site
+        self._robots = context.robots
+        self._commands = context.commands
+        self._book = context.book
+        self._settling = QueueSettling(context)
+        self._precedence = Precedence(context.book, context.database)
+        self._database = context.database
+        self._clock = context.clock
         self._due: set[str] = set()
         self._event = asyncio.Event()
         self._sending: set[str] = set()
@@ -78,8 +67,8 @@ class QueueDriving:
         """robots that are back after nobody had heard them for long."""
         self.waits_for: Callable[[str, str], str | None] = lambda _robot, _task: None
         """Tells whom a robot is to let pass before it is sent a task, None for nobody."""
-        book.due = self.look
-        robots.is_back = self._is_back
+        context.book.due = self.look
+        context.robots.is_back = self._is_back
 
     async def run(self) -> None:
         """Keep them going until cancelled."""

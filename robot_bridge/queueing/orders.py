@@ -4,13 +4,10 @@ from __future__ import annotations
 
 import contextlib
 import uuid
-from collections.abc import AsyncIterator, Callable, Sequence
+from collections.abc import AsyncIterator
 from functools import partial
 
-from sqlalchemy import Connection
-
-from ..command_life.open_command import Order
-from ..commanding.book import CommandBook
+from ..command_life.open_command import Order, because
 from ..errors import OutdatedError, RefusedError
 from ..messages import (
     Abort,
@@ -37,11 +34,8 @@ from ..places import check_keepouts, check_places
 from ..queues import edits, life, sharing
 from ..queues.legs import legs
 from ..queues.queue import Queue, queue_report
-from ..robots import Robots
-from ..served_site import ServedSite
 from ..store import placements, queues
-from ..store.database import Database
-from .book import QueueBook
+from .context import QueueContext
 
 
 class QueueOrders:
@@ -51,21 +45,13 @@ class QueueOrders:
     cannot be done, MessageError for what cannot be understood, and StoreError when it cannot be stored.
     """
 
-    def __init__(
-        self,
-        site: ServedSite,
-        robots: Robots,
-        commands: CommandBook,
-        book: QueueBook,
-        database: Database,
-        clock: Callable[[], float],
-    ) -> None:
-        self._site = site
-        self._robots = robots
-        self._commands = commands
-        self._book = book
-        self._database = database
-        self._clock = clock
+    def __init__(self, context: QueueContext) -> None:
+        self._site = context.site
+        self._robots = context.robots
+        self._commands = context.commands
+        self._book = context.book
+        self._database = context.database
+        self._clock = context.clock
 
     async def set(self, request: SetQueue, operator: str) -> QueueReport:
         """Replace what is not begun."""
@@ -99,7 +85,7 @@ class QueueOrders:
 
     async def pause(self, request: PauseQueue, operator: str) -> QueueReport:
         """Send a robot nothing more by itself."""
-        reason = f"paused by {operator}{f': {request.reason}' if request.reason else ''}"
+        reason = because(f"paused by {operator}", request.reason)
         async with self._book.holding([request.robot]):
             self._robots.check_known(request.robot)
             try:
@@ -130,7 +116,7 @@ class QueueOrders:
                     check_places(self._site, path)
                 if request.override is None:
                     await check_keepouts(self._site, [SetPath(path) for path in paths])
-            write = partial(_save_many, [(before[name], after[name]) for name in names])
+            write = partial(queues.save_many, changes=[(before[name], after[name]) for name in names])
             taken = sharing.takes_current(before[request.robot], request)
             if taken is not None and taken.command is not None and self._commands.is_open(taken.command):
                 abort = Order(
@@ -180,7 +166,7 @@ class QueueOrders:
         self, before: Queue, after: Queue, operator: str, reason: str | None = None
     ) -> QueueReport:
         kept = {task.id for task in after.tasks}
-        why = f"removed by {operator}{f': {reason}' if reason else ''}"
+        why = because(f"removed by {operator}", reason)
         now = self._clock()
         gone = [life.ended(task, TaskState.REMOVED, now, why) for task in before.tasks if task.id not in kept]
         return await self._book.save(before, after, gone)
@@ -241,7 +227,3 @@ def _collecting(cone: PlacementReport, turns: bool) -> QueueTask:
         plan=cone.plan,
         placement=cone.placement,
     )
-
-
-def _save_many(changes: Sequence[tuple[Queue, Queue]], connection: Connection) -> None:
-    queues.save_many(connection, changes)

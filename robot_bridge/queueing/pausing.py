@@ -10,19 +10,14 @@ import uuid
 from collections.abc import Callable
 from functools import partial
 
-from sqlalchemy import Connection
-
 from ..command_life.open_command import OpenCommand, Order, because
-from ..commanding.book import CommandBook
 from ..errors import RefusedError
 from ..messages import Abort, PauseRobot, QueueReport, SetPath, SetPosEnd
 from ..queues.keeping import halted, task_of, task_of_rest
 from ..queues.queue import Queue, QueuedTask
-from ..robots import Robots
-from ..served_site import ServedSite
 from ..store import queues
 from ..store.closures import HoldRow
-from .book import QueueBook
+from .context import QueueContext
 
 _TRIES = 3
 """So often it is looked what a robot does that is told otherwise in between."""
@@ -31,20 +26,12 @@ _TRIES = 3
 class RobotPauses:
     """Pauses robots. ``waiting`` tells how a robot waits for another, and what it is to drive afterwards."""
 
-    def __init__(
-        self,
-        site: ServedSite,
-        robots: Robots,
-        commands: CommandBook,
-        book: QueueBook,
-        clock: Callable[[], float],
-        waiting: Callable[[str], HoldRow | None],
-    ) -> None:
-        self._site = site
-        self._robots = robots
-        self._commands = commands
-        self._book = book
-        self._clock = clock
+    def __init__(self, context: QueueContext, waiting: Callable[[str], HoldRow | None]) -> None:
+        self._site = context.site
+        self._robots = context.robots
+        self._commands = context.commands
+        self._book = context.book
+        self._clock = context.clock
         self._waiting = waiting
 
     async def pause(self, request: PauseRobot, operator: str) -> QueueReport:
@@ -81,7 +68,8 @@ class RobotPauses:
             aborts=None if doing is None else doing.report.command,
             task=(own or kept[0]).id,
         )
-        await self._book.stored([robot], self._commands.issue([abort], partial(_save, queue, after)))
+        write = partial(queues.save, before=queue, after=after)
+        await self._book.stored([robot], self._commands.issue([abort], write))
         return self._book.accept(after)
 
     def _kept(self, robot: str, doing: OpenCommand | None) -> list[QueuedTask]:
@@ -99,7 +87,3 @@ class RobotPauses:
 def _task_by(queue: Queue, command: str) -> QueuedTask | None:
     """Return the task of the queue that a command drives."""
     return next((task for task in queue.tasks if task.command == command), None)
-
-
-def _save(before: Queue, after: Queue, connection: Connection) -> None:
-    queues.save(connection, before, after)

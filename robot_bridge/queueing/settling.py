@@ -3,42 +3,31 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 
 from sqlalchemy import Connection
 
 from ..command_life.states import is_open
-from ..commanding.book import CommandBook
 from ..errors import RefusedError
 from ..messages import CommandReport, CommandState, PlacementReport, TaskKind
 from ..queues import life
 from ..queues.legs import cone_place, legs
 from ..queues.life import Settled
 from ..queues.queue import Queue, QueuedTask
-from ..served_site import ServedSite
 from ..store import commands as stored_commands
 from ..store import placements, queues
-from ..store.database import Database
 from ..store.placements import Collected, NewPlacement
-from .book import QueueBook
+from .context import QueueContext
 
 
 class QueueSettling:
     """Settles the tasks whose commands have ended."""
 
-    def __init__(
-        self,
-        site: ServedSite,
-        commands: CommandBook,
-        book: QueueBook,
-        database: Database,
-        clock: Callable[[], float],
-    ) -> None:
-        self._site = site
-        self._commands = commands
-        self._book = book
-        self._database = database
-        self._clock = clock
+    def __init__(self, context: QueueContext) -> None:
+        self._site = context.site
+        self._commands = context.commands
+        self._book = context.book
+        self._database = context.database
+        self._clock = context.clock
 
     async def settle(self, queue: Queue) -> None:
         """Write down what came of the current task's command, if that has ended."""

@@ -6,6 +6,7 @@ import dataclasses
 import uuid
 from dataclasses import dataclass
 
+from ..command_life.open_command import because
 from ..messages import CommandReport, CommandState, QueueTask, TaskState
 from .edits import given_back
 from .queue import Queue, QueuedTask
@@ -62,7 +63,7 @@ def settled(queue: Queue, report: CommandReport, legs: int, *, skips: bool) -> S
     if report.state is CommandState.FAILED:
         reason = step.reason or "the robot gave no reason"
         return failed(queue, f"robot {queue.robot} refused it or gave it up: {reason}", step.at, skips=skips)
-    why = f"its command is {report.state.value}{f': {step.reason}' if step.reason else ''}"
+    why = because(f"its command is {report.state.value}", step.reason)
     given = queue.with_head(given_back(head, why))
     resumed_since = queue.at is not None and queue.at > step.at
     return Settled(given if resumed_since else given.paused(f"task {head.id}: {why}", step.by, step.at))

@@ -6,6 +6,7 @@ import dataclasses
 from collections import Counter
 from collections.abc import Mapping
 
+from ..command_life.open_command import because
 from ..counting import counted
 from ..errors import RefusedError
 from ..messages import Share, TakeOver, TaskKind
@@ -27,7 +28,7 @@ def taken_over(queues: Mapping[str, Queue], request: TakeOver, by: str, at: floa
         pool.update({task.id: (share.robot, task) for task in queues[share.robot].waiting})
     _check_complete([wanted.task for share in request.shares for wanted in share.tasks], pool)
     after = {share.robot: _with_share(queues[share.robot], share, pool) for share in request.shares}
-    reason = f"its tasks were taken over{f': {request.reason}' if request.reason else ''}"
+    reason = because("its tasks were taken over", request.reason)
     kept = [task for task in giver.tasks if task.id not in pool]
     # Pausing makes a new revision already.
     left = giver.with_tasks(kept, edited=not giver.running).paused(reason, by, at)

@@ -11,7 +11,7 @@ from typing import Protocol
 
 from sqlalchemy import Connection
 
-from ..command_life.open_command import NOTHING, Order
+from ..command_life.open_command import NOTHING, Order, because
 from ..commanding.book import CommandBook
 from ..commanding.orders import Orders
 from ..commanding.writing import Also, AlsoOf
@@ -102,8 +102,8 @@ class Detours:
         underway = [one for one in self._ways.all() if only is None or one.robot in only]
         self._later.update(one.robot for one in underway if not self._ways.is_placed(one.robot))
         concerned = await asyncio.to_thread(self._concerned, self._roads, closure, underway)
-        because = f"a road was closed{f': {reason}' if reason else ''}"
-        found = await asyncio.gather(*(self._lead(way, because, operator) for way in concerned))
+        why = because("a road was closed", reason)
+        found = await asyncio.gather(*(self._lead(way, why, operator) for way in concerned))
         return sorted(found, key=lambda robot: robot.robot)
 
     def queued(self, way: Way) -> QueueTask | None:
@@ -152,29 +152,25 @@ class Detours:
                 found.append(way)
         return found
 
-    async def _lead(self, way: Way, because: str, operator: str) -> ReplannedRobot:
+    async def _lead(self, way: Way, why: str, operator: str) -> ReplannedRobot:
         if way.robot in self._later:
-            text = (
-                f"{way.robot} is sent another way when it has said where it is now: {because}. Look after it."
-            )
+            text = f"{way.robot} is sent another way when it has said where it is now: {why}. Look after it."
             return ReplannedRobot(way.robot, "later", text)
         try:
             points, none = await asyncio.to_thread(self._other_way, way)
             if points is None:
-                return await self._without_way(way, f"{because}; {none}", operator)
+                return await self._without_way(way, f"{why}; {none}", operator)
             path = SetPath(points, way.task.theta)
-            command = await self.send(way, path, operator, because[:500])
-            text = f"{way.robot} was sent another way: {because}"
+            command = await self.send(way, path, operator, why[:500])
+            text = f"{way.robot} was sent another way: {why}"
             return ReplannedRobot(way.robot, "another way", text, command)
         except StoreError as error:
             self._later.add(way.robot)
-            text = (
-                f"{way.robot} is sent another way when that can be stored: {because}; {error}. Look after it."
-            )
+            text = f"{way.robot} is sent another way when that can be stored: {why}; {error}. Look after it."
             return ReplannedRobot(way.robot, "later", text)
         except (BridgeError, MessageError) as error:
             log.error("robot %s, whose road was closed: %s", way.robot, error)
-            text = f"{way.robot} was NOT sent another way: {because}; {error}. Look after it."
+            text = f"{way.robot} was NOT sent another way: {why}; {error}. Look after it."
             return ReplannedRobot(way.robot, "failed", text)
 
     def _other_way(self, way: Way) -> tuple[list[Point] | None, str]:
@@ -186,12 +182,12 @@ class Detours:
         # Straight over the fields is no other way.
         return (None, planned.note) if planned.note else (list(planned.points), "")
 
-    async def _without_way(self, way: Way, because: str, operator: str) -> ReplannedRobot:
+    async def _without_way(self, way: Way, why: str, operator: str) -> ReplannedRobot:
         if not self._stops():
-            text = f"{way.robot} drives on as it was told, though {because}. Look after it."
+            text = f"{way.robot} drives on as it was told, though {why}. Look after it."
             return ReplannedRobot(way.robot, "told only", text)
-        command = await self.stop(way.robot, f"no other way: {because}"[:500], operator)
-        return ReplannedRobot(way.robot, "stopped", f"{way.robot} was stopped: {because}", command)
+        command = await self.stop(way.robot, f"no other way: {why}"[:500], operator)
+        return ReplannedRobot(way.robot, "stopped", f"{way.robot} was stopped: {why}", command)
 
 
 def _tell(robot: str, path: SetPath, more: Also | None, connection: Connection) -> None:

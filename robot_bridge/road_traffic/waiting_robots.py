@@ -7,8 +7,6 @@ import logging
 import math
 from functools import partial
 
-from sqlalchemy import Connection
-
 from ..command_life.open_command import NOTHING
 from ..commanding.book import CommandBook
 from ..commanding.writing import Also, AlsoOf
@@ -84,7 +82,7 @@ class WaitingRobots:
         row = HoldRow(way.robot, other, "", after, until, operator, None if task is None else task.task)
 
         def also(command: str) -> Also:
-            return partial(_hold, row._replace(command=command))
+            return partial(stored.hold, row=row._replace(command=command))
 
         try:
             command = await self._send(way, first, row, rest, also)
@@ -157,7 +155,7 @@ class WaitingRobots:
         path = SetPath(points, rest.theta)
 
         def also(_command: str) -> Also:
-            return partial(_release, row.robot)
+            return partial(stored.release, robot=row.robot)
 
         await self._detours.send(way, path, row.by, f"{row.other} has passed", also)
         self._rows.pop(row.robot, None)
@@ -177,14 +175,6 @@ class WaitingRobots:
     async def _forget(self, robot: str) -> None:
         await self._database.run(stored.release, robot)
         self._rows.pop(robot, None)
-
-
-def _hold(row: HoldRow, connection: Connection) -> None:
-    stored.hold(connection, row)
-
-
-def _release(robot: str, connection: Connection) -> None:
-    stored.release(connection, robot)
 
 
 def _is_free(row: HoldRow, seen: Seen) -> bool:

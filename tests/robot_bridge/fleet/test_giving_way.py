@@ -152,7 +152,7 @@ async def test_who_waits_is_stored_with_what_sends_it_there_or_nothing_is(roads,
     await roads.drive("one", [(16.0, 8.0), (44.0, 22.0), (90.0, 22.0)])
     await roads.drive("two", [(13.0, 22.0), (56.0, 22.0), (56.0, 40.0)], robot="r2")
 
-    def full(_connection, _row):
+    def full(_connection, row):
         raise StoreError("the disk is full")
 
     monkeypatch.setattr(stored_closures, "hold", full)
