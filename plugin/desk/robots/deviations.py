@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 
 import numpy as np
 import numpy.typing as npt
@@ -42,6 +43,11 @@ class Deviations:
             self._ways[robot] = task.command, way
         way.go_on(off, math.dist(points[0], xy))
         return off if way.is_over else None
+
+    def forget(self, robots: Iterable[str]) -> None:
+        """Remember nothing of ``robots``, which were removed."""
+        for robot in robots:
+            self._ways.pop(robot, None)
 
 
 def beside(points: Floats, at: Floats) -> float:

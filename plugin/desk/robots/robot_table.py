@@ -19,6 +19,7 @@ from ...language import tr
 from ..column_heads import fit_heads
 from ..desk import Desk
 from ..going_there import GoingThere
+from ..picture import Gone
 from ..small_views import shrink
 from .columns import COLUMNS, TASK
 from .position_crs import PositionCrs
@@ -58,7 +59,7 @@ class RobotTable(QTableView):
         desk.pulled.connect(self._pulled)
         # The robots known so far may be gone, or be others by the same names.
         desk.site_changed.connect(self.refresh)
-        desk.robots_removed.connect(self.refresh)
+        desk.robots_removed.connect(self._removed)
 
     @property
     def robots(self) -> RobotModel:
@@ -82,6 +83,10 @@ class RobotTable(QTableView):
         self.setColumnHidden(column, not shown)
         hidden = [COLUMNS[c].title for c in range(len(COLUMNS)) if self.isColumnHidden(c)]
         QgsSettings().setValue(HIDDEN_KEY, ",".join(hidden))
+
+    def _removed(self, gone: Gone) -> None:
+        self._model.deviations.forget(gone.names)
+        self.refresh()
 
     def _set_up(self) -> None:
         self.setSelectionBehavior(QAbstractItemView.SelectionBehavior.SelectRows)

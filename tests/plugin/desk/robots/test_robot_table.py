@@ -151,6 +151,18 @@ def test_a_robot_that_is_seen_on_its_path_first_has_come_to_it(off):
     assert off(3.0, 20.0) == pytest.approx(3.0)
 
 
+def test_a_robot_that_was_removed_leaves_nothing_behind(table, at_desk, gateway, make_robot, wait):
+    for name in ("r1", "r2"):
+        gateway._queue(f"command-{name}", name, "SetPath", {"points": [[50.0, 40.5], [50.0, 60.0]]})
+        gateway.step(f"command-{name}", CommandState.ACKNOWLEDGED, name)
+    ways = table.robots.deviations._ways
+    table.sortByColumn(TITLES.index("Off"), Qt.SortOrder.AscendingOrder)
+    wait(lambda: set(ways) == {"r1", "r2"}, what="both robots on their paths")
+    del gateway.robots["r1"]
+    gateway.tell("positions", {"t": 1.0, "robots": [], "removed": ["r1"]})
+    wait(lambda: set(ways) == {"r2"}, what="the removed robot forgotten")
+
+
 def test_each_path_has_a_way_to_it_of_its_own(off, book):
     assert off(50.0, 0.0) == pytest.approx(0.0)
     book.merge([on_path("command-2", [[200.0, 0.0], [200.0, 9.0]], 2.0)])
