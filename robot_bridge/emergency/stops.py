@@ -174,6 +174,7 @@ class EmergencyStops:
             await self._database.run(emergency_stops.clear, at, supervisor, reason)
             if self._stop is stop:
                 self._stop = stop._replace(cleared_at=at, cleared_by=supervisor, clear_reason=reason)
+                log.warning("emergency stop of %s cleared by %s%s", stop.by, supervisor, _because(reason))
         self._announce()
         return self.report()
 

@@ -99,7 +99,7 @@ class EmergencyReport:
     Of ``robots`` known robots ``acknowledged`` have said that they stop and ``standing`` were seen to stand
     since; ``waiting`` names those that have not answered, ``refused`` those that answered that they will not
     (some fifty at most of either). ``stored`` is false while the database could not be written: the stop
-    holds, and a gateway that ends before it is stored forgets it.
+    holds, and the next gateway on this computer learns of it from a file.
     """
 
     in_force: bool = False

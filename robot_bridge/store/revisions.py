@@ -136,7 +136,7 @@ def _needed(found: str) -> str:
 
 def _advice(found: str | None) -> str:
     if found is None:
-        return "make them with: robot-bridge database create"
+        return "make the tables with: robot-bridge database create"
     if found == NEEDED:
         return "nothing is to be done"
     if found < NEEDED:

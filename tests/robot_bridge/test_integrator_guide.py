@@ -212,6 +212,16 @@ def test_the_websocket_story_goes_as_it_is_told(bridge):
         assert shape(robot.wait_for(op).get("params", {})) == shape(commands[op])
 
 
+def test_a_robot_that_answers_an_abort_as_it_is_told_is_seen_to_stand(bridge):
+    robot, desk = bridge.robot("r1"), bridge.desk()
+    robot.plug_in(4711)
+    desk.send("abort-of-r1", "r1", "Abort")
+    abort = robot.wait_for("Abort")
+    for frame in [frame for kind, frame in blocks("robot-sends") if kind == "aborted"]:
+        robot.connection.send(json.dumps(frame | ({"id": abort["id"]} if "result" in frame else {})))
+    desk.wait_for_step("abort-of-r1", "reached")
+
+
 def test_an_emergency_stop_comes_as_it_is_told(bridge):
     ((_, wanted),) = [b for b in blocks("robot-hears") if b[0] == "at-once"]
     robot, desk = bridge.robot("r1"), bridge.desk()

@@ -95,7 +95,7 @@ def test_serve_refuses_tables_of_an_older_version_and_runs_once_they_are_upgrade
 @pytest.mark.parametrize("kind", ["postgresql", "mariadb"], indirect=True)
 def test_serve_names_the_command_that_makes_the_tables_on_a_server(told, sample_site):
     line = refusal(robot_bridge("serve", "--site", sample_site, "--port", "0", **told))
-    assert "has no tables of the bridge; make them with: robot-bridge database create" in line
+    assert "has no tables of the bridge; make the tables with: robot-bridge database create" in line
 
 
 def log_of(url):

@@ -117,7 +117,7 @@ def test_a_gateway_makes_only_a_missing_sqlite_database(empty_url, kind):
         opened(empty_url)
         assert run_once(empty_url, revisions.differences) == []
     else:
-        with pytest.raises(StoreError, match=r"no tables of the bridge; make them with: robot-bridge"):
+        with pytest.raises(StoreError, match=r"no tables of the bridge; make the tables with: robot-bridge"):
             opened(empty_url)
         assert run_once(empty_url, revisions.current) is None
 
@@ -179,7 +179,7 @@ def test_a_database_of_a_newer_version_is_refused_and_left_alone(url):
 
 
 def test_an_empty_database_has_nothing_to_upgrade(empty_url):
-    with pytest.raises(StoreError, match="no tables to upgrade; make them with: robot-bridge"):
+    with pytest.raises(StoreError, match="no tables to upgrade; make the tables with: robot-bridge"):
         run_once(empty_url, revisions.upgrade)
 
 

@@ -83,6 +83,15 @@ async def test_every_robot_is_told_before_anything_else(two, control):
     assert control.rows() == [("stop-0001", "Ada", "child on the track", None)]
 
 
+async def test_the_log_tells_who_made_a_stop_and_who_cleared_it(two, control, caplog):
+    await control.stop(reason="child on the track")
+    await control.clear(reason="all is well")
+    assert [record.message for record in caplog.records if record.name == stops.log.name] == [
+        "emergency stop by Ada (child on the track)",
+        "emergency stop of Ada cleared by Eve (all is well)",
+    ]
+
+
 async def test_what_robots_have_not_fetched_is_aborted_at_once_and_everything_else_when_they_say_so(
     two, control
 ):
