@@ -389,12 +389,14 @@ class Desk(QObject):
         self.orders.ask(order, words)
         return order.key
 
-    def inquire(self, request: Any) -> str:
+    def inquire(self, request: Any, *, lasting: bool = False) -> str:
         """Ask the gateway for what it knows, without a word to the operator, and return the order's key.
+
+        A ``lasting`` one is asked again however long the link was lost.
 
         :raises NotSentError: when it cannot be sent.
         """
-        order = Order(str(uuid.uuid4()), request.method, to_json(request), self.clock())
+        order = Order(str(uuid.uuid4()), request.method, to_json(request), self.clock(), lasting)
         self._submit(order)
         return order.key
 

@@ -1281,6 +1281,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/command_log/older_commands.py" />
+            <source>Older commands: the gateway has not answered for {seconds:g} s. Press Older to ask once more.</source>
+            <translation>Ordres més antigues: la passarel·la no ha respost des de fa {seconds:g} s. Premeu Més antigues per tornar-ho a preguntar.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/older_commands.py" />
             <source>Older commands: {why}</source>
             <translation>Ordres més antigues: {why}</translation>
         </message>

@@ -1281,6 +1281,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/command_log/older_commands.py" />
+            <source>Older commands: the gateway has not answered for {seconds:g} s. Press Older to ask once more.</source>
+            <translation>Órdenes más antiguas: la pasarela no ha respondido desde hace {seconds:g} s. Pulse Más antiguas para preguntarlo otra vez.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/older_commands.py" />
             <source>Older commands: {why}</source>
             <translation>Órdenes más antiguas: {why}</translation>
         </message>

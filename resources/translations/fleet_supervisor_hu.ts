@@ -1274,6 +1274,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/command_log/older_commands.py" />
+            <source>Older commands: the gateway has not answered for {seconds:g} s. Press Older to ask once more.</source>
+            <translation>Régebbi parancsok: az átjáró {seconds:g} s óta nem válaszolt. Nyomja meg a Régebbiek gombot, hogy újra megkérdezze.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/command_log/older_commands.py" />
             <source>Older commands: {why}</source>
             <translation>Régebbi parancsok: {why}</translation>
         </message>

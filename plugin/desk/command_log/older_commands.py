@@ -12,6 +12,7 @@ from ...language import tr, tr_count
 from ...wire.outbox import Answer
 from .. import command_book
 from ..desk import Desk
+from ..orders import SLOW_AFTER
 
 OLDER = 1000
 """Commands that are asked for at once."""
@@ -24,12 +25,16 @@ class Wish:
     """One press of the button: the commands ``known`` by then, and what its ``waiting`` answers told."""
 
     known: frozenset[str]
+    asked_at: float
+    """Monotonic seconds."""
     waiting: int = 0
     came: int = 0
     """Commands that were not known and are in the book now."""
     ends_here: bool = False
     """Whether there may be older ones that the log does not reach."""
     is_refused: bool = False
+    is_overdue: bool = False
+    """Whether it was told that the gateway does not answer."""
 
 
 class OlderCommands(QObject):
@@ -41,18 +46,23 @@ class OlderCommands(QObject):
         self._wishes: dict[str, Wish] = {}
         """By the keys of the questions that are not answered yet."""
         desk.answered.connect(self._answered)
+        desk.pulled.connect(self._watch)
+        desk.site_changed.connect(self._site_changed)
 
     def ask(self, robots: frozenset[str] | None) -> None:
         """Ask for the commands of ``robots``, None for all."""
-        wish = Wish(frozenset(report.command for report in self._desk.book))
+        wish = Wish(frozenset(report.command for report in self._desk.book), self._desk.clock())
         try:
             # Of very many robots the newest commands of all will do: the log holds no more.
             for robot in sorted(robots) if robots and len(robots) <= MOST_ASKED else [None]:
-                self._wishes[self._desk.inquire(GetCommands(robot, OLDER))] = wish
+                self._wishes[self._desk.inquire(GetCommands(robot, OLDER), lasting=True)] = wish
                 wish.waiting += 1
         except FleetError as error:
             wish.is_refused = True
             self._desk.complained.emit(str(error))
+            return
+        # What is asked once more need not be told of twice, should the gateway answer after all.
+        self._wishes = {key: one for key, one in self._wishes.items() if not one.is_overdue}
 
     def _answered(self, answer: Answer) -> None:
         wish = self._wishes.pop(answer.order.key, None)
@@ -60,12 +70,36 @@ class OlderCommands(QObject):
             return
         wish.waiting -= 1
         if answer.error is not None:
+            if not wish.is_refused:
+                self._desk.complained.emit(tr("Older commands: {why}", why=answer.error))
             wish.is_refused = True
-            self._desk.complained.emit(tr("Older commands: {why}", why=answer.error))
         else:
             self._look_at(_commands_in(answer), wish)
         if wish.waiting == 0 and not wish.is_refused:
             self._desk.noted.emit(_in_words(wish))
+
+    def _watch(self) -> None:
+        """Say so of a wish that waits for its answers too long, be it that the link is lost."""
+        now = self._desk.clock()
+        late = {
+            id(wish): wish
+            for wish in self._wishes.values()
+            if not wish.is_overdue and now - wish.asked_at > SLOW_AFTER
+        }
+        for wish in late.values():
+            wish.is_overdue = True
+            self._desk.complained.emit(
+                tr(
+                    "Older commands: the gateway has not answered for {seconds:g} s. Press Older to ask once "
+                    "more.",
+                    seconds=SLOW_AFTER,
+                )
+            )
+
+    def _site_changed(self) -> None:
+        if len(self._desk.book) == 0:
+            # Another gateway's robots are here now: what was asked of the one before is nobody's wish.
+            self._wishes.clear()
 
     def _look_at(self, told: list[str], wish: Wish) -> None:
         # The book has taken them in by now, and let go of the oldest where it was full.

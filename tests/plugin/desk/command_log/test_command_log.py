@@ -332,6 +332,74 @@ def test_refused_older_commands_are_said(log, at_desk, gateway, iface, wait):
     assert told == []
 
 
+@pytest.fixture
+def complaints(at_desk):
+    told = []
+    at_desk.desk.complained.connect(told.append)
+    return told
+
+
+@pytest.fixture
+def later(at_desk, monkeypatch):
+    """Let that many seconds pass at the desk."""
+
+    def pass_by(seconds):
+        now = at_desk.desk.clock
+        monkeypatch.setattr(at_desk.desk, "clock", lambda: now() + seconds)
+
+    return pass_by
+
+
+NO_ANSWER = "Older commands: the gateway has not answered for 5 s. Press Older to ask once more."
+
+
+def test_a_gateway_that_does_not_answer_is_told_once_and_can_be_asked_again(
+    log, at_desk, gateway, wait, complaints, later
+):
+    told = notes(at_desk)
+    choose(log, "fleet_log_robot", "Selected robots")
+    at_desk.desk.select_all(["r2", "r1"])
+    gateway.mute.add("get_commands")
+    press_older(log)
+    QTest.qWait(300)
+    assert complaints == [] and told == []
+    later(6)
+    wait(lambda: complaints == [NO_ANSWER], what="that nothing was answered")
+    gateway.mute.clear()
+    press_older(log)
+    wait(lambda: len(told) == 1, what="what came of it")
+    QTest.qWait(300)
+    assert complaints == [NO_ANSWER]
+
+
+def test_what_a_lost_link_kept_back_is_told_and_comes_when_it_is_there_again(
+    log, at_desk, gateway, wait, complaints, later
+):
+    told = notes(at_desk)
+    later(-40)
+    gateway.mute.add("get_commands")
+    press_older(log)
+    wait(lambda: len(gateway.asked("get_commands")) == 2, what="the question")
+    gateway.stop()
+    later(46)
+    wait(lambda: NO_ANSWER in complaints, what="that nothing was answered")
+    gateway.mute.clear()
+    gateway.commands = {"old-0": long_ago(0), **gateway.commands}
+    gateway.start()
+    wait(lambda: told == ["1 older command came. The gateway knows no others."], what="what came of it")
+    assert [text for text in complaints if text.startswith("Older")] == [NO_ANSWER]
+
+
+def test_one_answer_of_several_that_are_refused_is_told(log, at_desk, gateway, wait, complaints):
+    choose(log, "fleet_log_robot", "Selected robots")
+    at_desk.desk.select_all(["r2", "r1"])
+    gateway.refuse["get_commands"] = "the database is away"
+    press_older(log)
+    wait(lambda: len(gateway.asked("get_commands")) == 3 and complaints, what="the refusal")
+    QTest.qWait(300)
+    assert complaints == ["Older commands: the database is away"]
+
+
 def report(number, at, state=CommandState.ACKNOWLEDGED, robot="r1"):
     steps = [CommandStep(CommandState.QUEUED, at, "anna")]
     return CommandReport(f"command-{number}", robot, "SetPosEnd", {"x": 1.0, "y": 2.0}, "anna", state, steps)
