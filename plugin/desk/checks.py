@@ -14,11 +14,11 @@ from ..sites.layer_watch import LayerWatch
 from ..sites.roles import layers_with_role
 from .drafting.keepout_check import KeepoutCheck
 from .drafting.obstacle_check import ObstacleCheck
-from .drafting.slices import Steps, part_of
 from .drafting.surface_check import SurfaceCheck
 from .drafting.tracks import Track, is_looked_at
 from .drafts import Draft, Findings, Point
 from .placement import Placement
+from .time_slices import Steps, part_of
 
 AT_ONCE = 500
 """Tracks that are gone through between two looks at the clock."""

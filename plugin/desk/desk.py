@@ -26,7 +26,6 @@ from .command_book import CommandBook
 from .drafting.draft_checker import DraftChecker
 from .drafting.draft_sending import DraftSending
 from .drafting.order_check import check_orders
-from .drafting.slices import Steps
 from .drafting.target_check import TargetCheck
 from .drafts import Draft, DraftBoard, Point, in_brief
 from .observation_book import ObservationBook
@@ -37,6 +36,7 @@ from .placement_book import PlacementBook
 from .queue_book import QueueBook
 from .road_board import RoadBoard
 from .route_preview import RoutePreview
+from .time_slices import Steps
 
 LATE_S = 0.1
 """Seconds after which what was pulled is not passed on without a look for what is newer."""

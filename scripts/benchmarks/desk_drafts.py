@@ -49,7 +49,7 @@ class _Slices:
     """Takes the time of each slice by the thread's own clock."""
 
     def __init__(self) -> None:
-        self._kind = importlib.import_module(f"{DESK}.drafting.slices").Slices
+        self._kind = importlib.import_module(f"{DESK}.time_slices").TimeSlices
         self._slice = self._kind._slice
         self._taken: list[float] = []
         self._kind._slice = lambda slices: self._timed(slices)

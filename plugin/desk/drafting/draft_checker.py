@@ -9,7 +9,7 @@ from qgis.PyQt.QtCore import QObject, QTimer, pyqtSignal
 
 from ...errors import FleetError
 from ..drafts import Draft, DraftBoard, Findings
-from .slices import Slices, Steps
+from ..time_slices import Steps, TimeSlices
 
 Work = Callable[[Draft, bool], Steps[Draft]]
 """Takes a draft, and whether all of it is to be looked at afresh; returns the draft with what was found."""
@@ -33,7 +33,7 @@ class DraftChecker(QObject):
         super().__init__(parent)
         self._board = board
         self._work = work
-        self._slices = Slices(self)
+        self._slices = TimeSlices(self)
         self._draft: Draft | None = None
         self._afresh = self._is_put = False
         self._then: Callable[[Draft], None] | None = None

@@ -10,8 +10,8 @@ from ...language import tr
 from ...sites.roles import KEEPOUT
 from ..drafts import Draft, Findings
 from ..placement import Placement
+from ..time_slices import Steps
 from .layer_features import LayerFeatures, engine_of, name_of
-from .slices import Steps
 from .tracks import Track, boxes_of, legs, lines_in, place_in_words
 
 

@@ -16,7 +16,7 @@ from qgis.core import (
 
 from ...language import tr
 from ...sites.feature_filter import FeatureFilter
-from .slices import Steps
+from ..time_slices import Steps
 
 FEW = 20
 """Places that the layer is asked for one by one; for more it is read once."""

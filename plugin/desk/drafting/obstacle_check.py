@@ -19,8 +19,8 @@ from ...language import tr
 from ...sites.roles import FURNITURE, OBSTACLE, STAIRS
 from ..drafts import Draft, Findings
 from ..placement import Placement, transformed
+from ..time_slices import Steps
 from .layer_features import LayerFeatures, engine_of, name_of
-from .slices import Steps
 from .tracks import Track, boxes_of, drawn_by_hand, lines_in, place_in_words
 
 CLEARANCE_M = 0.25

@@ -11,8 +11,8 @@ from ...language import tr
 from ...sites.roles import ROAD_SURFACE
 from ..drafts import Draft, Findings
 from ..placement import Placement
+from ..time_slices import Steps
 from .layer_features import LayerFeatures, engine_of
-from .slices import Steps
 from .tracks import Track, boxes_of, drawn_by_hand, lines_in, place_in_words, stops
 
 GAP_M = 0.5

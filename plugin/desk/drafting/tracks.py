@@ -15,7 +15,7 @@ from ...language import tr
 from ...sites.many_points import line_of
 from ..drafts import ROUTE, START, Draft, Point
 from ..placement import Placement, transformed
-from .slices import Steps
+from ..time_slices import Steps
 
 Track = tuple[Point, ...]
 """One point is a place, several are a way; metres in the site frame."""

@@ -16,7 +16,7 @@ from ....robot_bridge.roads.nearest import NearestEdge
 from ....robot_bridge.roads.network import build_network
 from ...language import tr
 from ...sites.ground_reading import DEFAULT_WIDTH_M
-from ..drafting.slices import Steps
+from ..time_slices import Steps
 
 Floats = npt.NDArray[np.float64]
 

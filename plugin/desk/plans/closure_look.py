@@ -7,8 +7,7 @@ from collections.abc import Callable, Sequence
 from qgis.PyQt.QtCore import QObject
 
 from ....robot_bridge.messages import ClosureReport
-from ...errors import FleetError
-from ..drafting.slices import Slices, Steps
+from ..time_slices import Steps, TimeSlices
 from .draft import Draft
 
 
@@ -17,7 +16,7 @@ class ClosureLook(QObject):
 
     def __init__(self, parent: QObject | None = None):
         super().__init__(parent)
-        self._slices = Slices(self)
+        self._slices = TimeSlices(self)
 
     def begin(
         self,
@@ -29,7 +28,7 @@ class ClosureLook(QObject):
 
         A look that is under way is given up.
         """
-        found = self._slices.begin(_looked_at(drafts, closures), lambda: None, done, _raise)
+        found = self._slices.begin(_looked_at(drafts, closures), done=done)
         if found is not None:
             done(found)
 
@@ -43,8 +42,3 @@ def _looked_at(drafts: Sequence[Draft], closures: Sequence[ClosureReport]) -> St
     for draft in drafts:
         found.append((yield from draft.with_closures(closures)))
     return found
-
-
-def _raise(error: FleetError) -> None:
-    """Let a fault be seen: no plan and no road is one that cannot be looked at."""
-    raise error

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 
 from ....robot_bridge.assignment.plan import Plan
 from ....robot_bridge.messages import ClosureReport
-from ..drafting.slices import Steps, whole
+from ..time_slices import Steps, whole
 from .closed_ways import ClosedWay, closed_ways
 from .cone_source import ConeFacts
 from .near_meetings import Meeting, meetings

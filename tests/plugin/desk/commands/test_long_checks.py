@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from fleet_supervisor.plugin.desk.drafting import slices
+from fleet_supervisor.plugin.desk import time_slices
 from fleet_supervisor.plugin.desk.drafting.keepout_check import KeepoutCheck
 from fleet_supervisor.plugin.desk.drafting.obstacle_check import ObstacleCheck
 from fleet_supervisor.plugin.desk.drafting.surface_check import SurfaceCheck
@@ -20,7 +20,7 @@ CTRL = Qt.KeyboardModifier.ControlModifier
 @pytest.fixture
 def slow(hand, monkeypatch):
     """A desk where every check takes as many slices as it has steps; clicks and keys do not wait for it."""
-    monkeypatch.setattr(slices, "SLICE_SECONDS", 0.0)
+    monkeypatch.setattr(time_slices, "SLICE_SECONDS", 0.0)
     hand.settled, hand.iface.is_settled = hand.iface.is_settled, lambda: True
     return hand
 

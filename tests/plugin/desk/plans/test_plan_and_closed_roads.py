@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 
 import pytest
-from fleet_supervisor.plugin.desk.drafting import slices
+from fleet_supervisor.plugin.desk import time_slices
 from fleet_supervisor.plugin.desk.plans.closed_ways import closed_ways
 from qgis.PyQt import sip
 
@@ -75,7 +75,7 @@ class Held:
     """Looks at closed roads that come to a halt after one step each, until they are let go."""
 
     def __init__(self, dock, monkeypatch):
-        monkeypatch.setattr(slices, "SLICE_SECONDS", 0.0)
+        monkeypatch.setattr(time_slices, "SLICE_SECONDS", 0.0)
         looks = (
             dock.drafts._look,
             dock.drafts._look_at_made,

@@ -1,9 +1,12 @@
-"""Work in slices: the first at once, the others when the window has time, none after it was given up."""
+"""Work in slices: the first at once or soon, others when the window has time, none after it was given up."""
+
+from itertools import groupby
 
 import pytest
-from fleet_supervisor.plugin.desk.drafting import slices as module
-from fleet_supervisor.plugin.desk.drafting.slices import Slices, part_of
+from fleet_supervisor.plugin.desk import time_slices
+from fleet_supervisor.plugin.desk.time_slices import ONE_STEP, TimeSlices, part_of
 from fleet_supervisor.plugin.errors import FleetError
+from qgis.PyQt.QtCore import QTimer
 
 
 class Diary:
@@ -12,7 +15,7 @@ class Diary:
     def __init__(self):
         self.told = []
         self.now = 0.0
-        self.slices = Slices(clock=self.tick)
+        self.slices = TimeSlices(clock=self.tick)
 
     def tick(self):
         self.now += 0.001
@@ -56,7 +59,7 @@ def test_more_goes_on_by_itself_a_slice_at_a_time(diary, wait):
 
 
 def test_one_step_is_done_however_late_it_is(diary, wait, monkeypatch):
-    monkeypatch.setattr(module, "SLICE_SECONDS", 0.0)
+    monkeypatch.setattr(time_slices, "SLICE_SECONDS", 0.0)
     diary.begin(steps(4))
     wait(lambda: ("done", "result") in diary.told)
     assert diary.told == [0.25, 0.5, 0.75, ("done", "result")]
@@ -95,6 +98,69 @@ def test_work_that_has_itself_stopped_is_not_gone_on_with(diary, wait):
     assert diary.begin(work()) is None
     diary.begin(steps(20, "next"))
     wait(lambda: ("done", "next") in diary.told)
+
+
+def test_what_is_begun_soon_waits_for_the_window(diary, wait):
+    begun = []
+
+    def work():
+        begun.append(True)
+        yield 0.0
+        return "result"
+
+    diary.slices.begin_soon(work(), lambda result: diary.told.append(("done", result)))
+    assert begun == [] and diary.slices.is_busy
+    wait(lambda: diary.told == [("done", "result")])
+    assert not diary.slices.is_busy
+
+
+def test_what_somebody_needs_now_is_finished_at_once(diary):
+    diary.slices.begin_soon(steps(50), lambda result: diary.told.append(result))
+    diary.slices.finish()
+    assert diary.told == ["result"] and not diary.slices.is_busy
+    diary.slices.finish()
+    assert diary.told == ["result"]
+    diary.begin(steps(50, FleetError("no")))
+    diary.slices.finish()
+    assert diary.told[-1] == ("failed", "no")
+
+
+def test_a_fault_that_nobody_expects_is_seen(diary):
+    diary.slices.begin_soon(steps(1, FleetError("no")))
+    with pytest.raises(FleetError, match="no"):
+        diary.slices.finish()
+
+
+@pytest.mark.parametrize("steps_after", [0, 1])
+def test_work_that_begins_other_work_in_its_place_is_not_gone_on_with(diary, wait, steps_after):
+    def work():
+        yield 0.0
+        diary.slices.begin_soon(steps(20, "next"), lambda result: diary.told.append(("done", result)))
+        for _ in range(steps_after):
+            yield 0.5
+            raise AssertionError("it went on")
+
+    diary.slices.begin_soon(work(), lambda result: diary.told.append("the first one"))
+    wait(lambda: ("done", "next") in diary.told)
+    assert diary.told == [("done", "next")]
+
+
+def test_slices_of_one_step_each_leave_the_window_its_time_after_every_step(qgis_app, wait):
+    told = []
+
+    def work():
+        for number in range(3):
+            told.append(number)
+            yield number / 3
+
+    events = QTimer()
+    events.timeout.connect(lambda: told.append("events"))
+    events.start(0)
+    slices = TimeSlices(seconds=ONE_STEP, clock=lambda: 0.0)
+    slices.begin_soon(work())
+    wait(lambda: not slices.is_busy)
+    events.stop()
+    assert [what for what, _ in groupby(told)][:6] == ["events", 0, "events", 1, "events", 2]
 
 
 def test_parts_make_up_a_whole():

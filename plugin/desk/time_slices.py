@@ -12,27 +12,44 @@ from typing import Any, TypeVar
 
 from qgis.PyQt.QtCore import QObject, QTimer
 
-from ...errors import FleetError
+from ..errors import FleetError
 
 T = TypeVar("T")
 Steps = Generator[float, None, T]
 """Work that yields, as often as it can, the share of it that is done: 0 to 1. It returns the result."""
 
 SLICE_SECONDS = 0.008
+ONE_STEP = 0.0
+"""Seconds for a slice of one step, however short that is: for steps that take most of a slice each."""
 REST_MS = 4
 """Between two slices, for the window."""
 
 
-class Slices(QObject):
-    """Does one piece of work at a time, the first slice of it at once: small ones are done by that."""
+def _nothing(*_: object) -> None:
+    """Be what is called where nobody wants to be told."""
 
-    def __init__(self, parent: QObject | None = None, clock: Callable[[], float] = time.perf_counter):
+
+def _raise(error: FleetError) -> None:
+    """Let a fault be seen that nobody expects."""
+    raise error
+
+
+class TimeSlices(QObject):
+    """Does one piece of work at a time, in slices of ``seconds`` on ``clock``."""
+
+    def __init__(
+        self,
+        parent: QObject | None = None,
+        seconds: float | None = None,
+        clock: Callable[[], float] = time.perf_counter,
+    ):
         super().__init__(parent)
         self._clock = clock
+        self._seconds = seconds
         self._work: Steps[Any] | None = None
-        self._goes_on: Callable[[], None] = lambda: None
-        self._done: Callable[[Any], None] = lambda result: None
-        self._failed: Callable[[FleetError], None] = lambda error: None
+        self._goes_on: Callable[[], None] = _nothing
+        self._done: Callable[[Any], None] = _nothing
+        self._failed: Callable[[FleetError], None] = _raise
         self.share = 0.0
         """How much is done, 0 to 1."""
         self._timer = QTimer(self)
@@ -40,23 +57,49 @@ class Slices(QObject):
         self._timer.setInterval(REST_MS)
         self._timer.timeout.connect(self._next)
 
+    @property
+    def is_busy(self) -> bool:
+        """Whether some of the work is still to be done."""
+        return self._work is not None
+
     def begin(
         self,
         work: Steps[T],
-        goes_on: Callable[[], None],
-        done: Callable[[T], None],
-        failed: Callable[[FleetError], None],
+        goes_on: Callable[[], None] = _nothing,
+        done: Callable[[T], None] = _nothing,
+        failed: Callable[[FleetError], None] = _raise,
     ) -> T | None:
-        """Return what ``work`` returns if the first slice of it was enough, else None.
+        """Do the first slice of ``work`` at once: return what it returns if that was enough, else None.
 
         ``goes_on`` is called after each later slice, then ``done`` with what it returns or ``failed`` with
         what it raised. What was under way before is given up.
 
         :raises FleetError: what the first slice raises; ``failed`` is not called then.
         """
-        self.stop()
-        self._work, self._goes_on, self._done, self._failed = work, goes_on, done, failed
+        self._take(work, goes_on, done, failed)
         return self._slice()[1]
+
+    def begin_soon(
+        self,
+        work: Steps[T],
+        done: Callable[[T], None] = _nothing,
+        failed: Callable[[FleetError], None] = _raise,
+    ) -> None:
+        """Do all of ``work`` in slices that come when the window has had time for what is under way now.
+
+        ``done`` or ``failed`` is called as by :meth:`begin`. What was under way before is given up.
+        """
+        self._take(work, _nothing, done, failed)
+        self._timer.start()
+
+    def finish(self) -> None:
+        """Do at once all that is left, and call ``done`` or ``failed`` for it.
+
+        Work that begins other work in its place has that done as well.
+        """
+        while self._work is not None:
+            self._timer.stop()
+            self._next()
 
     def stop(self) -> None:
         """Give up what is under way; nothing is called for it any more."""
@@ -66,6 +109,16 @@ class Slices(QObject):
         # What it does may be why it is to stop; it is not gone on with then.
         if work is not None and not work.gi_running:
             work.close()
+
+    def _take(
+        self,
+        work: Steps[T],
+        goes_on: Callable[[], None],
+        done: Callable[[T], None],
+        failed: Callable[[FleetError], None],
+    ) -> None:
+        self.stop()
+        self._work, self._goes_on, self._done, self._failed = work, goes_on, done, failed
 
     def _next(self) -> None:
         try:
@@ -81,7 +134,7 @@ class Slices(QObject):
     def _slice(self) -> tuple[bool, Any]:
         work = self._work
         assert work is not None
-        until = self._clock() + SLICE_SECONDS
+        until = self._clock() + (SLICE_SECONDS if self._seconds is None else self._seconds)
         try:
             while True:
                 self.share = next(work)
@@ -91,10 +144,12 @@ class Slices(QObject):
                     break
         except StopIteration as end:
             is_wanted = self._work is work
-            self.stop()
+            if is_wanted:
+                self.stop()
             return is_wanted, end.value
         except BaseException:
-            self.stop()
+            if self._work is work:
+                self.stop()
             raise
         self._timer.start()
         return False, None
