@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -17,7 +17,6 @@ from qgis.core import (
     QgsVectorLayer,
     QgsVectorLayerSimpleLabeling,
 )
-from qgis.PyQt.QtCore import QTimer
 from qgis.PyQt.QtGui import QColor
 
 from ...robot_bridge.messages import SiteReport
@@ -26,19 +25,20 @@ from ..sites.fleet_group import fleet_group, remove_if_empty
 from .live_layers import give_style, make_live
 from .placement import frame_of
 from .project_watch import ProjectWatch
+from .time_slices import Steps, TimeSlices
 
 Row = tuple[Sequence[tuple[float, float]], Sequence[Any]]
 """Points in the site frame, one for a point layer, and the values of the fields."""
 
-AT_ONCE = 100
-"""Features written in one go: more take several, so that the window does not wait for them."""
+AT_ONCE = 50
+"""Features written in one step of a slice."""
 
 
 class RowLayer:
     """A layer of one kind of geometry in the site's CRS; made when there is a row to show.
 
     It goes with its project, and comes anew in the next one: what it shows is the desk's, not the project's.
-    It is written in pieces of its own, between which the window looks for events.
+    It is written in slices, between which the window looks for events.
     """
 
     def __init__(
@@ -59,11 +59,9 @@ class RowLayer:
         self._has_changed = False
         """Whether it was written since it was painted."""
         self._shown: tuple[Sequence[Row], SiteReport | None] = ((), None)
-        self._soon = QTimer()
-        self._soon.setSingleShot(True)
-        self._soon.timeout.connect(self._go_on)
+        self._writing = TimeSlices()
         self._watch = ProjectWatch(project)
-        self._watch.opened.connect(self._soon.start)
+        self._watch.opened.connect(self._renew)
 
     @property
     def layer(self) -> QgsVectorLayer | None:
@@ -73,45 +71,56 @@ class RowLayer:
     def show(self, rows: Sequence[Row], site: SiteReport | None) -> None:
         """Have a feature for each of ``rows`` soon; those that are there already are left as they are."""
         self._shown = rows, site
-        self._soon.start(0)
+        self._renew()
 
     def finish(self) -> None:
         """Write at once all that is left to be: somebody is about to take the layer as it is."""
-        while self._soon.isActive():
-            self._soon.stop()
-            self._go_on()
+        self._writing.finish()
 
     def remove(self) -> None:
         """Take the layer out of the project for good, and show nothing in the next one."""
         self._watch.remove()
-        self._soon.stop()
+        self._writing.stop()
         self._shown = (), None
         self._take_out()
 
-    def _go_on(self) -> None:
-        """Write some of what is not there yet, or make the layer for it."""
-        rows, site = self._shown
-        layer = self.layer
-        if self._watch.is_reading or site is None or (not rows and layer is None):
+    def _renew(self) -> None:
+        self._writing.begin_soon(self._renewed())
+
+    def _renewed(self) -> Steps[None]:
+        """Show what is to be shown; begin anew where the layer is taken out meanwhile."""
+        for share in self._steps(*self._shown):
+            yield share
+            if self.layer is None:
+                self._renew()
+                return
+
+    def _steps(self, rows: Sequence[Row], site: SiteReport | None) -> Iterator[float]:
+        if self._watch.is_reading or site is None or (not rows and self.layer is None):
             return
-        frame = frame_of(site)
-        if layer is not None and layer.crs() != QgsCoordinateReferenceSystem(site.crs):
-            self._take_out()
-            layer = None
-        if layer is None:
-            self._frame, self._written = frame, {}
-            self._make(site.crs)
-            self._soon.start(0)
-            return
-        if frame != self._frame:
-            layer.dataProvider().truncate()
-            self._frame, self._written = frame, {}
-        if not self._write(layer, rows, frame):
-            self._soon.start(0)
-        elif self._has_changed:
+        self._have_layer(site)
+        yield 0.0
+        new = self._left_of(rows)
+        for first in range(0, len(new), AT_ONCE):
+            yield first / len(new)
+            self._write(new[first : first + AT_ONCE])
+        if self._has_changed:
             self._has_changed = False
-            layer.updateExtents()
-            layer.triggerRepaint()
+            self.layer.updateExtents()
+            self.layer.triggerRepaint()
+
+    def _have_layer(self, site: SiteReport) -> None:
+        """Have a layer in the site's CRS, without what was written of a site that lay elsewhere."""
+        if self.layer is not None and self.layer.crs() != QgsCoordinateReferenceSystem(site.crs):
+            self._take_out()
+        frame = frame_of(site)
+        if self.layer is None:
+            self._make(site.crs)
+        elif frame != self._frame:
+            self.layer.dataProvider().truncate()
+        else:
+            return
+        self._frame, self._written = frame, {}
 
     def _take_out(self) -> None:
         if self.layer is not None:
@@ -121,8 +130,8 @@ class RowLayer:
             remove_if_empty(self._project)
         self._id = None
 
-    def _write(self, layer: QgsVectorLayer, rows: Sequence[Row], frame: SiteFrame) -> bool:
-        """Delete features whose rows are gone, add some of the new rows, and tell whether all of them are."""
+    def _left_of(self, rows: Sequence[Row]) -> list[Row]:
+        """Delete features whose rows are gone, and return the rows that have none yet."""
         before, after = self._written, {}
         new: list[Row] = []
         for points, values in rows:
@@ -133,15 +142,16 @@ class RowLayer:
             else:
                 after.setdefault(tuple(values), []).append(same.pop(at))
         gone = [number for features in before.values() for _, number in features]
-        provider = layer.dataProvider()
-        provider.deleteFeatures(gone)
-        some = new[:AT_ONCE]
-        _, added = provider.addFeatures(_features(layer, some, frame))
-        for (points, values), feature in zip(some, added, strict=True):
-            after.setdefault(tuple(values), []).append((points, feature.id()))
+        self.layer.dataProvider().deleteFeatures(gone)
         self._written = after
         self._has_changed = self._has_changed or bool(gone or new)
-        return len(some) == len(new)
+        return new
+
+    def _write(self, rows: Sequence[Row]) -> None:
+        """Add a feature for each of ``rows``."""
+        _, added = self.layer.dataProvider().addFeatures(_features(self.layer, rows, self._frame))
+        for (points, values), feature in zip(rows, added, strict=True):
+            self._written.setdefault(tuple(values), []).append((points, feature.id()))
 
     def _make(self, crs: str) -> None:
         dirty = self._project.isDirty()
@@ -158,8 +168,6 @@ class RowLayer:
 
 
 def _features(layer: QgsVectorLayer, rows: Sequence[Row], frame: SiteFrame) -> list[QgsFeature]:
-    if not rows:
-        return []
     fields = layer.fields()
     # All at once: to take each row's few points to the map takes longer than all else.
     placed = frame.to_crs(np.concatenate([np.array(points) for points, _ in rows]))

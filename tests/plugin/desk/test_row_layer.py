@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import groupby
 
 import pytest
+from fleet_supervisor.plugin.desk import time_slices
 from fleet_supervisor.plugin.desk.live_layers import MARK
 from fleet_supervisor.plugin.desk.row_layer import AT_ONCE, RowLayer
 from fleet_supervisor.plugin.sites.fleet_group import GROUP, fleet_group
 from qgis.core import QgsProject
+from qgis.PyQt.QtCore import QTimer
 from qgis.PyQt.QtWidgets import QApplication
 
 E, N = 488000.0, 5190000.0
@@ -119,7 +122,7 @@ def test_it_comes_again_in_a_project_that_is_opened_and_not_before_that_is_read(
 
     def meanwhile(*_):
         points.show(TWO[:1], site)
-        QApplication.processEvents()
+        points.finish()
         seen.append(points.layer)
 
     project.readMapLayer.connect(meanwhile)
@@ -129,33 +132,54 @@ def test_it_comes_again_in_a_project_that_is_opened_and_not_before_that_is_read(
     assert {layer.name() for layer in project.mapLayers().values()} == {"walls", "Rows"}
 
 
-def test_many_are_written_bit_by_bit_after_the_news_and_painted_once(points, site, wait, monkeypatch):
-    written, painted = [], []
+@pytest.fixture
+def one_step(monkeypatch):
+    """Slices of one step each."""
+    monkeypatch.setattr(time_slices, "SLICE_SECONDS", time_slices.ONE_STEP)
+
+
+def test_many_are_written_bit_by_bit_after_the_news_and_painted_once(
+    points, site, wait, monkeypatch, one_step
+):
+    written, painted, events = [], [], QTimer()
     rows = [([(float(k), 0.0)], [f"r{k}", k]) for k in range(2 * AT_ONCE + 1)]
     write = RowLayer._write
 
-    def watched(self, layer, *given):
-        if not written:
-            layer.repaintRequested.connect(lambda *_: painted.append(layer.featureCount()))
-        is_whole = write(self, layer, *given)
-        written.append(layer.featureCount())
-        return is_whole
+    def watched(self, some):
+        if AT_ONCE not in written:
+            self.layer.repaintRequested.connect(lambda *_: painted.append(self.layer.featureCount()))
+        write(self, some)
+        written.append(self.layer.featureCount())
 
     monkeypatch.setattr(RowLayer, "_write", watched)
+    events.timeout.connect(lambda: written.append("events"))
+    events.start(0)
     points.show(rows, site)
     assert points.layer is None
     wait(lambda: painted)
-    assert written == [AT_ONCE, 2 * AT_ONCE, len(rows)] and painted == [len(rows)]
+    events.stop()
+    told = [what for what, _ in groupby(written[written.index(AT_ONCE) :])]
+    assert told[:5] == [AT_ONCE, "events", 2 * AT_ONCE, "events", len(rows)] and painted == [len(rows)]
 
 
-def test_what_comes_while_it_is_written_is_what_is_shown_in_the_end(points, site):
-    points.show([([(float(k), 0.0)], [f"old{k}", k]) for k in range(2 * AT_ONCE)], site)
-    points._soon.stop()
-    points._go_on()
-    points._go_on()
-    assert points.layer.featureCount() == AT_ONCE
+def half_written(points, site, wait):
+    """Let rows be written, and stop where some are and others not."""
+    points.show([([(float(k), 0.0)], [f"old{k}", k]) for k in range(20 * AT_ONCE)], site)
+    wait(lambda: points.layer is not None and points.layer.featureCount())
+    assert points.layer.featureCount() < 20 * AT_ONCE
+
+
+def test_what_comes_while_it_is_written_is_what_is_shown_in_the_end(points, site, wait, one_step):
+    half_written(points, site, wait)
     show(points, TWO, site)
     assert set(features(points)) == {"a", "b"}
+
+
+def test_taken_out_while_it_is_written_it_comes_back_whole(points, project, site, wait, one_step):
+    half_written(points, site, wait)
+    project.removeMapLayer(points.layer.id())
+    points.finish()
+    assert points.layer.featureCount() == 20 * AT_ONCE
 
 
 def test_removed_it_does_not_come_again(points, project, site):
