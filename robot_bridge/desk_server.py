@@ -16,7 +16,7 @@ from .access.gate import Gate
 from .access.visitor import Visitor
 from .desk_lanes import Asked, DeskLanes
 from .desk_requests import Caller, answer
-from .errors import BridgeError, OutdatedError
+from .errors import BridgeError, OutdatedError, OverridableError
 from .fleet import Fleet
 from .messages import (
     DESK_REQUESTS,
@@ -114,15 +114,15 @@ class DeskSession:
         """Return the answer that tells why; called where ``error`` was caught."""
         if isinstance(error, jsonrpc.FrameError):
             return jsonrpc.error(error.id, error.code, str(error))
-        code, text, newer = jsonrpc.INTERNAL_ERROR, str(error), None
+        code, text = jsonrpc.INTERNAL_ERROR, str(error)
         if isinstance(error, (MessageError, BridgeError)):
             log.warning("desk of %s: %s", self._operator, error)
-            code, newer = error_code(error), error.newer if isinstance(error, OutdatedError) else None
+            code = error_code(error)
         else:
             text = note_unforeseen(log, f"desk of {self._operator}")
         if isinstance(call, jsonrpc.Call):
             self._note(call, text, code)
-        return jsonrpc.error(call.id if call else None, code, text, newer)
+        return jsonrpc.error(call.id if call else None, code, text, _data_of(error))
 
     def _note(self, call: jsonrpc.Call, refusal: str | None = None, code: int | None = None) -> None:
         """Write down who asked for what to be changed, done or refused, and what a role does not reach."""
@@ -201,3 +201,10 @@ class DeskSession:
                     await self._connection.send(jsonrpc.call(method, params))
         except ConnectionClosed:
             return
+
+
+def _data_of(error: Exception) -> dict[str, Any] | None:
+    """Return what the desk has to know of ``error`` besides its text."""
+    if isinstance(error, OutdatedError):
+        return error.newer
+    return {"found": error.found} if isinstance(error, OverridableError) else None

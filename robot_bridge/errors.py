@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any
 
 
@@ -35,6 +36,19 @@ class OutdatedError(RefusedError):
     def __init__(self, text: str, newer: dict[str, Any]) -> None:
         super().__init__(text)
         self.newer = newer
+
+
+class OverridableError(RefusedError):
+    """A request that is done all the same with an override; ``found`` is all that speaks against it."""
+
+    NAMED = 3
+    """So much of what was found stands in the text."""
+
+    def __init__(self, found: Iterable[str], otherwise: str) -> None:
+        self.found = list(dict.fromkeys(found))
+        more = len(self.found) - self.NAMED
+        named = "; ".join(self.found[: self.NAMED]) + (f"; and {more} more" if more > 0 else "")
+        super().__init__(f"{named}: {otherwise}")
 
 
 class BusyError(RefusedError):

@@ -6,9 +6,11 @@ import asyncio
 from collections.abc import Iterable, Sequence
 from typing import Protocol
 
-from .errors import RefusedError
+from .errors import OverridableError, RefusedError
 from .messages import Abort, Command, SetPath, SetPosEnd, SiteReport
 from .polyline import Track
+
+_ELSEWHERE = "choose a place or way outside it, or send it with an override"
 
 
 class Ground(Protocol):
@@ -52,19 +54,19 @@ def places_of(message: Command) -> list[tuple[float, float]]:
 
 
 async def check_keepouts(site: Fenced, messages: Sequence[Command]) -> None:
-    """Raise RefusedError for the first of ``messages`` that sends a robot into a keepout of the site."""
-    for refusal in await keepout_refusals(site, messages):
-        if refusal is not None:
-            raise refusal
+    """Raise OverridableError for those of ``messages`` that send a robot into a keepout of the site."""
+    refusals = [one for one in await keepout_refusals(site, messages) if one is not None]
+    if refusals:
+        raise OverridableError((found for one in refusals for found in one.found), _ELSEWHERE)
 
 
-async def keepout_refusals(site: Fenced, messages: Sequence[Command]) -> list[RefusedError | None]:
+async def keepout_refusals(site: Fenced, messages: Sequence[Command]) -> list[OverridableError | None]:
     """Return for each of ``messages`` why it must not be sent: it sends a robot into a keepout of the site.
 
     Where a robot is told that it stands is not looked at, nor the way that it finds to a target by itself.
     """
     moving = [number for number, one in enumerate(messages) if isinstance(one, (SetPosEnd, SetPath))]
-    refusals: list[RefusedError | None] = [None] * len(messages)
+    refusals: list[OverridableError | None] = [None] * len(messages)
     if not moving or not site.has_keepouts:
         return refusals
     tracks: list[Track] = [places_of(messages[number]) for number in moving]
@@ -74,9 +76,7 @@ async def keepout_refusals(site: Fenced, messages: Sequence[Command]) -> list[Re
     return refusals
 
 
-def _refusal(track: Track, keepout: str) -> RefusedError:
+def _refusal(track: Track, keepout: str) -> OverridableError:
     x, y = track[-1]
     what = f"({x:.2f}, {y:.2f}) lies in" if len(track) == 1 else f"the path to ({x:.2f}, {y:.2f}) enters"
-    return RefusedError(
-        f"{what} the keepout {keepout!r}: choose a place or way outside it, or send it with an override"
-    )
+    return OverridableError([f"{what} the keepout {keepout!r}"], _ELSEWHERE)

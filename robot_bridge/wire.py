@@ -9,7 +9,14 @@ from typing import Any, Literal, cast
 import msgspec
 
 from . import jsonrpc
-from .errors import BusyError, ForbiddenError, NotReadyError, OutdatedError, StoreError
+from .errors import (
+    BusyError,
+    ForbiddenError,
+    NotReadyError,
+    OutdatedError,
+    OverridableError,
+    StoreError,
+)
 from .messages import (
     ANSWERS,
     DESK_REQUESTS,
@@ -103,6 +110,7 @@ def error_code(error: Exception) -> int:
         NotReadyError: jsonrpc.NOT_READY,
         ForbiddenError: jsonrpc.FORBIDDEN,
         OutdatedError: jsonrpc.OUTDATED,
+        OverridableError: jsonrpc.OVERRIDABLE,
         BusyError: jsonrpc.TOO_MANY,
         StoreError: jsonrpc.INTERNAL_ERROR,
     }

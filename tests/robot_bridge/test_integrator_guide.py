@@ -194,7 +194,7 @@ def test_the_websocket_story_goes_as_it_is_told(bridge):
             robot.connection.send(json.dumps(frame))
         if "method" in frame and "id" in frame:
             (wanted,) = [t for t in told if t.get("id") == frame["id"] and "method" not in t]
-            assert unnamed(answer_frame(robot, frame["id"])) == unnamed(
+            assert unnamed(answer_frame(robot, frame["id"], wanted)) == unnamed(
                 {k: wanted[k] for k in ("result", "error") if k in wanted}
             )
         if frame.get("method") == "SendGPS":
@@ -240,12 +240,13 @@ def give_a_track(robot, desk):
         desk.until(lambda command=command: desk.commands[command]["state"] in ("acknowledged", "reached"))
 
 
-def answer_frame(wire, id):
-    """Return how call ``id`` was answered, as it stands in the frame."""
+def answer_frame(wire, id, wanted):
+    """Return how call ``id`` was answered, as it stands in the frame; of an error what ``wanted`` tells."""
     try:
         return {"result": wire.answer(id)}
     except RefusedError as error:
-        return {"error": {"code": error.code, "message": str(error)}}
+        told = {"code": error.code, "message": str(error), "data": error.data}
+        return {"error": {name: told[name] for name in wanted.get("error", told)}}
 
 
 def test_the_desks_story_goes_as_it_is_told(bridge):
@@ -263,7 +264,7 @@ def test_the_desks_story_goes_as_it_is_told(bridge):
             take_the_last_abort(bridge, robot)
         desk.connection.send(json.dumps(frame))
         (wanted,) = [t for t in told if t.get("id") == frame["id"]]
-        answered = answer_frame(desk, frame["id"])
+        answered = answer_frame(desk, frame["id"], wanted)
         if frame["method"] == "subscribe":
             desk.until(lambda: heard)
         if frame["method"] == "set_queue":

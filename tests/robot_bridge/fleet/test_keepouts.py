@@ -10,7 +10,7 @@ import dataclasses
 import pytest
 from queue_line import task
 
-from robot_bridge.errors import RefusedError
+from robot_bridge.errors import OverridableError, RefusedError
 from robot_bridge.messages import (
     AddTasks,
     Send,
@@ -124,6 +124,16 @@ async def test_a_queue_takes_no_task_into_a_keepout_unless_it_is_overridden(line
     assert (await line.seen()).tasks == []
     report = await ask(request_of("r1", 0, [AROUND, wrong], override="it is drained"), "Ada")
     assert [one.task for one in report.tasks] == [AROUND.task, wrong.task]
+
+
+async def test_all_that_an_override_of_a_queue_would_reach_is_told(line):
+    wrong = [to(f"task-into-{n}", (66.0, 31.0 + n / 10)) for n in range(4)]
+    with pytest.raises(OverridableError, match="; and 2 more: choose a place") as refused:
+        await line.queues.set(SetQueue("r1", 0, [ACROSS, AROUND, *wrong]), "Ada")
+    assert refused.value.found == [
+        "the path to (66.00, 40.00) enters the keepout 'Water basin'",
+        *(f"(66.00, 31.{n}0) lies in the keepout 'Water basin'" for n in range(4)),
+    ]
 
 
 async def test_a_task_that_was_overridden_stays_in_its_queue_when_that_is_put_in_another_order(line):

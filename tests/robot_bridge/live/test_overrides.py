@@ -110,8 +110,10 @@ def test_so_is_a_task_of_a_queue(bridge, desks, method):
             "revision": 2,
             "shares": [{"robot": other, "revision": 0, "tasks": [through]}],
         }
-    with pytest.raises(RefusedError, match="the keepout 'Water basin'"):
+    with pytest.raises(RefusedError, match="the keepout 'Water basin'") as refused:
         desks["operator"].ask(method, asked)
+    assert refused.value.code == -32007
+    assert str(refused.value).startswith("; ".join(refused.value.data["found"]))
     with pytest.raises(RefusedError, match=f"{method}: Operator is operator, and an override takes"):
         desks["operator"].ask(method, {**asked, "override": WHY})
     desks["supervisor"].ask(method, {**asked, "override": WHY})

@@ -22,6 +22,7 @@ class RefusedError(Exception):
         super().__init__(error["message"])
         self.code = error["code"]
         self.data = error.get("data")
+        self.data = error.get("data")
 
 
 def is_refused(wire: Wire, method: str) -> bool:
