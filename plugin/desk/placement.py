@@ -17,7 +17,9 @@ from ...robot_bridge.messages import SiteReport
 from ...robot_bridge.sites.frame import SiteFrame
 from ..errors import PlacementError
 from ..language import tr
+from ..sites.crs_way import check_way
 from ..sites.many_points import moved_together
+from ..sites.site_crs import crs_name
 
 Points = npt.NDArray[np.float64]
 
@@ -49,6 +51,7 @@ class Placement:
                     crs=site.crs,
                 )
             )
+        self.site = site
         self.map_crs = map_crs
         self._context = context
         self.frame = frame_of(site)
@@ -78,6 +81,7 @@ class Placement:
         :raises PlacementError: when the point cannot be expressed in the site's CRS.
         """
         try:
+            check_way(self._forward)
             in_site_crs = self._forward.transform(point, Qgis.TransformDirection.Reverse)
         except QgsCsException as error:
             raise _out_of_reach(self.map_crs, self.site_crs, error) from error
@@ -106,8 +110,8 @@ def _out_of_reach(
         tr(
             "A position in {crs} has no place in {target} ({error}). Choose the site's CRS as the "
             "project's CRS (bottom right in the QGIS window).",
-            crs=source.authid(),
-            target=target.authid(),
+            crs=crs_name(source),
+            target=crs_name(target),
             error=error,
         )
     )

@@ -21,6 +21,7 @@ from qgis.core import (
 
 from ..errors import FleetError
 from ..language import tr, tr_page
+from ..sites.crs_way import check_way
 from .place_crs import crs_of_place
 from .robots_now import FleetNow
 
@@ -122,6 +123,7 @@ def _placed(
         way = QgsCoordinateTransform(crs_of_place(crs, of_layer), site_crs, QgsProject.instance())
         if context is not None:
             context.setCachedValue(key, way)
+    check_way(way)
     placed = QgsGeometry(geometry)
     if way.isValid():
         placed.transform(way)

@@ -15,6 +15,7 @@ from qgis.core import (
 )
 
 from ..language import tr
+from ..sites.crs_way import check_way
 from ..sites.site_crs import crs_name
 from .errors import ParameterError
 from .fleet_algorithm import Parameters
@@ -35,8 +36,9 @@ def point_in(
     # A context without a project, or a point that names no CRS would be in the project's.
     own = algorithm.parameterAsPointCrs(parameters, name, QgsProcessingContext())
     if own.isValid() and own != crs:
+        way = _way(name, parameters.get(name), own, crs, context)
         try:
-            point = QgsCoordinateTransform(own, crs, context.transformContext()).transform(point)
+            point = way.transform(point)
         except QgsCsException as error:
             raise _no_place(name, parameters.get(name), crs) from error
     if not (math.isfinite(point.x()) and math.isfinite(point.y())):
@@ -55,6 +57,9 @@ def extent_in(
 
     :raises ParameterError: when it is none, or has no place there.
     """
+    own = algorithm.parameterAsExtentCrs(parameters, name, QgsProcessingContext())
+    if own.isValid():
+        _way(name, parameters.get(name), own, crs, context)
     outline = algorithm.parameterAsExtentGeometry(parameters, name, context, crs)
     corners = np.array([(vertex.x(), vertex.y()) for vertex in outline.vertices()])
     if not len(corners):
@@ -68,6 +73,30 @@ def extent_in(
     if not np.isfinite(corners).all():
         raise _no_place(name, parameters.get(name), crs)
     return corners
+
+
+def _way(
+    name: str,
+    value: Any,
+    own: QgsCoordinateReferenceSystem,
+    crs: QgsCoordinateReferenceSystem,
+    context: QgsProcessingContext,
+) -> QgsCoordinateTransform:
+    way = QgsCoordinateTransform(own, crs, context.transformContext())
+    try:
+        check_way(way)
+    except QgsCsException as error:
+        raise ParameterError(
+            tr(
+                "{name} {value} is in the CRS {own}, which has no known relation to the CRS {crs}: give it "
+                "in that one.",
+                name=name,
+                value=value,
+                own=crs_name(own),
+                crs=crs_name(crs),
+            )
+        ) from error
+    return way
 
 
 def _no_place(name: str, value: Any, crs: QgsCoordinateReferenceSystem) -> ParameterError:

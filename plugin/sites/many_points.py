@@ -7,6 +7,8 @@ import struct
 import numpy as np
 from qgis.core import QgsCoordinateTransform, QgsCsException, QgsGeometry, QgsPointXY
 
+from .crs_way import check_way
+
 _LINE_HEADER = struct.Struct("<BII")
 _POINT_HEADER = struct.Struct("<BI")
 _POINT, _LINE_STRING = 1, 2
@@ -23,8 +25,10 @@ def line_of(xy: np.ndarray) -> QgsGeometry:
 def moved_together(xy: np.ndarray, transform: QgsCoordinateTransform) -> np.ndarray:
     """Return (n, 2) coordinates through ``transform``.
 
-    :raises QgsCsException: when one of them has no place in the target CRS, unless QGIS makes it infinite.
+    :raises QgsCsException: when one of them has no place in the target CRS, unless QGIS makes it infinite,
+        and when nothing is known of how the CRSs lie to each other.
     """
+    check_way(transform)
     if len(xy) == 0 or transform.isShortCircuited():
         return np.asarray(xy, dtype=np.float64).reshape(-1, 2)
     # A line string of one point is none, so the first point goes twice.
@@ -43,6 +47,7 @@ def moved(xy: np.ndarray, transform: QgsCoordinateTransform) -> np.ndarray:
 
 def _moved_alone(x: float, y: float, transform: QgsCoordinateTransform) -> tuple[float, float]:
     try:
+        check_way(transform)
         point = transform.transform(QgsPointXY(x, y))
     except QgsCsException:
         return float("nan"), float("nan")

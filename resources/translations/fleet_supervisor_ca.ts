@@ -6860,6 +6860,11 @@
             <translation>{name} {value} no té lloc en el SRC {crs}: doneu nombres finits, primer la x o la longitud, i el SRC en què són.</translation>
         </message>
         <message>
+            <location filename="../../plugin/processing/places.py" />
+            <source>{name} {value} is in the CRS {own}, which has no known relation to the CRS {crs}: give it in that one.</source>
+            <translation>{name} {value} és en el SRC {own}, que no té cap relació coneguda amb el SRC {crs}: doneu-ho en aquest últim.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/processing/plan_rows.py" />
             <source>Metres of all robots</source>
             <translation>Metres de tots els robots</translation>
@@ -8039,6 +8044,11 @@
             <location filename="../../plugin/settings/token_store.py" />
             <source>This QGIS keeps no authentication (its options say why, under Authentication): enter the token under Access.</source>
             <translation>Aquest QGIS no desa autenticació (les seves opcions diuen per què, a Autenticació): introduïu el testimoni a Accés.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/crs_way.py" />
+            <source>nothing is known of how the two lie to each other</source>
+            <translation>no se sap com es relacionen l'un amb l'altre</translation>
         </message>
         <message>
             <location filename="../../plugin/sites/feature_filter.py" />

@@ -6860,6 +6860,11 @@
             <translation>{name} {value} no tiene lugar en el SRC {crs}: dé números finitos, primero la x o la longitud, y el SRC en que están.</translation>
         </message>
         <message>
+            <location filename="../../plugin/processing/places.py" />
+            <source>{name} {value} is in the CRS {own}, which has no known relation to the CRS {crs}: give it in that one.</source>
+            <translation>{name} {value} está en el SRC {own}, que no tiene relación conocida con el SRC {crs}: délo en este último.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/processing/plan_rows.py" />
             <source>Metres of all robots</source>
             <translation>Metros de todos los robots</translation>
@@ -8039,6 +8044,11 @@
             <location filename="../../plugin/settings/token_store.py" />
             <source>This QGIS keeps no authentication (its options say why, under Authentication): enter the token under Access.</source>
             <translation>Este QGIS no guarda autenticación (sus opciones dicen por qué, en Autenticación): introduzca el testigo en Acceso.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/crs_way.py" />
+            <source>nothing is known of how the two lie to each other</source>
+            <translation>no se sabe cómo se relacionan uno con otro</translation>
         </message>
         <message>
             <location filename="../../plugin/sites/feature_filter.py" />

@@ -6823,6 +6823,11 @@
             <translation>{name} {value} helye nem létezik a(z) {crs} vetületben: adjon meg véges számokat, elöl az x-et vagy a hosszúságot, és azt a vetületet, amelyben értendők.</translation>
         </message>
         <message>
+            <location filename="../../plugin/processing/places.py" />
+            <source>{name} {value} is in the CRS {own}, which has no known relation to the CRS {crs}: give it in that one.</source>
+            <translation>{name} {value} vetülete {own}, amelynek nincs ismert kapcsolata ezzel: {crs}. Adja meg abban.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/processing/plan_rows.py" />
             <source>Metres of all robots</source>
             <translation>Az összes robot méterei</translation>
@@ -7985,6 +7990,11 @@
             <location filename="../../plugin/settings/token_store.py" />
             <source>This QGIS keeps no authentication (its options say why, under Authentication): enter the token under Access.</source>
             <translation>Ez a QGIS nem őriz hitelesítést (hogy miért, a beállításai mondják meg a Hitelesítés lapon): írja be a tokent a Hozzáférés alatt.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/sites/crs_way.py" />
+            <source>nothing is known of how the two lie to each other</source>
+            <translation>nem tudható, hogyan fekszik a kettő egymáshoz képest</translation>
         </message>
         <message>
             <location filename="../../plugin/sites/feature_filter.py" />

@@ -18,6 +18,7 @@ from qgis.core import (
 from ....robot_bridge.messages import LONGEST_PATH, LONGEST_QUEUE
 from ...errors import FleetError
 from ...language import tr
+from ...sites.crs_way import check_way
 from ...sites.shapes import SAGITTA_M
 from ..desk import Desk
 from ..drafts import CONE, ROUTE, TARGETS, Draft, Point
@@ -157,6 +158,7 @@ def _moved(feature: QgsFeature, layer: QgsVectorLayer, desk: Desk) -> QgsGeometr
     geometry = QgsGeometry(feature.geometry())
     way = QgsCoordinateTransform(layer.crs(), desk.placement().site_crs, desk.project.transformContext())
     try:
+        check_way(way)
         geometry.transform(way)
     except QgsCsException as error:
         raise LayerDraftError(

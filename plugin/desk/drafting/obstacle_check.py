@@ -16,6 +16,7 @@ from qgis.core import (
 
 from ...errors import PlacementError
 from ...language import tr
+from ...sites.crs_way import check_way
 from ...sites.roles import FURNITURE, OBSTACLE, STAIRS
 from ..drafts import Draft, Findings
 from ..placement import Placement, transformed
@@ -54,6 +55,7 @@ class ObstacleCheck:
         lines = yield from lines_in(tracks, placement, None, self._project)
         found: dict[int, list[Hit]] = {}
         try:
+            check_way(way)
             boxes = yield from _boxes(lines, way)
             for feature, numbers in (yield from LayerFeatures(layer).near(boxes)):
                 obstacle = QgsGeometry(feature.geometry())

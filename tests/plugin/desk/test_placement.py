@@ -10,6 +10,9 @@ from fleet_supervisor.plugin.desk.placement import Placement
 from fleet_supervisor.plugin.errors import PlacementError
 from qgis.core import QgsCoordinateReferenceSystem, QgsPointXY, QgsProject
 
+YARD = 'ENGCRS["yard",EDATUM["yard"],CS[Cartesian,2],AXIS["x",east],AXIS["y",north],LENGTHUNIT["metre",1]]'
+"""A CRS of its own, of which nobody knows where on the Earth it is."""
+
 
 def test_a_site_crs_that_qgis_does_not_know_is_named(site):
     with pytest.raises(PlacementError, match="EPSG:999999"):
@@ -26,6 +29,16 @@ def test_a_position_beyond_the_map_projection_is_an_error_in_words(site):
     )
     with pytest.raises(PlacementError, match="Choose the site's CRS"):
         placement.to_map(np.array([(1e12, 1e12)]))
+
+
+def test_on_a_map_of_which_nobody_knows_where_it_is_no_robot_is_drawn_and_no_click_counts(site):
+    placement = Placement(site, QgsCoordinateReferenceSystem(YARD), QgsProject.instance().transformContext())
+    for look in (
+        lambda: placement.to_map(np.array([(12.5, 80.25)])),
+        lambda: placement.to_site(QgsPointXY(4, 5)),
+    ):
+        with pytest.raises(PlacementError, match=r"yard.*nothing is known of how the two lie"):
+            look()
 
 
 def test_points_come_back_from_every_crs(site):

@@ -22,6 +22,8 @@ from qgis.gui import QgsExpressionTreeView
 
 NAMES = ("robot_state", "robot_battery", "robot_age", "distance_to_robot")
 EAST, NORTH = 488000.0, 5190000.0
+YARD = 'ENGCRS["yard",EDATUM["yard"],CS[Cartesian,2],AXIS["x",east],AXIS["y",north],LENGTHUNIT["metre",1]]'
+"""A CRS of its own, of which nobody knows where on the Earth it is."""
 
 
 @pytest.fixture
@@ -133,6 +135,7 @@ def test_of_a_robot_that_never_said_where_it_is_there_is_no_distance(fleet):
         ("'r1', make_point(0, 0), 'EPSG:0'", "'EPSG:0' is no CRS that QGIS knows"),
         ("'r1', 'here'", "'here' is no geometry"),
         ("'r1', make_point(500, 500), 'EPSG:4326'", "no place in EPSG:32633"),
+        (f"'r1', make_point(5, 5), '{YARD}'", "no place in EPSG:32633"),
     ],
 )
 def test_what_cannot_be_measured_says_why(fleet, arguments, says):

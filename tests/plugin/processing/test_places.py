@@ -18,6 +18,10 @@ from qgis.core import (
 
 UTM = QgsCoordinateReferenceSystem("EPSG:32633")
 DEGREES = QgsCoordinateReferenceSystem("EPSG:4326")
+YARD = QgsCoordinateReferenceSystem(
+    'ENGCRS["yard",EDATUM["yard"],CS[Cartesian,2],AXIS["x",east],AXIS["y",north],LENGTHUNIT["metre",1]]'
+)
+"""A CRS of its own, of which nobody knows where on the Earth it is."""
 NO_PLACE = r"has no place in the CRS EPSG:32633 .*: give finite numbers, x or longitude first"
 
 
@@ -64,6 +68,15 @@ def test_an_extent_comes_with_its_corners_or_is_refused(context):
     assert (corners.min(axis=0).tolist(), corners.max(axis=0).tolist()) == ([0, 20], [10, 30])
     with pytest.raises(ParameterError, match=f"EXTENT .* {NO_PLACE}"):
         extent("15,15.1,95,95.1 [EPSG:4326]", context)
+
+
+def test_degrees_are_not_taken_for_the_metres_of_a_local_crs(context):
+    no_way = r"2.11,41.38.* \[EPSG:4326\] is in the CRS EPSG:4326 .* no known relation to the CRS yard"
+    with pytest.raises(ParameterError, match=f"POINT {no_way}"):
+        point_in(ConeLayout().create(), {"POINT": "2.11,41.38 [EPSG:4326]"}, "POINT", context, YARD)
+    with pytest.raises(ParameterError, match=f"EXTENT {no_way}"):
+        given = {"EXTENT": "2.11,41.38,2.12,41.39 [EPSG:4326]"}
+        extent_in(ExportRobotMap().create(), given, "EXTENT", context, YARD)
 
 
 @pytest.mark.parametrize(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from fleet_supervisor.plugin.sites import many_points
 from qgis.core import (
     QgsCoordinateReferenceSystem,
@@ -14,6 +15,10 @@ from qgis.core import (
 
 PLACES = np.array([(15.0, 47.0), (1e5, 1e5), (15.001, 47.001), (15.0, 91.0)])
 THERE = [True, False, True, False]
+
+
+YARD = 'ENGCRS["yard",EDATUM["yard"],CS[Cartesian,2],AXIS["x",east],AXIS["y",north],LENGTHUNIT["metre",1]]'
+"""A CRS of its own, of which nobody knows where on the Earth it is."""
 
 
 def way(qgis_app):
@@ -44,3 +49,18 @@ def test_where_qgis_refuses_them_together_they_are_moved_one_by_one(qgis_app, mo
 def test_one_point_and_none(qgis_app):
     assert many_points.moved(PLACES[:1], way(qgis_app)).shape == (1, 2)
     assert many_points.moved(PLACES[:0], way(qgis_app)).shape == (0, 2)
+
+
+def test_degrees_do_not_become_the_metres_of_a_crs_of_which_nothing_is_known(qgis_app):
+    ends = (QgsCoordinateReferenceSystem("EPSG:4326"), QgsCoordinateReferenceSystem(YARD))
+    nowhere = QgsCoordinateTransform(*ends, QgsProject.instance())
+    with pytest.raises(QgsCsException):
+        many_points.moved_together(PLACES, nowhere)
+    assert not np.isfinite(many_points.moved(PLACES, nowhere)).any()
+
+
+def test_where_an_end_has_no_crs_places_stay_as_they_are(qgis_app):
+    ends = (QgsCoordinateReferenceSystem("EPSG:4326"), QgsCoordinateReferenceSystem())
+    np.testing.assert_array_equal(
+        many_points.moved_together(PLACES, QgsCoordinateTransform(*ends, QgsProject.instance())), PLACES
+    )

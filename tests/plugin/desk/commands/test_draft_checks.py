@@ -6,11 +6,13 @@ from dataclasses import replace
 
 import pytest
 from fleet_supervisor.robot_bridge.messages import CommandState
-from qgis.core import QgsProject, QgsVectorLayer
+from qgis.core import QgsCoordinateReferenceSystem, QgsProject, QgsVectorLayer
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import QDialog, QLineEdit, QPushButton
 
+YARD = 'ENGCRS["yard",EDATUM["yard"],CS[Cartesian,2],AXIS["x",east],AXIS["y",north],LENGTHUNIT["metre",1]]'
+"""A CRS of its own, of which nobody knows where on the Earth it is."""
 SQUARE = "Polygon ((60 50, 80 50, 80 60, 60 60, 60 50))"
 
 
@@ -52,6 +54,15 @@ def test_a_layer_whose_file_is_gone_keeps_the_draft_here_unless_overridden(cone,
     cone.key(Qt.Key.Key_Return)
     assert cone.nothing_sent()
     assert cone.drafts.draft.can_be_overridden
+
+
+@pytest.mark.parametrize("role", ["obstacle", "keepout"])
+def test_a_layer_of_which_nobody_knows_where_it_lies_is_not_held_to_be_free(cone, layer_of, role):
+    layer_of("Polygon", SQUARE, role=role, name="Bays").setCrs(QgsCoordinateReferenceSystem(YARD))
+    cone.click((70, 55))
+    assert cone.complained("nothing is known of how the two lie to each other")
+    cone.key(Qt.Key.Key_Return)
+    assert cone.nothing_sent()
 
 
 def test_a_feature_without_a_name_is_named_by_layer_and_number(cone, layer_of):

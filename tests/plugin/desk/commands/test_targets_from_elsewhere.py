@@ -20,6 +20,8 @@ from qgis.PyQt.QtWidgets import QApplication, QDialog, QLabel, QLineEdit, QPushB
 
 CTRL = Qt.KeyboardModifier.ControlModifier
 X, Y = 488000.0, 5190000.0
+YARD = 'ENGCRS["yard",EDATUM["yard"],CS[Cartesian,2],AXIS["x",east],AXIS["y",north],LENGTHUNIT["metre",1]]'
+"""A CRS of its own, of which nobody knows where on the Earth it is."""
 
 
 def earth(x, y):
@@ -182,6 +184,14 @@ def test_the_selected_point_of_a_layer_is_a_cone_target(hand, layer_of):
     take_from(hand, layer, 1, 2)
     assert (hand.drafts.draft.kind, hand.drafts.draft.robot) == ("cone", "r1")
     assert hand.points == (pytest.approx((70, 55), abs=1e-6),)
+
+
+def test_a_point_of_a_layer_of_which_nobody_knows_where_it_lies_is_no_target(hand, layer_of):
+    layer = layer_of("Point", "Point (70 55)")
+    layer.setCrs(QgsCoordinateReferenceSystem(YARD))
+    take_from(hand, layer)
+    assert hand.points is None
+    assert hand.complained("nothing is known of how the two lie to each other")
 
 
 def test_a_point_of_a_layer_in_another_crs_is_where_it_is(hand, layer_of):
