@@ -245,6 +245,10 @@ class Fleet:
         """Return the event that is set whenever the robot's outbox holds something new."""
         return self._outboxes.setdefault(robot, asyncio.Event())
 
+    async def hand_over(self, robot: str, id: int) -> bool:
+        """Note that message ``id`` of SA is about to be sent to its robot; false where it must not be."""
+        return await self._book.hand_over(robot, id)
+
     async def delivered(self, ids: Iterable[int]) -> None:
         """Note that messages of SA have reached their robots."""
         await self._book.delivered(ids)

@@ -111,6 +111,17 @@ class CommandBook(CommandReader):
         """
         await to_its_end(self._lead(robot, task, path, write))
 
+    async def hand_over(self, robot: str, sa_id: int) -> bool:
+        """Note that message ``sa_id`` is delivered, before it is sent; false where its command has ended.
+
+        Were it noted afterwards, a gateway that is killed in between would leave a command queued that the
+        robot carries out, and take it back as one that never reached it.
+        """
+        if sa_id not in self._open.queued:
+            return True
+        await to_its_end(self._delivered([sa_id]))
+        return any(command.sa_id == sa_id for command in self._open.of(robot))
+
     async def delivered(self, sa_ids: Iterable[int]) -> None:
         """Note that the messages ``sa_ids`` have reached their robots."""
         wanted = [id for id in sa_ids if id in self._open.queued]

@@ -78,11 +78,16 @@ class Delivery:
         """Send the messages above ``last``, by urgency; return false when a stop made them out of date."""
         stops = self._stops
         for row in await self._fleet.outbox(self._robot, last[False], last[True]):
+            # Safety comes before bookkeeping: an Abort does not wait until it is noted.
+            is_abort = row.op == Abort.__name__
+            is_due = is_abort or await self._fleet.hand_over(self._robot, row.id)
             if self._stops != stops:
                 return False
-            await self._connection.send(jsonrpc.call(row.op, _params(row), row.id))
+            if is_due:
+                await self._connection.send(jsonrpc.call(row.op, _params(row), row.id))
             last[row.urgent] = row.id
-            await self._fleet.delivered([row.id])
+            if is_abort:
+                await self._fleet.delivered([row.id])
         return True
 
 

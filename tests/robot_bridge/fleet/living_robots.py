@@ -209,10 +209,14 @@ class WebSocketRobot(Robot):
     async def _take(self, row):
         """Do what a message says and acknowledge it; return false where the gateway begins anew with all."""
         fleet = self.play.fleet
+        if row.op != "Abort" and not await fleet.hand_over(self.name, row.id):
+            self._last[row.urgent] = row.id
+            return True
         self.hear(row.id, row.op, parse_params(row.op, row.params) or {})
         self._last[row.urgent] = row.id
-        with contextlib.suppress(StoreError):
-            await fleet.delivered([row.id])
+        if row.op == "Abort":
+            with contextlib.suppress(StoreError):
+                await fleet.delivered([row.id])
         try:
             await fleet.receive(self.name, self.link, OpAck(id=row.id), None)
         except StoreError:
