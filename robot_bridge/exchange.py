@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -23,8 +24,8 @@ class Outcome:
 
     @property
     def admitted(self) -> bool:
-        """Tell whether the request, a Ready, was taken."""
-        return self.ack is not None and self.ack.ok
+        """Tell whether the request was a Ready, and taken."""
+        return self.ack is not None and self.ack.ok and self.ack.magic is not None
 
     def rows(self, *, acks: bool) -> list[tuple[str, Answer]]:
         """Return what is to be written into SA, the OpAck first."""
@@ -35,6 +36,21 @@ class Outcome:
         """Return the kinds of older answers that are void; a map or a Start is, when there is a newer one."""
         renewed = isinstance(self.answer, (SetMap, Start))
         return (*self.void, type(self.answer).__name__) if renewed else self.void
+
+
+def rows_of(outcomes: Sequence[Outcome], *, acks: bool) -> list[tuple[str, Answer]]:
+    """Return what is to be written into SA; left out is what a later Ready of the same robot makes void.
+
+    A robot that said Ready again and again while nobody read it is given the map of the whole site once.
+    """
+    void: defaultdict[str, set[str]] = defaultdict(set)
+    kept: list[tuple[str, Answer]] = []
+    for outcome in reversed(outcomes):
+        gone = void[outcome.robot]
+        kept += [row for row in reversed(outcome.rows(acks=acks)) if type(row[1]).__name__ not in gone]
+        if outcome.admitted:
+            gone.update(outcome.voided())
+    return kept[::-1]
 
 
 def finish(

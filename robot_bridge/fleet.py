@@ -217,10 +217,13 @@ class Fleet:
         """Write the answers of requests into SA, with their OpAcks if ``acks``, and delete them from RR.
 
         One transaction, with the positions that they told: a request is either answered and gone, or will be
-        dealt with again.
+        dealt with again. A robot that said Ready is stored before.
         """
         if outcomes or request_ids:
-            rows = [row for outcome in outcomes for row in outcome.rows(acks=acks)]
+            rows = exchange.rows_of(outcomes, acks=acks)
+            if admitted := {outcome.robot for outcome in outcomes if outcome.admitted}:
+                # Together: one by one, the Readys of a whole fleet outlast a gateway that is killed soon.
+                await self._saving.save(*admitted)
             if request_ids:
                 # A request whose answer a power cut undid is there again, and is dealt with again.
                 # It may have waited for long: where the robot was then must not be in memory alone.
@@ -368,13 +371,16 @@ class Fleet:
         if reason is not None:
             log.warning("link %s: a second robot said Ready: %s", link, reason)
             return Outcome(robot, OpAck(id=id, ok=False, reason=reason, magic=request.magic))
-        if self.robots.starts_anew(robot, request.magic):
+        if starts_anew := self.robots.starts_anew(robot, request.magic):
             # Before it is known by its new number: after a failure it must be seen to start anew once more.
             await self.delivered_by_deletion(self.robots.get(robot).link)
             reason = f"robot {robot} started anew; sent once more"
             await self._book.deliver_again(robot, reason, self.site.settings.commands.expire_after_s)
         self.robots.ready(robot, request.magic, link, self._clock())
-        await self._saving.save(robot)
+        self._saving.touch(robot)
+        if starts_anew:
+            # Not only with its answer: should the gateway die until then, it has not started anew once more.
+            await self._saving.save(robot)
         await self.emergency.ready(robot)
         content = await asyncio.to_thread(self.site.whole_map)
         ack = OpAck(id=id, magic=request.magic, robot=robot, database=self._database_id)

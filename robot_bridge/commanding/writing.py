@@ -15,7 +15,7 @@ from ..command_life.open_command import OpenCommand, Order, Recall, because
 from ..command_life.states import is_open, note
 from ..errors import RefusedError
 from ..messages import Abort, Command, CommandReport, SetPosIni
-from ..store import answers, closures, commands, queues
+from ..store import answers, closures, commands, queues, requests
 from ..store.commands import StoredCommand
 from ..store.queues import Hold
 from ..wire import decode_answer
@@ -83,11 +83,22 @@ def write_all(connection: Connection, steps: Sequence[OpenCommand]) -> None:
 
 
 def write_recalls(connection: Connection, recalls: Sequence[Recall]) -> list[OpenCommand]:
-    """Take messages back that were not fetched, and write what becomes of their commands; return those."""
+    """Take messages back that were not fetched, and write what becomes of their commands; return those.
+
+    Fetched is also what its robot has acknowledged without having deleted it, read by the gateway or not.
+    """
     taken_back = answers.take_back(connection, [recall.queued.sa_id for recall in recalls])
+    if taken_back:
+        taken_back -= _acknowledged(connection, recalls)
     steps = [recall.ended if recall.queued.sa_id in taken_back else recall.fetched for recall in recalls]
     commands.save_all(connection, [_stored(command) for command in steps])
     return steps
+
+
+def _acknowledged(connection: Connection, recalls: Sequence[Recall]) -> set[int]:
+    """Return the messages of ``recalls`` whose OpAcks stand in RR; looked for when the messages are gone."""
+    by_robot = {(recall.queued.report.robot, recall.queued.sa_id) for recall in recalls}
+    return {sa_id for _, sa_id in by_robot.intersection(requests.acknowledgements(connection))}
 
 
 def write_acknowledged(

@@ -17,6 +17,7 @@ AT_ONCE = 500
 _ROW = (rr.c.id, *(cast(column, Text) for column in (rr.c.robot, rr.c.op, rr.c.params)))
 # Built once: SQLAlchemy takes longer to build a statement than the database to do it.
 _READ = select(*_ROW).order_by(rr.c.id).limit(AT_ONCE)
+_ACKS = select(cast(rr.c.robot, Text), cast(rr.c.params, Text)).where(rr.c.op == "OpAck")
 
 
 class RequestRow(NamedTuple):
@@ -39,9 +40,14 @@ def backlog(connection: Connection) -> tuple[int, list[tuple[str, int]]]:
     Of acknowledgements those that cannot be understood are left out.
     """
     newest = connection.scalar(select(func.max(rr.c.id))) or 0
-    waiting = connection.execute(select(*_ROW).where(rr.c.op == "OpAck", rr.c.id <= newest))
-    acks = [(robot, id) for _, robot, _, params in waiting if (id := _acknowledged(params)) is not None]
-    return newest, acks
+    return newest, acknowledgements(connection, newest)
+
+
+def acknowledgements(connection: Connection, newest: int | None = None) -> list[tuple[str, int]]:
+    """Return robots with the messages whose OpAcks wait to be read, up to request ``newest`` if given."""
+    wanted = _ACKS if newest is None else _ACKS.where(rr.c.id <= newest)
+    waiting = connection.execute(wanted)
+    return [(robot, id) for robot, params in waiting if (id := _acknowledged(params)) is not None]
 
 
 def _acknowledged(params: str | None) -> int | None:

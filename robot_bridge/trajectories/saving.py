@@ -59,7 +59,11 @@ class Saving:
         self._unsaved.add(robot)
 
     async def save(self, *robots: str) -> None:
-        """Store where robots have been and are, those of ``robots`` in any case; raises StoreError."""
+        """Store where robots have been and are, those of ``robots`` in any case; raises StoreError.
+
+        Whoever waits meanwhile for robots of his own has them stored together with all others.
+        """
+        self._unsaved.update(robots)
         await to_its_end(self._save(robots))
 
     async def jot_with(self, work: Callable[..., None], *arguments: Any) -> None:
@@ -82,12 +86,15 @@ class Saving:
 
     async def _save(self, robots: Sequence[str]) -> None:
         async with self._writing:
+            if robots and self._unsaved.isdisjoint(robots):
+                # Stored by whoever had the turn before.
+                return
             self._take_back()
             while True:
                 fixes = self._recorder.take(self._clock())
                 last, unsaved = not self._recorder.waiting, set[str]()
                 if last:
-                    unsaved, self._unsaved = self._unsaved.union(robots), set()
+                    unsaved, self._unsaved = self._unsaved, set()
                 try:
                     # As they are now: by the time they are written they may be further on than is stored.
                     known = [

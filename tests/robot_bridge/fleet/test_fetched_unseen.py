@@ -55,6 +55,28 @@ async def test_a_target_that_was_fetched_unseen_stays_open_until_the_robot_answe
     assert ("command-target", "delivered") in yard.told
 
 
+@pytest.mark.parametrize("order", [abort, abort_all, stop, expire])
+async def test_so_does_one_that_the_robot_has_acknowledged_and_not_deleted_yet(plugged, order):
+    yard = plugged.yard
+    await yard.send("target")
+    ((id,),) = yard.sql("select id from sa where op = 'SetPosEnd'")
+    yard.ask("r1", OpAck(id=id))
+    await order(yard)
+    assert (await yard.states())["target"] == "delivered"
+    await yard.link.poll()
+    assert (await yard.states())["target"] == "acknowledged"
+    assert "SetPosEnd" not in yard.waiting()
+
+
+async def test_what_another_robot_says_that_it_has_read_is_taken_back(plugged):
+    yard = plugged.yard
+    await yard.send("target")
+    ((id,),) = yard.sql("select id from sa where op = 'SetPosEnd'")
+    yard.ask("r2", OpAck(id=id))
+    await expire(yard)
+    assert (await yard.states())["target"] == "expired"
+
+
 @pytest.mark.parametrize(
     ("order", "state"), [(abort, "aborted"), (abort_all, "aborted"), (stop, "aborted"), (expire, "expired")]
 )
