@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import uuid
 from collections.abc import Callable, Iterable
-from dataclasses import replace
 from typing import Any
 
 from qgis.core import QgsProject
@@ -21,12 +20,10 @@ from ..wire.mailbox import News
 from ..wire.outbox import Order
 from ..wire.status import LinkStatus, Phase
 from .beat import PULL_EVERY_MS, Beat
-from .checks import LayerCheck, check_bounds, check_map
 from .command_book import CommandBook
+from .draft_rules import DraftRules
 from .drafting.draft_checker import DraftChecker
 from .drafting.draft_sending import DraftSending
-from .drafting.order_check import check_orders
-from .drafting.target_check import TargetCheck
 from .drafts import Draft, DraftBoard, Point, in_brief
 from .observation_book import ObservationBook
 from .orders import Orders
@@ -36,7 +33,6 @@ from .placement_book import PlacementBook
 from .queue_book import QueueBook
 from .road_board import RoadBoard
 from .route_preview import RoutePreview
-from .time_slices import Steps
 
 LATE_S = 0.1
 """Seconds after which what was pulled is not passed on without a look for what is newer."""
@@ -104,12 +100,24 @@ class Desk(QObject):
         self.emergency: EmergencyReport | None = None
         self.selection: tuple[str, ...] = ()
         self._placement: Placement | None = None
-        self._check_layers = LayerCheck(project, self)
-        self._check_targets = TargetCheck(self.book, self.queues)
-        self.checks = DraftChecker(self.drafts, self._checked, self)
+        self._rules = DraftRules(
+            project, self.placement, lambda: self.link.operator, self.book, self.queues, self
+        )
+        self.checks = DraftChecker(self.drafts, self._rules.look, self)
         self.checks.found.connect(self._found)
-        self._check_layers.changed.connect(self.checks.begin_anew)
+        self._rules.changed.connect(self.checks.begin_anew)
         self.sending = DraftSending(self.drafts, self.checks, self.orders, self)
+        self._timer = QTimer(self)
+        self._timer.setInterval(PULL_EVERY_MS)
+        self._timer.timeout.connect(self.pull)
+        self._pulled_at = clock()
+        self._after_pull = QTimer(self)
+        self._after_pull.setSingleShot(True)
+        self._after_pull.timeout.connect(self._pass_on)
+        self._pass_on_words()
+
+    def _pass_on_words(self) -> None:
+        """Tell as the desk's own what its parts have to say to the operator."""
         self.sending.failed.connect(self.failed)
         self.sending.complained.connect(self.complained)
         self.orders.accepted.connect(self.remarked)
@@ -118,13 +126,6 @@ class Desk(QObject):
         self.roads.failed.connect(self.failed)
         self.roads.remarked.connect(self.remarked)
         self.preview.refused.connect(self.complained)
-        self._timer = QTimer(self)
-        self._timer.setInterval(PULL_EVERY_MS)
-        self._timer.timeout.connect(self.pull)
-        self._pulled_at = clock()
-        self._after_pull = QTimer(self)
-        self._after_pull.setSingleShot(True)
-        self._after_pull.timeout.connect(self._pass_on)
 
     # --- the link ---
 
@@ -151,7 +152,7 @@ class Desk(QObject):
         self._timer.stop()
         self._after_pull.stop()
         self.checks.stop()
-        self._check_layers.remove()
+        self._rules.remove()
         self.connection.shut_down()
 
     def pull(self) -> None:
@@ -222,7 +223,7 @@ class Desk(QObject):
         self.observations.clear()
         self.emergency = None
         self.roads.clear()
-        self._check_targets.clear()
+        self._rules.forget_targets()
         self.select(None)
         if self.drafts.draft is not None:
             words = self.drafts.draft.in_words()
@@ -236,7 +237,7 @@ class Desk(QObject):
         self.queues.forget(gone.names)
         self.robots_removed.emit(gone)
         self.select_all(robot for robot in self.selection if robot not in gone.names)
-        self._check_targets.take(gone.names)
+        self._rules.take_targets(gone.names)
         self.queues_changed.emit(sorted(gone.names))
         draft = self.drafts.draft
         if draft is not None and draft.robot in gone.names:
@@ -259,7 +260,7 @@ class Desk(QObject):
             self._let_go(gone)
         changed = self.book.merge(news.commands.values())
         if changed:
-            self._check_targets.take(report.robot for report in changed)
+            self._rules.take_targets(report.robot for report in changed)
             self.commands_changed.emit(changed)
         self.roads.take(news.roads)
         self._take_queues(news)
@@ -275,7 +276,7 @@ class Desk(QObject):
     def _take_queues(self, news: News) -> None:
         queues = self.queues.merge(news.queues)
         if queues:
-            self._check_targets.take(queues)
+            self._rules.take_targets(queues)
             self.queues_changed.emit(queues)
         placed = self.placements.merge(news.placements)
         if placed:
@@ -304,20 +305,6 @@ class Desk(QObject):
         :raises FleetError: when there is no site or a layer cannot be read; what was on the map stays then.
         """
         self.checks.put(draft)
-
-    def _checked(self, draft: Draft, afresh: bool) -> Steps[Draft]:
-        """Hold a draft against site, layers and other robots' targets; return it with what was found.
-
-        An override holds for what was found when it was given: it is gone when something else is found.
-        """
-        placement = self.placement()
-        found = check_bounds(draft.points, self.site) + check_map(placement)
-        found += yield from self._check_layers.look(draft, placement, afresh)
-        # At the end, so that nobody is sent there meanwhile.
-        found += self._check_targets.look(draft)
-        found += check_orders(draft, self.book.task_of(draft.robot), self.link.operator)
-        override = draft.override if found.overridable == draft.findings.overridable else None
-        return replace(draft, findings=found, override=override, is_checked=True)
 
     def _found(self, draft: Draft) -> None:
         if draft.findings.faults:
