@@ -27,12 +27,14 @@ class Answer:
     """What became of an order: the gateway's ``result``, or ``error`` in words for the operator.
 
     ``outdated`` is true when it was refused because what it changes has changed since it was looked at.
+    ``overridable`` is all that speaks against it where it was refused, and would be done with an override.
     """
 
     order: Order
     result: dict[str, Any] | None = None
     error: str | None = None
     outdated: bool = False
+    overridable: tuple[str, ...] = ()
 
 
 class Outbox:

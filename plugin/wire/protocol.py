@@ -45,6 +45,7 @@ from .road_news import METHODS as ROAD_NEWS
 Clock = Callable[[], float]
 
 OUTDATED = -32006
+OVERRIDABLE = -32007
 """The error code of a change to what is not as it was seen; the newer state comes with it."""
 
 ALL_QUEUES = "every queue"
@@ -221,7 +222,10 @@ class DeskProtocol:
             if outdated:
                 self._take_queues(message["error"].get("data") or {})
             if waiting is not None:
-                self._mailbox.put_answer(Answer(order, error=_error_text(message), outdated=outdated))
+                found = _found(message) if _code(message) == OVERRIDABLE else ()
+                self._mailbox.put_answer(
+                    Answer(order, error=_error_text(message), outdated=outdated, overridable=found)
+                )
             return []
         result = message.get("result") or {}
         if order.method in (EmergencyStop.method, ClearEmergencyStop.method):
@@ -267,6 +271,11 @@ def _error_text(message: dict[str, Any]) -> str:
 def _code(message: dict[str, Any]) -> Any:
     error = message["error"]
     return error.get("code") if isinstance(error, dict) else None
+
+
+def _found(message: dict[str, Any]) -> tuple[str, ...]:
+    """Return what speaks against a request that can be overridden."""
+    return tuple(str(text) for text in message["error"]["data"]["found"])
 
 
 def _too_old(age: float) -> str:

@@ -1360,6 +1360,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/commands/draft_commands.py" />
+            <source>Nothing is sent yet.</source>
+            <translation>Encara no s'envia res.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/draft_commands.py" />
             <source>The draft has changed since it was looked at, so nothing was overridden. Press Override again.</source>
             <translation>L'esborrany ha canviat des que es va mirar, així que no s'ha imposat res. Torneu a prémer Imposa.</translation>
         </message>
@@ -1470,8 +1475,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/commands/override_dialog.py" />
-            <source>Your name, what was found and why go into the gateway's log. Nothing is sent yet.</source>
-            <translation>El vostre nom, el que s'ha trobat i el perquè van al registre de la passarel·la. Encara no s'envia res.</translation>
+            <source>Your name, what was found and why go into the gateway's log.</source>
+            <translation>El vostre nom, el que s'ha trobat i el perquè van al registre de la passarel·la.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/commands/override_dialog.py" />
@@ -2744,6 +2749,16 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driven_plan.py" />
+            <source>Nothing of the plan waits to be overridden.</source>
+            <translation>Res del pla no espera ser imposat.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driven_plan.py" />
+            <source>Nothing was overridden: what was refused is no longer being sent. Look at the plan.</source>
+            <translation>No s'ha imposat res: el que es va rebutjar ja no s'està enviant. Mireu el pla.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driven_plan.py" />
             <source>Paused: {robots} ({why})</source>
             <translation>En pausa: {robots} ({why})</translation>
         </message>
@@ -2756,6 +2771,11 @@
             <location filename="../../plugin/desk/plans/driven_plan.py" />
             <source>The cone plan is in the robots' queues.</source>
             <translation>El pla de cons és a les cues dels robots.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driven_plan.py" />
+            <source>The cone plan is not sent any further. {words}: {found} Override … in the panel Cone plan sends it all the same, where your role may.</source>
+            <translation>El pla de cons no es continua enviant. {words}: {found} Imposa … al tauler Pla de cons ho envia igualment, on el vostre paper ho permeti.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driven_plan.py" />
@@ -2827,6 +2847,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>Leave it at what was sent: robots that have their cones by now go on with them</source>
+            <translation>Ho deixa amb el que s'ha enviat: els robots que ja tenen els seus cons hi continuen</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
             <source>Let them go on</source>
             <translation>Que continuïn</translation>
         </message>
@@ -2839,6 +2864,11 @@
             <location filename="../../plugin/desk/plans/driving_bar.py" />
             <source>No plan. Choose cones and robots, then Preview or Solve.</source>
             <translation>Cap pla. Trieu cons i robots, i després Vista prèvia o Resol.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>Not sent as a whole yet</source>
+            <translation>Encara no s'ha enviat sencer</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driving_bar.py" />
@@ -2859,6 +2889,16 @@
             <location filename="../../plugin/desk/plans/driving_bar.py" />
             <source>Send new plans without asking</source>
             <translation>Envia plans nous sense preguntar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>Send no more</source>
+            <translation>No enviïs més</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>Send the plan on in spite of what was found; asks why</source>
+            <translation>Continua enviant el pla malgrat el que s'ha trobat; demana per què</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driving_bar.py" />
@@ -2952,6 +2992,11 @@
             <location filename="../../plugin/desk/plans/plan_dock.py" />
             <source>Solve</source>
             <translation>Resol</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_dock.py" />
+            <source>The plan is sent on at once, and robots set off.</source>
+            <translation>El pla es continua enviant de seguida, i els robots es posen en marxa.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/plan_layers.py" />

@@ -1360,6 +1360,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/commands/draft_commands.py" />
+            <source>Nothing is sent yet.</source>
+            <translation>Aún no se envía nada.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/draft_commands.py" />
             <source>The draft has changed since it was looked at, so nothing was overridden. Press Override again.</source>
             <translation>El borrador ha cambiado desde que se miró, así que no se impuso nada. Pulse Imponer otra vez.</translation>
         </message>
@@ -1470,8 +1475,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/commands/override_dialog.py" />
-            <source>Your name, what was found and why go into the gateway's log. Nothing is sent yet.</source>
-            <translation>Su nombre, lo hallado y el porqué van al registro de la pasarela. Aún no se envía nada.</translation>
+            <source>Your name, what was found and why go into the gateway's log.</source>
+            <translation>Su nombre, lo hallado y el porqué van al registro de la pasarela.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/commands/override_dialog.py" />
@@ -2744,6 +2749,16 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driven_plan.py" />
+            <source>Nothing of the plan waits to be overridden.</source>
+            <translation>Nada del plan espera ser impuesto.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driven_plan.py" />
+            <source>Nothing was overridden: what was refused is no longer being sent. Look at the plan.</source>
+            <translation>No se impuso nada: lo que se rechazó ya no se está enviando. Mire el plan.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driven_plan.py" />
             <source>Paused: {robots} ({why})</source>
             <translation>En pausa: {robots} ({why})</translation>
         </message>
@@ -2756,6 +2771,11 @@
             <location filename="../../plugin/desk/plans/driven_plan.py" />
             <source>The cone plan is in the robots' queues.</source>
             <translation>El plan de conos está en las colas de los robots.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driven_plan.py" />
+            <source>The cone plan is not sent any further. {words}: {found} Override … in the panel Cone plan sends it all the same, where your role may.</source>
+            <translation>El plan de conos no se sigue enviando. {words}: {found} Imponer … en el panel Plan de conos lo envía de todos modos, donde su papel lo permita.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driven_plan.py" />
@@ -2827,6 +2847,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>Leave it at what was sent: robots that have their cones by now go on with them</source>
+            <translation>Dejarlo en lo enviado: los robots que ya tienen sus conos siguen con ellos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
             <source>Let them go on</source>
             <translation>Que continúen</translation>
         </message>
@@ -2839,6 +2864,11 @@
             <location filename="../../plugin/desk/plans/driving_bar.py" />
             <source>No plan. Choose cones and robots, then Preview or Solve.</source>
             <translation>Ningún plan. Elija conos y robots, y después Vista previa o Resolver.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>Not sent as a whole yet</source>
+            <translation>Aún no se ha enviado entero</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driving_bar.py" />
@@ -2859,6 +2889,16 @@
             <location filename="../../plugin/desk/plans/driving_bar.py" />
             <source>Send new plans without asking</source>
             <translation>Enviar planes nuevos sin preguntar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>Send no more</source>
+            <translation>No enviar más</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>Send the plan on in spite of what was found; asks why</source>
+            <translation>Seguir enviando el plan a pesar de lo hallado; pregunta por qué</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driving_bar.py" />
@@ -2952,6 +2992,11 @@
             <location filename="../../plugin/desk/plans/plan_dock.py" />
             <source>Solve</source>
             <translation>Resolver</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_dock.py" />
+            <source>The plan is sent on at once, and robots set off.</source>
+            <translation>El plan se sigue enviando enseguida y los robots se ponen en marcha.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/plan_layers.py" />

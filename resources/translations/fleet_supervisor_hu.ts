@@ -1353,6 +1353,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/commands/draft_commands.py" />
+            <source>Nothing is sent yet.</source>
+            <translation>Még semmi sincs elküldve.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/commands/draft_commands.py" />
             <source>The draft has changed since it was looked at, so nothing was overridden. Press Override again.</source>
             <translation>A vázlat megváltozott, mióta megnézte, így nem lett felülbírálva. Nyomja meg újra a Felülbírálást.</translation>
         </message>
@@ -1463,8 +1468,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/commands/override_dialog.py" />
-            <source>Your name, what was found and why go into the gateway's log. Nothing is sent yet.</source>
-            <translation>Az Ön neve, amit az ellenőrzés talált és az ok az átjáró naplójába kerül. Még semmi sincs elküldve.</translation>
+            <source>Your name, what was found and why go into the gateway's log.</source>
+            <translation>Az Ön neve, amit az ellenőrzés talált és az ok az átjáró naplójába kerül.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/commands/override_dialog.py" />
@@ -2729,6 +2734,16 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driven_plan.py" />
+            <source>Nothing of the plan waits to be overridden.</source>
+            <translation>A tervből semmi sem vár felülbírálásra.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driven_plan.py" />
+            <source>Nothing was overridden: what was refused is no longer being sent. Look at the plan.</source>
+            <translation>Semmi sem lett felülbírálva: amit az átjáró visszautasított, azt már nem küldi senki. Nézze meg a tervet.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driven_plan.py" />
             <source>Paused: {robots} ({why})</source>
             <translation>Szünetel: {robots} ({why})</translation>
         </message>
@@ -2741,6 +2756,11 @@
             <location filename="../../plugin/desk/plans/driven_plan.py" />
             <source>The cone plan is in the robots' queues.</source>
             <translation>A bójaterv a robotok várólistáin van.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driven_plan.py" />
+            <source>The cone plan is not sent any further. {words}: {found} Override … in the panel Cone plan sends it all the same, where your role may.</source>
+            <translation>A bójaterv küldése megállt. {words}: {found} A Bójaterv panelen a Felülbírálás … mégis elküldi, ha a szerepe engedi.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driven_plan.py" />
@@ -2811,6 +2831,11 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>Leave it at what was sent: robots that have their cones by now go on with them</source>
+            <translation>Marad, ami elment: amelyik robot már megkapta a bójáit, az folytatja</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
             <source>Let them go on</source>
             <translation>Folytassák</translation>
         </message>
@@ -2823,6 +2848,11 @@
             <location filename="../../plugin/desk/plans/driving_bar.py" />
             <source>No plan. Choose cones and robots, then Preview or Solve.</source>
             <translation>Nincs terv. Válasszon bójákat és robotokat, majd Előnézet vagy Megoldás.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>Not sent as a whole yet</source>
+            <translation>Még nem ment el egészben</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driving_bar.py" />
@@ -2843,6 +2873,16 @@
             <location filename="../../plugin/desk/plans/driving_bar.py" />
             <source>Send new plans without asking</source>
             <translation>Új tervek küldése kérdés nélkül</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>Send no more</source>
+            <translation>Nem küld többet</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/driving_bar.py" />
+            <source>Send the plan on in spite of what was found; asks why</source>
+            <translation>A terv küldésének folytatása annak ellenére, amit az ellenőrzés talált; megkérdezi, miért</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driving_bar.py" />
@@ -2935,6 +2975,11 @@
             <location filename="../../plugin/desk/plans/plan_dock.py" />
             <source>Solve</source>
             <translation>Megoldás</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/desk/plans/plan_dock.py" />
+            <source>The plan is sent on at once, and robots set off.</source>
+            <translation>A terv küldése azonnal folytatódik, és a robotok elindulnak.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/plan_layers.py" />

@@ -113,8 +113,10 @@ class DraftCommands(QObject):
                     in_words=draft.in_words(),
                 )
             )
-        dialog = OverrideDialog(draft, self._window)
-        dialog.confirmed.connect(self._overridden)
+        then = tr("Nothing is sent yet.")
+        found = draft.findings.overridable
+        dialog = OverrideDialog(draft.in_words(), found, then, self._window, is_safe=False)
+        dialog.confirmed.connect(lambda why: self._overridden(draft, why))
         dialog.open()
 
     def _overridden(self, draft: Draft, text: str) -> None:

@@ -14,6 +14,7 @@ from ....robot_bridge.messages import MessageError, QueueTask
 from ...errors import FleetError
 from ...language import first_of, tr
 from ..desk import Desk
+from ..drafts import in_brief
 from .available_robots import has_place
 from .closure_look import ClosureLook
 from .draft import Draft
@@ -21,6 +22,7 @@ from .draft_plan import DraftPlan, PlanningError
 from .followed_plan import FollowedPlan
 from .progress import Progress, Trouble, cones_under_way, situation_of, under_way
 from .sending import (
+    Refusal,
     Sending,
     Step,
     first_steps,
@@ -115,6 +117,11 @@ class DrivenPlan(QObject):
         """Whether something is being sent or planned."""
         return self.sending is not None or self._drafts.busy
 
+    @property
+    def refusal(self) -> Refusal | None:
+        """What the gateway sends with an override alone, while that is not decided."""
+        return None if self.sending is None else self.sending.refusal
+
     def send(self) -> None:
         """Send the draft to the robots' queues.
 
@@ -129,6 +136,27 @@ class DrivenPlan(QObject):
         self._followed.begin(draft, tasks)
         self._start(first_steps(self._desk, tasks), self._sent)
         self._look_at_what_is_sent()
+
+    def override(self, refusal: Refusal, why: str) -> None:
+        """Send what was refused all the same, and then the rest of the plan.
+
+        :raises PlanningError: when that is decided by now, or an emergency stop is in force.
+        """
+        if refusal is not self.refusal:
+            raise PlanningError(
+                tr("Nothing was overridden: what was refused is no longer being sent. Look at the plan.")
+            )
+        self._check_no_emergency()
+        self.settled.emit(_in_words(refusal))
+        self.sending.override(why)
+        self.changed.emit()
+
+    def leave(self) -> None:
+        """Send no more of the plan than robots have by now; raises PlanningError if nothing is refused."""
+        if self.refusal is None:
+            raise PlanningError(tr("Nothing of the plan waits to be overridden."))
+        self.settled.emit(_in_words(self.refusal))
+        self.sending.leave()
 
     def plan_rest(self, *, try_again: bool = False) -> None:
         """Hold the robots and plan what is left; :meth:`confirm` sends it, :meth:`discard` lets them go on.
@@ -193,6 +221,8 @@ class DrivenPlan(QObject):
 
     def clear(self) -> None:
         """Watch no plan any more, and send no more of it; robots go on with what is in their queues."""
+        if self.refusal is not None:
+            self.settled.emit(_in_words(self.refusal))
         if self.sending is not None:
             self.sending.give_up()
             self._forget_sending()
@@ -285,8 +315,15 @@ class DrivenPlan(QObject):
             self.changed.emit()
 
         sending.ended.connect(ended)
+        sending.refused.connect(self._refused)
         self.changed.emit()
         sending.start()
+
+    def _refused(self) -> None:
+        # One text that says where it is decided, in place of the one that every refusal brings.
+        self.settled.emit(self.refusal.told)
+        self.failed.emit(_in_words(self.refusal))
+        self.changed.emit()
 
     def _forget_sending(self) -> None:
         sending, self.sending = self.sending, None
@@ -304,6 +341,15 @@ class DrivenPlan(QObject):
             action()
         except FleetError as error:
             self.failed.emit(str(error))
+
+
+def _in_words(refusal: Refusal) -> str:
+    return tr(
+        "The cone plan is not sent any further. {words}: {found} Override … in the panel Cone plan sends it "
+        "all the same, where your role may.",
+        words=refusal.words,
+        found=in_brief(refusal.found),
+    )
 
 
 def _reason(trouble: Trouble) -> str:

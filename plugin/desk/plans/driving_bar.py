@@ -7,6 +7,7 @@ from qgis.PyQt.QtWidgets import QCheckBox, QGridLayout, QLabel, QWidget
 
 from ...language import first_of, tr, tr_count
 from ..colours import WRONG_STYLE
+from ..drafts import in_brief
 from ..push_button import push_button
 from .draft_plan import DraftPlan
 from .driven_plan import DrivenPlan
@@ -17,6 +18,8 @@ class DrivingBar(QWidget):
     """Buttons that are usable when they can do something, and a line that says how things stand."""
 
     send_wanted = pyqtSignal()
+    override_wanted = pyqtSignal()
+    leave_wanted = pyqtSignal()
     rest_wanted = pyqtSignal(bool)
     confirm_wanted = pyqtSignal()
     discard_wanted = pyqtSignal()
@@ -31,6 +34,18 @@ class DrivingBar(QWidget):
         self.trouble.setStyleSheet(WRONG_STYLE)
         self.send = push_button("fleet_plan_send", tr("Send…"), pressed=self.send_wanted.emit)
         self.clear = push_button("fleet_plan_clear", tr("Clear"), pressed=self.clear_wanted.emit)
+        self.override = push_button(
+            "fleet_plan_override",
+            tr("Override …"),
+            tr("Send the plan on in spite of what was found; asks why"),
+            self.override_wanted.emit,
+        )
+        self.leave = push_button(
+            "fleet_plan_leave",
+            tr("Send no more"),
+            tr("Leave it at what was sent: robots that have their cones by now go on with them"),
+            self.leave_wanted.emit,
+        )
         self.rest = push_button(
             "fleet_plan_rest",
             tr("Plan what is left"),
@@ -67,6 +82,9 @@ class DrivingBar(QWidget):
         grid.addWidget(self.trouble, 1, 0, 1, 2)
         grid.addWidget(self.send, 2, 0)
         grid.addWidget(self.clear, 2, 1)
+        # In place of these two, while it is to be decided.
+        grid.addWidget(self.override, 2, 0)
+        grid.addWidget(self.leave, 2, 1)
         grid.addWidget(self.rest, 3, 0)
         grid.addWidget(self.again, 3, 1)
         grid.addWidget(self.confirm, 4, 0)
@@ -79,6 +97,11 @@ class DrivingBar(QWidget):
         """Show how things stand now."""
         drafts, driven = self._drafts, self._driven
         idle = not driven.busy
+        is_refused = driven.refusal is not None
+        for button in (self.send, self.clear):
+            button.setVisible(not is_refused)
+        for button in (self.override, self.leave):
+            button.setVisible(is_refused)
         self.send.setEnabled(idle and drafts.draft is not None and driven.driven is None)
         shown = driven.offer or driven.driven or drafts.draft
         self.clear.setEnabled(idle and shown is not None and not driven.held)
@@ -99,6 +122,8 @@ class DrivingBar(QWidget):
 
     def _in_words(self) -> str:
         drafts, driven = self._drafts, self._driven
+        if driven.refusal is not None:
+            return tr("Not sent as a whole yet")
         if driven.sending is not None:
             return tr("Being sent …")
         if driven.offer is not None:
@@ -117,6 +142,9 @@ class DrivingBar(QWidget):
 
     def _wrong(self) -> str:
         driven = self._driven
+        if driven.refusal is not None:
+            hint = tr(" Override… sends it all the same, where your role may.")
+            return f"{driven.refusal.words}: {in_brief(driven.refusal.found)}{hint}"
         shown = driven.offer or driven.driven or self._drafts.draft
         near = shown.meetings if shown is not None and (driven.driven is None or driven.offer) else ()
         parts = first_of([meeting.in_words() for meeting in near])

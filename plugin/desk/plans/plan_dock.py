@@ -19,6 +19,7 @@ from qgis.PyQt.QtWidgets import (
 from ....robot_bridge.messages import CollectLayout, GetPlacements
 from ...errors import FleetError
 from ...language import tr
+from ..commands.override_dialog import OverrideDialog
 from ..desk import Desk
 from ..dock_action import ActionDock
 from ..placement_book import MOST_ASKED
@@ -113,6 +114,16 @@ class PlanDock(ActionDock):
         box.setWindowTitle(tr("Send the cone plan"))
         self.question = box
         box.open()
+
+    def ask_to_override(self) -> None:
+        """Ask why what was refused of the plan is right all the same, and send it on then."""
+        refusal = self.driven.refusal
+        if refusal is None:
+            return
+        then = tr("The plan is sent on at once, and robots set off.")
+        dialog = OverrideDialog(refusal.words, refusal.found, then, self, is_safe=True)
+        dialog.confirmed.connect(lambda why: self._try(lambda: self.driven.override(refusal, why)))
+        dialog.open()
 
     def collect(self, layout: str | None) -> None:
         """Plan who collects what stands of a layout, or all that stands."""
@@ -246,6 +257,8 @@ class PlanDock(ActionDock):
         self.placed.place_wanted.connect(self._go_to)
         bar.send_wanted.connect(self.ask_to_send)
         bar.clear_wanted.connect(self._clear)
+        bar.override_wanted.connect(self.ask_to_override)
+        bar.leave_wanted.connect(lambda: self._try(self.driven.leave))
         bar.rest_wanted.connect(lambda again: self._try(lambda: self.driven.plan_rest(try_again=again)))
         bar.confirm_wanted.connect(lambda: self._try(self.driven.confirm))
         bar.discard_wanted.connect(lambda: self._try(self.driven.discard))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from qgis.PyQt.QtCore import QObject, pyqtSignal
@@ -36,11 +36,26 @@ class Step:
     request: Callable[[], Request | None]
 
 
+@dataclass(frozen=True)
+class Refusal:
+    """A step that the gateway does with an override alone: its words, and all that speaks against it."""
+
+    words: str
+    found: tuple[str, ...]
+    told: str
+    """How the desk told of it."""
+
+
 class Sending(QObject):
-    """Asks for one step after the other, each when the one before is done."""
+    """Asks for one step after the other, each when the one before is done.
+
+    Where there is a :attr:`refusal`, it waits for :meth:`override` or :meth:`leave`.
+    """
 
     ended = pyqtSignal(bool, str)
     """Whether all of it was done, and what was refused."""
+    refused = pyqtSignal()
+    """There is a :attr:`refusal`."""
 
     def __init__(self, desk: Desk, steps: Sequence[Step], parent: QObject | None = None):
         super().__init__(parent)
@@ -49,6 +64,7 @@ class Sending(QObject):
         self._key: str | None = None
         self._now: Step | None = None
         self._sent: Request | None = None
+        self.refusal: Refusal | None = None
         self.done: list[str] = []
         """What was done, in words."""
         desk.answered.connect(self._answered)
@@ -61,28 +77,52 @@ class Sending(QObject):
         """Ask for nothing more, and tell nothing of what was asked for."""
         self._desk.answered.disconnect(self._answered)
 
+    def override(self, why: str) -> None:
+        """Ask again for what was refused, with ``why`` it is right all the same, and then for the rest."""
+        self.refusal = None
+        if not self._ask(why):
+            self._next()
+
+    def leave(self) -> None:
+        """Ask for nothing more than what is done by now."""
+        refusal, self.refusal = self.refusal, None
+        self._end(False, refusal.told)
+
     def _next(self) -> None:
         while self._steps:
             self._now = self._steps.pop(0)
-            try:
-                self._sent = self._now.request()
-                if self._sent is None:
-                    continue
-                self._key = self._desk.ask(self._sent, self._now.words)
-            except NotSentError as error:
-                self._end(False, str(error))
-            return
+            if self._ask():
+                return
         self._end(True, "")
+
+    def _ask(self, override: str | None = None) -> bool:
+        """Ask for the step whose turn it is; false when there is nothing to do."""
+        request = self._now.request()
+        if request is None:
+            return False
+        self._sent = request if override is None else replace(request, override=override)
+        try:
+            self._key = self._desk.ask(self._sent, self._now.words)
+        except NotSentError as error:
+            self._end(False, str(error))
+        return True
 
     def _answered(self, answer: Answer) -> None:
         if self._key is None or answer.order.key != self._key:
             return
         self._key = None
         if answer.error is not None and not self._is_done_already():
-            self._end(False, f"{self._now.words}: {answer.error}")
+            self._refused(f"{self._now.words}: {answer.error}", answer.overridable)
             return
         self.done.append(self._now.words)
         self._next()
+
+    def _refused(self, told: str, overridable: Sequence[str]) -> None:
+        if not overridable:
+            self._end(False, told)
+            return
+        self.refusal = Refusal(self._now.words, tuple(f"{text}." for text in overridable), told)
+        self.refused.emit()
 
     def _is_done_already(self) -> bool:
         """Tell whether what was refused was done before: its answer was lost with the link."""

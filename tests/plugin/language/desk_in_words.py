@@ -348,11 +348,12 @@ def dialogs(window, desk_window) -> Iterator[tuple[str, QDialog]]:
     from fleet_supervisor.plugin.desk.closure_dialog import ClosureDialog
     from fleet_supervisor.plugin.desk.commands.coordinates_dialog import CoordinatesDialog
     from fleet_supervisor.plugin.desk.commands.override_dialog import OverrideDialog
-    from fleet_supervisor.plugin.desk.drafts import CONE, Draft, Findings
+    from fleet_supervisor.plugin.desk.drafts import CONE, Draft
     from fleet_supervisor.plugin.desk.site_choice.site_choice_dialog import SiteChoiceDialog
     from fleet_supervisor.plugin.desk.site_choice.site_question import site_question
     from fleet_supervisor.plugin.help.help_window import HelpWindow
     from fleet_supervisor.plugin.help.topics import START
+    from fleet_supervisor.plugin.language import tr
     from fleet_supervisor.plugin.roles.roles_dialog import RolesDialog
     from fleet_supervisor.plugin.settings.connection_dialog import ConnectionDialog
     from fleet_supervisor.plugin.settings.connections import Connections
@@ -376,8 +377,12 @@ def dialogs(window, desk_window) -> Iterator[tuple[str, QDialog]]:
     yield "alarm_log", AlarmLogDialog(window)
     yield "closure", ClosureDialog(window)
     yield "coordinates", CoordinatesDialog(desk_window.desk, window)
-    found = Findings(overridable=("A cone target of r2 is 0.3 m from it", "It is on the obstacle bin-4"))
-    yield "override", OverrideDialog(Draft("r1", CONE, ((60.0, 50.0),), found), window)
+    found = "A cone target of r2 is 0.3 m from it", "It is on the obstacle bin-4"
+    draft, then = Draft("r1", CONE, ((60.0, 50.0),)).in_words(), tr("Nothing is sent yet.")
+    yield "override", OverrideDialog(draft, found, then, window, is_safe=False)
+    queue = tr("the queue of {robot}", robot="r1")
+    then = tr("The plan is sent on at once, and robots set off.")
+    yield "override_plan", OverrideDialog(queue, found, then, window, is_safe=True)
     stop = EmergencyReport(True, "s1", time.time(), "anna", robots=5, waiting=["r1", "r2"])
     yield "clear", ClearDialog(stop, window)
     yield "accounts", AccountsDialog(desk_window.desk, window)

@@ -14,7 +14,15 @@ from fleet_supervisor.robot_bridge.layouts.catalogue import LAYOUTS
 from qgis.core import QgsFeature, QgsGeometry, QgsPointXY, QgsProject, QgsVectorLayer
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
-from qgis.PyQt.QtWidgets import QAction, QApplication, QDockWidget, QMessageBox, QPushButton
+from qgis.PyQt.QtWidgets import (
+    QAction,
+    QApplication,
+    QDialog,
+    QDockWidget,
+    QLineEdit,
+    QMessageBox,
+    QPushButton,
+)
 
 TOLERANCE = 0.20
 ROBOT_WIDTH = 0.5
@@ -252,6 +260,31 @@ def test_a_lost_robots_cones_are_taken_over_without_a_question_when_that_is_swit
     planner.send()
     operator.wait("all of it being collected", lambda: len(planner.done) == len(cones), 240)
     assert all(one.collected_at is not None for one in operator.desk.placements)
+
+
+def test_a_plan_into_a_keepout_is_sent_with_an_override_that_the_audit_log_keeps(
+    loop, operator, planner, tmp_path
+):
+    loop.start_robot("r1", (60.0, 42.0, 0.0), speed=4.0)
+    operator.connect_to(loop, ["r1"])
+    # In the sample site's water basin.
+    planner.add_cones([(66.0, 32.0, "c1", 0)])
+    planner.set_robots(carries=1, aboard=1, speed=2.5, count=1)
+    planner.solve(1.0)
+    planner.send()
+    planner.press("fleet_plan_override")
+    assert planner.tasks_of("r1") == []
+    dialog = planner.dock.findChild(QDialog, "fleet_override")
+    QTest.keyClicks(dialog.findChild(QLineEdit, "fleet_override_why"), "the basin is drained")
+    confirm = dialog.findChild(QPushButton, "fleet_override_confirm")
+    QTest.mouseClick(confirm, Qt.MouseButton.LeftButton)
+    operator.wait("the cone being placed", lambda: planner.done == {"c1"}, 120)
+    with sqlite3.connect(tmp_path / "fleet.db") as connection:
+        asked = connection.execute("select done, detail from audit where action = 'set_queue' order by id")
+        (refused, why_not), (done, why) = asked.fetchall()
+    assert (refused, done) == (0, 1)
+    assert "lies in the keepout 'Water basin'" in why_not
+    assert "lies in the keepout 'Water basin'. because: the basin is drained; " in why
 
 
 def begun_and_placed(database):

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import pytest
 from fleet_supervisor.plugin.desk.plans import plan_rows
 from fleet_supervisor.plugin.wire.outbox import Answer, Order
 from fleet_supervisor.robot_bridge.messages import TaskState, to_json
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
+from qgis.PyQt.QtWidgets import QDialog, QLabel, QLineEdit, QPushButton
 
 from tests.plugin.desk.plans.panel_parts import (
     answer,
@@ -52,6 +54,112 @@ def test_what_was_refused_and_what_was_not_done_is_said(panel, gateway, wait, if
     (text,) = [text for text in iface.texts() if "as a whole" in text]
     assert "revision 4" in text and "Not done therefore" in text and "the queue of r2" in text
     assert len(gateway.asked("set_queue")) == 1
+
+
+FOUND = [f"the path to ({x}.00, 40.00) enters the keepout 'Water basin'" for x in (75, 80)]
+QUEUE_OF_R2 = "the queue of r2: the path to (75.00, 40.00) enters the keepout 'Water basin'."
+
+
+def sent_to(gateway, robot):
+    return [one for one in gateway.asked("set_queue") if one["robot"] == robot]
+
+
+def hung(iface, part):
+    return [text for text in iface.texts() if part in text]
+
+
+@pytest.fixture
+def fenced(panel, gateway, wait):
+    """A plan that is being sent: r1 has its queue, and r2 gets its own with an override alone."""
+    refusal = {"code": -32007, "message": f"{'; '.join(FOUND)}: choose a place", "data": {"found": FOUND}}
+
+    def answered(params):
+        takes_it = params["robot"] == "r1" or "override" in params
+        return {"result": {}} if takes_it else {"error": refusal}
+
+    gateway.answers["set_queue"] = answered
+    planned(panel, wait)
+    answer(question(panel), send=True)
+    wait(lambda: panel.driven.refusal is not None, what="the refusal")
+    return panel
+
+
+def override(panel, why="the basin is drained"):
+    press(panel, "fleet_plan_override")
+    dialog = panel.findChild(QDialog, "fleet_override")
+    confirm = dialog.findChild(QPushButton, "fleet_override_confirm")
+    assert not confirm.isEnabled() and not confirm.isDefault()
+    assert FOUND[0] in told_in(dialog) and FOUND[1] in told_in(dialog)
+    QTest.keyClicks(dialog.findChild(QLineEdit, "fleet_override_why"), why)
+    return confirm
+
+
+def told_in(dialog):
+    return " ".join(label.text() for label in dialog.findChildren(QLabel))
+
+
+def test_what_can_be_overridden_waits_and_is_told_once_with_where_that_is_done(fenced, gateway, wait, iface):
+    wait(lambda: len(hung(iface, "Water basin")) == 1, what="one text of two")
+    (text,) = hung(iface, "Water basin")
+    assert "The cone plan is not sent any further" in text and QUEUE_OF_R2 in text
+    assert "Override … in the panel Cone plan" in text
+    assert QUEUE_OF_R2 in fenced.bar.trouble.text() and "where your role may" in fenced.bar.trouble.text()
+    assert not fenced.bar.send.isVisible() and not fenced.bar.clear.isVisible()
+    assert len(sent_to(gateway, "r2")) == 1
+
+
+def test_an_override_sends_the_same_tasks_with_what_was_found_and_why(fenced, gateway, wait, iface):
+    confirm = override(fenced)
+    assert len(sent_to(gateway, "r2")) == 1
+    QTest.mouseClick(confirm, Qt.MouseButton.LeftButton)
+    wait(lambda: not fenced.driven.busy, what="the rest of the plan")
+    refused, done = sent_to(gateway, "r2")
+    assert done["tasks"] == refused["tasks"] and "override" not in refused
+    assert done["override"] == " ".join(f"{text}." for text in FOUND) + " because: the basin is drained"
+    assert len(sent_to(gateway, "r1")) == 1
+    wait(lambda: hung(iface, "Water basin") == [], what="the text of what is over")
+    assert hung(iface, "as a whole") == []
+    assert not fenced.bar.override.isVisible() and fenced.bar.send.isVisible()
+
+
+def test_a_plan_that_is_not_to_be_overridden_stays_as_far_as_it_was_sent(fenced, gateway, wait, iface):
+    press(fenced, "fleet_plan_leave")
+    assert not fenced.driven.busy and fenced.driven.refusal is None
+    wait(lambda: len(hung(iface, "Water basin")) == 1, what="one text of two")
+    (text,) = hung(iface, "Water basin")
+    assert "was not sent as a whole" in text and "Done before: the queue of r1" in text
+    assert len(sent_to(gateway, "r2")) == 1
+
+
+def test_an_override_that_the_role_does_not_reach_is_refused_as_that_of_a_draft_is(
+    fenced, gateway, wait, iface
+):
+    confirm = override(fenced)
+    gateway.refuse["set_queue"] = "set_queue: anna is operator, and an override takes supervisor"
+    QTest.mouseClick(confirm, Qt.MouseButton.LeftButton)
+    wait(lambda: hung(iface, "was not sent as a whole"), what="the refusal")
+    (text,) = hung(iface, "was not sent as a whole")
+    assert "an override takes supervisor" in text and "Not done therefore: letting r2 go on" in text
+    assert not fenced.driven.busy and fenced.driven.refusal is None
+
+
+def test_nothing_is_overridden_while_an_emergency_stop_is_in_force(fenced, gateway, wait, iface):
+    confirm = override(fenced)
+    gateway.stand(in_force=True, stop="stop-1", at=1.0, by="bert")
+    wait(lambda: fenced._desk.emergency is not None and fenced._desk.emergency.in_force, 5)
+    QTest.mouseClick(confirm, Qt.MouseButton.LeftButton)
+    wait(lambda: hung(iface, "An emergency stop is in force"), 5)
+    assert len(sent_to(gateway, "r2")) == 1 and fenced.driven.refusal is not None
+
+
+def test_an_override_of_a_plan_that_was_cleared_behind_the_dialog_is_none(fenced, gateway, wait, iface):
+    confirm = override(fenced)
+    fenced.driven.clear()
+    wait(lambda: hung(iface, "Water basin") == [], what="the text of what is over")
+    QTest.mouseClick(confirm, Qt.MouseButton.LeftButton)
+    assert hung(iface, "Nothing was overridden")
+    QTest.qWait(200)
+    assert len(sent_to(gateway, "r2")) == 1
 
 
 def test_the_question_names_robots_that_moved_and_would_meet(panel, gateway, wait, make_robot):
