@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from ..compass import theta_of
+from ..known_names import told
 from .cone import ORANGE, Cone
 from .errors import TableError
 
@@ -67,14 +68,7 @@ def cones_of(
     :raises TableError: naming row and column, and what to do.
     """
     _check_columns(head, columns)
-    kept = [
-        (number, row)
-        for number, row in enumerate(rows, first)
-        if not columns.layout or not columns.only or str(row[columns.layout]) == columns.only
-    ]
-    if not kept:
-        what = f" whose {columns.layout} is {columns.only!r}" if columns.only else ""
-        raise TableError(f"{name} has no row{what}: there is nothing to place.")
+    kept = _wanted(list(enumerate(rows, first)), columns)
     cones = [_cone(_Row(number, row, columns), place, name) for place, (number, row) in enumerate(kept, 1)]
     _check_ids(cones, kept, columns)
     return sorted(cones, key=lambda cone: cone.order)
@@ -130,6 +124,24 @@ def _check_columns(head: Sequence[str], columns: Columns) -> None:
     for column in (*wanted, columns.layout):
         if column and column not in head:
             raise TableError(f"There is no column {column!r}: choose among {', '.join(head) or 'none'}.")
+
+
+def _wanted(
+    rows: list[tuple[int, Mapping[str, Any]]], columns: Columns
+) -> list[tuple[int, Mapping[str, Any]]]:
+    """Return the rows of the layout that is to be taken, all without one; each with its number."""
+    if not rows:
+        raise TableError("There is no row, so there is nothing to place.")
+    if not columns.only:
+        return rows
+    kept = [(number, row) for number, row in rows if str(row[columns.layout]) == columns.only]
+    if not kept:
+        layouts = sorted({str(row[columns.layout]) for _, row in rows})
+        raise TableError(
+            f"No row has {columns.only!r} in column {columns.layout}, so there is nothing to place: choose among "
+            f"{told(layouts)}."
+        )
+    return kept
 
 
 def _check_ids(

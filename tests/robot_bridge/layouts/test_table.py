@@ -42,8 +42,12 @@ def test_the_real_layouts_are_read_one_by_one(data: Path) -> None:
         ("x_m,y_m\n1,nan\n", Columns(), r"Row 2, column y_m: 'nan' is no number"),
         ("x_m,y_m\n1\n", Columns(), r"cones\.csv, row 2: it has not as many columns as the head line \(2\)"),
         ("x,y_m\n1,2\n", Columns(), r"There is no column 'x_m': choose among x, y_m"),
-        ("x_m,y_m\n", Columns(), "has no row"),
-        ("x_m,y_m,t\n1,2,a\n", Columns(layout="t", only="b"), "has no row whose t is 'b'"),
+        ("x_m,y_m\n", Columns(), "There is no row"),
+        (
+            "x_m,y_m,t\n1,2,c\n3,4,a\n5,6,c\n",
+            Columns(layout="t", only="b"),
+            r"No row has 'b' in column t, so there is nothing to place: choose among a, c\.",
+        ),
         ("x_m,y_m,t\n1,2,a\n", Columns(only="a"), "'a' is to be taken, and no column .* among x_m, y_m, t"),
         (
             "x_m,y_m,n\n1,2,a\n3,4,a\n",
