@@ -138,8 +138,8 @@ def _wanted(
     if not kept:
         layouts = sorted({str(row[columns.layout]) for _, row in rows})
         raise TableError(
-            f"No row has {columns.only!r} in column {columns.layout}, so there is nothing to place: choose among "
-            f"{told(layouts)}."
+            f"No row has {columns.only!r} in column {columns.layout}, so there is nothing to place: choose "
+            f"among {told(layouts)}."
         )
     return kept
 
