@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 from qgis.core import QgsApplication
-from qgis.PyQt.QtCore import QTimer
 from qgis.PyQt.QtWidgets import QComboBox, QHBoxLayout, QLabel, QToolButton, QVBoxLayout, QWidget
 
 from ...errors import FleetError
 from ...language import tr, tr_count
 from ..desk import Desk
 from ..dock_action import ActionDock
+from ..time_slices import ONE_STEP, Steps, TimeSlices
 from ..wall_clock import date_and_time
+from .arranging import Arranging
 from .clockwork import SPEEDS, Clockwork
 from .fetching import Fetching
-from .past_commands import marks
+from .past_commands import NO_MARKS, PastCommands
 from .replay_layer import ReplayLayer
 from .replay_map import ReplayMap
 from .stretch_form import StretchForm
@@ -34,11 +33,9 @@ class ReplayDock(ActionDock):
         self.setObjectName("fleet_replay_dock")
         self._desk = desk
         self._told = ""
-        self._left: list[Callable[[], None]] = []
-        """What is still to be shown of a history that has just come."""
-        self._soon = QTimer(self)
-        self._soon.setSingleShot(True)
-        self._soon.timeout.connect(self._show_next)
+        self._showing = TimeSlices(self, ONE_STEP)
+        """Shows a history that has just come."""
+        self._past = Arranging(desk.book, self)
         self.fetching = Fetching(desk, self)
         self.clockwork = Clockwork(desk.canvas, self)
         self.layer = ReplayLayer(desk.project, self)
@@ -65,7 +62,8 @@ class ReplayDock(ActionDock):
 
     def remove(self) -> None:
         """Stop the clock, take the layer out of the project, leave the live map alone."""
-        self._leave_rest()
+        self._showing.stop()
+        self._past.forget()
         self.fetching.forget()
         self.clockwork.remove()
         self.layer.remove()
@@ -74,7 +72,7 @@ class ReplayDock(ActionDock):
     @property
     def is_busy(self) -> bool:
         """Whether something of a history is still being fetched or shown."""
-        return self.fetching.is_busy or bool(self._left) or self.layer.is_busy
+        return any(part.is_busy for part in (self.fetching, self._showing, self._past, self.layer))
 
     def load(self) -> None:
         """Fetch the time in the form and begin to show it."""
@@ -95,8 +93,9 @@ class ReplayDock(ActionDock):
             self._desk.failed.emit(tr("The replay was not loaded: {error}", error=error))
             return
         self._robots = robots
-        self._leave_rest()
-        self.layer.remove()
+        self._showing.stop()
+        self._past.renew()
+        self.layer.clear()
         self.map.begin(self._desk.site)
         self.line.show_time(since, until)
         self.clockwork.show(since, until)
@@ -115,7 +114,8 @@ class ReplayDock(ActionDock):
         self.clockwork.playing_changed.connect(self._show_playing)
         self.play.clicked.connect(self._play_or_hold)
         self.speed.currentIndexChanged.connect(lambda k: self.clockwork.set_speed(SPEEDS[k]))
-        self._desk.commands_changed.connect(self._show_marks)
+        self._desk.commands_changed.connect(self._commands_changed)
+        self._past.done.connect(self._show_commands)
         self._desk.site_changed.connect(self._site_changed)
         self._robots: list[str] = []
         self._generation = self._desk.picture.generation
@@ -148,20 +148,14 @@ class ReplayDock(ActionDock):
             tr("positions: {positions}, robots: {robots}", positions=len(history), robots=len(history.names))
             + (tr(" · NOT ALL") if why else "")
         )
-        self._left = [self._show_lines, self._show_all, self._show_robots, self._show_marks]
-        self._soon.start(0)
+        self._showing.begin_soon(self._parts())
 
-    def _show_next(self) -> None:
-        """Show one part in a piece of its own: between two of them the window looks for events."""
-        show = self._left.pop(0)
-        if self._left:
-            self._soon.start(0)
-        show()
-
-    def _leave_rest(self) -> None:
-        """Show no more of the history that came last."""
-        self._soon.stop()
-        self._left = []
+    def _parts(self) -> Steps[None]:
+        """Show a history part by part: between two of them the window looks for events."""
+        parts = self._show_lines, self._show_all, self._show_robots, self._show_marks
+        for number, show in enumerate(parts):
+            show()
+            yield (number + 1) / len(parts)
 
     def _show_lines(self) -> None:
         if self._desk.site is not None:
@@ -183,15 +177,24 @@ class ReplayDock(ActionDock):
             # It is shown when all of it is there.
             return
         try:
-            self.map.show_moment(self.fetching.history, self._desk.book, moment, self._desk.selection)
+            self.map.show_moment(self.fetching.history, self._past.commands, moment, self._desk.selection)
         except FleetError as error:
             self.clockwork.play(False)
             self._desk.complained.emit(str(error))
 
-    def _show_marks(self, *_: object) -> None:
+    def _commands_changed(self, *_: object) -> None:
         if self.clockwork.is_set:
-            since, until = self.clockwork.since, self.clockwork.until
-            self.line.show_marks(marks(self._desk.book, since, until, self._robots))
+            self._past.renew()
+
+    def _show_commands(self, before: PastCommands) -> None:
+        self._show_marks()
+        moment = self.clockwork.moment
+        if self._past.commands.under_way_at(moment) != before.under_way_at(moment):
+            self._show(moment)
+
+    def _show_marks(self) -> None:
+        since, until = self.clockwork.since, self.clockwork.until
+        self.line.show_marks(self._past.commands.marks(since, until, self._robots))
 
     def _site_changed(self) -> None:
         if self._desk.picture.generation == self._generation:
@@ -200,13 +203,14 @@ class ReplayDock(ActionDock):
         # bear the same names.
         self._generation = self._desk.picture.generation
         self.fetching.forget()
-        self._leave_rest()
+        self._showing.stop()
+        self._past.forget()
         self.form.show_busy(False)
         self.clockwork.play(False)
-        self.layer.remove()
+        self.layer.clear()
         self.map.show_nothing()
         self.line.show_time(0.0, 0.0)
-        self.line.show_marks([])
+        self.line.show_marks(NO_MARKS)
         self._say(tr("Choose a time and press Load."))
 
     def _say(self, text: str) -> None:

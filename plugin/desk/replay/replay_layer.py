@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from pathlib import Path
 
 import numpy as np
@@ -16,7 +17,8 @@ from qgis.core import (
     QgsTask,
     QgsVectorLayer,
 )
-from qgis.PyQt.QtCore import QObject, QTimer, pyqtSignal
+from qgis.PyQt import sip
+from qgis.PyQt.QtCore import QObject, pyqtSignal
 
 from ....robot_bridge.messages import SiteReport
 from ....robot_bridge.sites.frame import SiteFrame
@@ -24,6 +26,7 @@ from ...language import tr
 from ...sites.fleet_group import fleet_group, remove_if_empty
 from ..live_layers import give_style, make_live
 from ..placement import frame_of
+from ..time_slices import Steps, TimeSlices
 from .clockwork import local
 from .history import SILENT_AFTER, History
 from .replay_map import OWN_LAYER
@@ -36,8 +39,8 @@ MOST_LINES = 20_000
 """With more the lines are made longer."""
 PIECE = 5.0
 """Seconds of a drive that one line is long, so that it appears as it is driven."""
-AT_ONCE = 300
-"""Lines written in one go, so that the window does not wait for them."""
+AT_ONCE = 100
+"""Lines written, or given back, in one step of a slice."""
 
 
 class ReplayLayer(QObject):
@@ -50,10 +53,10 @@ class ReplayLayer(QObject):
         self._project = project
         self._id: str | None = None
         self._task: LinesTask | None = None
-        self._waiting: list[QgsFeature] = []
-        self._timer = QTimer(self)
-        self._timer.setInterval(0)
-        self._timer.timeout.connect(self._write)
+        self._writing = TimeSlices(self)
+        self._freeing = TimeSlices(self)
+        self._out: list[QgsVectorLayer] = []
+        """Layers that are out of the project and still hold lines."""
 
     @property
     def layer(self) -> QgsVectorLayer | None:
@@ -63,11 +66,11 @@ class ReplayLayer(QObject):
     @property
     def is_busy(self) -> bool:
         """Whether lines are still being made or written."""
-        return self._task is not None or bool(self._waiting)
+        return self._task is not None or self._writing.is_busy
 
     def show(self, history: History, site: SiteReport) -> None:
         """Show what is in ``history`` in place of what was shown."""
-        self.remove()
+        self.clear()
         if not len(history):
             return
         layer = self._make(QgsCoordinateReferenceSystem(site.crs))
@@ -77,10 +80,9 @@ class ReplayLayer(QObject):
         self._task.taskTerminated.connect(self._gone)
         QgsApplication.taskManager().addTask(self._task)
 
-    def remove(self) -> None:
-        """Take the layer out of the project."""
-        self._timer.stop()
-        self._waiting = []
+    def clear(self) -> None:
+        """Take the layer out of the project; the memory of its lines is given back bit by bit."""
+        self._writing.stop()
         if self._task is not None:
             self._task.taskCompleted.disconnect(self._made)
             self._task.taskTerminated.disconnect(self._gone)
@@ -88,10 +90,27 @@ class ReplayLayer(QObject):
             self._task = None
         if self.layer is not None:
             dirty = self._project.isDirty()
-            self._project.removeMapLayer(self._id)
+            self._out.append(self._project.takeMapLayer(self.layer))
             remove_if_empty(self._project)
             self._project.setDirty(dirty)
+            self._freeing.begin_soon(self._free())
         self._id = None
+
+    def remove(self) -> None:
+        """Take the layer out of the project and be done with it."""
+        self.clear()
+        self._freeing.finish()
+
+    def _free(self) -> Steps[None]:
+        """Give back the layers that are out: that of twenty thousand lines at once holds the window up."""
+        while self._out:
+            layer = self._out[-1]
+            ids = sorted(layer.allFeatureIds())
+            for first in range(0, len(ids), AT_ONCE):
+                layer.dataProvider().deleteFeatures(ids[first : first + AT_ONCE])
+                yield first / len(ids)
+            # Others may hold it, as they may hold one that is removed from a project.
+            sip.delete(self._out.pop())
 
     def _make(self, crs: QgsCoordinateReferenceSystem) -> QgsVectorLayer:
         dirty = self._project.isDirty()
@@ -107,28 +126,26 @@ class ReplayLayer(QObject):
         return layer
 
     def _made(self) -> None:
-        self._waiting, self._task = self._task.features, None
-        self._timer.start()
+        task, self._task = self._task, None
+        self._writing.begin_soon(self._write(task.features))
 
     def _gone(self) -> None:
         self._task = None
         self.failed.emit(tr("The trajectories are not drawn: they could not be made into lines."))
 
-    def _write(self) -> None:
-        layer = self.layer
-        if layer is None:
-            self._waiting = []
-        batch, self._waiting = self._waiting[:AT_ONCE], self._waiting[AT_ONCE:]
-        if batch and not layer.dataProvider().addFeatures(batch)[0]:
-            self._waiting = []
-            self.failed.emit(
-                tr("Not all trajectories are drawn: {error}", error=layer.dataProvider().lastError())
-            )
-        if not self._waiting:
-            self._timer.stop()
-            if layer is not None:
-                layer.updateExtents()
-                layer.triggerRepaint()
+    def _write(self, lines: deque[QgsFeature]) -> Steps[None]:
+        """Write ``lines``, which are used up, unless the user takes the layer out."""
+        count = len(lines)
+        while lines and self.layer is not None:
+            batch = [lines.popleft() for _ in range(min(AT_ONCE, len(lines)))]
+            provider = self.layer.dataProvider()
+            if not provider.addFeatures(batch)[0]:
+                self.failed.emit(tr("Not all trajectories are drawn: {error}", error=provider.lastError()))
+                break
+            yield 1.0 - len(lines) / count
+        if self.layer is not None:
+            self.layer.updateExtents()
+            self.layer.triggerRepaint()
 
 
 class LinesTask(QgsTask):
@@ -137,7 +154,7 @@ class LinesTask(QgsTask):
     def __init__(self, table: np.ndarray, names: list[str], frame: SiteFrame, fields: QgsFields):
         super().__init__(tr("Drawing what robots drove"), QgsTask.Flag.CanCancel)
         self._table, self._names, self._frame, self._fields = table, names, frame, fields
-        self.features: list[QgsFeature] = []
+        self.features: deque[QgsFeature] = deque()
 
     def run(self) -> bool:
         xy = self._frame.to_crs(self._table[:, 2:4])

@@ -11,7 +11,6 @@ from qgis.PyQt.QtWidgets import QWidget
 
 from ....robot_bridge.messages import SiteReport
 from ...errors import PlacementError
-from ..command_book import CommandBook
 from ..live.following import show_places
 from ..live.live_view import FRAME_MS
 from ..live.overlay import FleetOverlay
@@ -21,7 +20,7 @@ from ..live.trails import Trails
 from ..live_layers import MARK
 from ..placement import Placement
 from .history import History
-from .past_commands import under_way_at
+from .past_commands import PastCommands
 
 OWN_LAYER = "replay"
 """The kind of the live layer that is shown here; the others show what is now."""
@@ -101,7 +100,7 @@ class ReplayMap(QgsMapCanvas):
             self.setLayers(layers)
 
     def show_moment(
-        self, history: History, book: CommandBook, moment: float, chosen: tuple[str, ...]
+        self, history: History, commands: PastCommands, moment: float, chosen: tuple[str, ...]
     ) -> None:
         """Draw robots, and what they were doing, as they were at ``moment``.
 
@@ -114,7 +113,7 @@ class ReplayMap(QgsMapCanvas):
             self._trails.clear()
         self._moment = moment
         self._trails.extend(robots.xy, moment)
-        plans = self._plans.of(under_way_at(book, moment))
+        plans = self._plans.of(commands.under_way_at(moment))
         rows = {
             name: row
             for name in {*chosen, *(p.robot for p in plans)}

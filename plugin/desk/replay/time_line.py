@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 import numpy.typing as npt
 from qgis.PyQt.QtCore import QEvent, QPointF, QRectF, QSize, Qt, pyqtSignal
@@ -13,7 +11,7 @@ from qgis.PyQt.QtWidgets import QToolTip, QWidget
 from ....robot_bridge.messages import CommandState
 from ..live.strokes import flat, lines
 from ..wall_clock import date_and_time
-from .past_commands import Mark
+from .past_commands import NO_MARKS, Mark, Marks
 
 EDGE = 9.0
 """Pixels left and right of the line."""
@@ -53,9 +51,7 @@ class TimeLine(QWidget):
         self.setMouseTracking(True)
         self.setMinimumHeight(40)
         self.since = self.until = self.moment = 0.0
-        self.marks: list[Mark] = []
-        self._times = np.empty(0)
-        self._states = np.empty(0, dtype=np.str_)
+        self.marks = NO_MARKS
 
     def sizeHint(self) -> QSize:
         return QSize(400, 40)
@@ -65,11 +61,9 @@ class TimeLine(QWidget):
         self.since, self.until = since, until
         self.update()
 
-    def show_marks(self, marks: Sequence[Mark]) -> None:
+    def show_marks(self, marks: Marks) -> None:
         """Show these commands."""
-        self.marks = list(marks)
-        self._times = np.array([mark.at for mark in marks])
-        self._states = np.array([mark.state.value for mark in marks], dtype=np.str_)
+        self.marks = marks
         self.update()
 
     def show_moment(self, moment: float) -> None:
@@ -84,15 +78,15 @@ class TimeLine(QWidget):
 
     def mark_at(self, x: float) -> Mark | None:
         """Return the mark nearest to pixel ``x``, None when there is none nearby."""
-        if not len(self._times):
+        if not len(self.marks):
             return None
-        away = np.abs(self.pixel(self._times) - x)
+        away = np.abs(self.pixel(self.marks.at) - x)
         nearest = int(away.argmin())
         return self.marks[nearest] if away[nearest] <= NEAR else None
 
     def columns(self, state: CommandState) -> npt.NDArray[np.float64]:
         """Return the pixels from left to right where commands came to ``state``: however many, each once."""
-        return np.unique(np.rint(self.pixel(self._times[self._states == state.value])))
+        return np.unique(np.rint(self.pixel(self.marks.of(state))))
 
     def paintEvent(self, event: QPaintEvent) -> None:
         painter = QPainter(self)

@@ -1,4 +1,4 @@
-"""Where robots were at a moment, and what they were doing then; no QGIS canvas."""
+"""Where robots were at a moment; no QGIS canvas."""
 
 from __future__ import annotations
 
@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 from fleet_supervisor.plugin.desk.picture import STATES
 from fleet_supervisor.plugin.desk.replay.history import SILENT_AFTER, History
-from fleet_supervisor.plugin.desk.replay.past_commands import marks, under_way_at
 from fleet_supervisor.plugin.desk.replay.replay_layer import PIECE, pieces
-from fleet_supervisor.robot_bridge.messages import CommandReport, CommandState, CommandStep, RobotState
+from fleet_supervisor.robot_bridge.messages import RobotState
 
 T0 = 1_790_000_000.0
 FRESH, LOST = STATES.index(RobotState.FRESH), STATES.index(RobotState.LOST)
@@ -107,34 +106,6 @@ def test_the_extent_has_every_position_and_no_more(history):
 def test_what_is_no_position_is_refused(row):
     with pytest.raises(ValueError, match="stored position"):
         History().add([row])
-
-
-def command(name, robot, *steps, op="SetPosEnd"):
-    states = [CommandStep(CommandState(state), T0 + at, "anna") for state, at in steps]
-    return CommandReport(name, robot, op, {"x": 1.0, "y": 2.0}, "anna", states[-1].state, states)
-
-
-def test_commands_are_under_way_from_sending_to_their_end():
-    one = command("a", "r1", ("queued", 0), ("delivered", 1), ("acknowledged", 2), ("reached", 10))
-    newer = command("b", "r1", ("queued", 5), ("delivered", 6), ("aborted", 20))
-    other = command("c", "r2", ("queued", 8))
-    abort = command("d", "r1", ("queued", 15), op="Abort")
-    told = [newer, other, abort, one]
-
-    def at(seconds):
-        return {report.command for report in under_way_at(told, T0 + seconds)}
-
-    assert (at(-1), at(3), at(6), at(12), at(30)) == (set(), {"a"}, {"b"}, {"b", "c"}, {"c"})
-
-
-def test_marks_are_what_was_sent_and_how_it_ended():
-    one = command("a", "r1", ("queued", 0), ("delivered", 1), ("acknowledged", 2), ("reached", 10))
-    two = command("b", "r2", ("queued", 4), ("failed", 5))
-    found = marks([two, one], T0, T0 + 6)
-    told = [(mark.at - T0, mark.state.value) for mark in found]
-    assert told == [(0, "queued"), (4, "queued"), (5, "failed")]
-    assert found[0].text == "r1: target at 1.00, 2.00 · queued by anna"
-    assert [mark.at - T0 for mark in marks([two, one], T0, T0 + 60, ["r1"])] == [0, 10]
 
 
 def test_lines_are_short_and_joined_and_end_at_silences():

@@ -7,8 +7,11 @@ import time
 from itertools import groupby, pairwise
 
 import pytest
+from fleet_supervisor.plugin.desk import time_slices
 from fleet_supervisor.plugin.desk.live import ways_image
+from fleet_supervisor.plugin.desk.replay import replay_layer
 from qgis.core import QgsProject
+from qgis.PyQt import sip
 from qgis.PyQt.QtCore import QTimer
 from qgis.PyQt.QtWidgets import QApplication
 
@@ -23,6 +26,7 @@ def loaded(at_desk, gateway, iface, wait):
     now = time.time()
     gateway._clock = itertools.count(round(now) - 15)
     at_desk.desk.orders.abort("r1")
+    wait(lambda: len(at_desk.desk.book), what="the abort")
     places = [["r1", now - 20 + k, 50.0 + k, 40.0, 0.0, 1.0, None, None] for k in range(10)]
     gateway.answers["get_trajectory"] = lambda params: {"result": {"places": places, "next": None}}
     next(action for action in iface.plugins.actions() if action.objectName() == "fleet_replay").trigger()
@@ -65,7 +69,7 @@ def test_another_gateway_of_the_same_site_is_not_shown_the_history_of_the_one_be
         )
         assert len(loaded.fetching.history) == 0
         assert not lines()
-        assert loaded.line.until == 0.0 and loaded.line.marks == []
+        assert loaded.line.until == 0.0 and not loaded.line.marks
         assert "Choose a time" in loaded.banner.text()
     finally:
         at_desk.desk.close_link()
@@ -105,7 +109,7 @@ def test_of_a_history_that_is_fetched_anew_nothing_more_is_shown(loaded, wait):
     loaded.fetching.ended.emit("")
     assert loaded.is_busy
     loaded.load()
-    assert loaded._left == []
+    assert not loaded._showing.is_busy
     wait(lambda: not loaded.is_busy, what="the new one")
     assert len(loaded.fetching.history) == 10 and lines()
 
@@ -121,7 +125,7 @@ def test_while_time_is_held_the_map_goes_on_until_it_is_whole_and_follows_its_vi
         steps = [{"state": "queued", "at": begun, "by": "anna"}]
         known = {"command": f"p{k}", "robot": f"w{k}", "op": "SetPath", "params": path, "operator": "anna"}
         gateway.tell("command", {**known, "state": "queued", "steps": steps})
-    wait(lambda: "p3" in at_desk.desk.book, what="the commands")
+    wait(lambda: "p3" in at_desk.desk.book and not loaded.is_busy, what="the commands")
     ways = loaded.map.overlay._painter._plans._ways
     loaded.clockwork.seek(begun + 12.0)
     assert not loaded.map.overlay.is_whole
@@ -129,3 +133,43 @@ def test_while_time_is_held_the_map_goes_on_until_it_is_whole_and_follows_its_vi
     loaded.map.zoomByFactor(0.5)
     wait(lambda: ways._shown.screen == loaded.map.overlay.screen(), what="the ways in the new view")
     wait(lambda: loaded.map.overlay.is_whole, what="all ways in the new view")
+
+
+def test_a_command_that_comes_late_is_shown_while_time_is_held(loaded, gateway, wait):
+    begun = loaded.clockwork.since
+    loaded.clockwork.seek(begun + 12.0)
+    plans = loaded.map._plans
+    assert [plan.robot for plan in plans.of(plans._tasks)] == []
+    steps = [{"state": "queued", "at": begun, "by": "anna"}]
+    known = {"command": "p", "robot": "w", "op": "SetPosEnd", "params": {"x": 9.0, "y": 9.0}}
+    gateway.tell("command", {**known, "operator": "anna", "state": "queued", "steps": steps})
+    wait(lambda: [plan.robot for plan in loaded.map._plans.of(loaded.map._plans._tasks)] == ["w"])
+
+
+def test_lines_that_are_shown_no_more_are_given_back_bit_by_bit(loaded, monkeypatch, wait):
+    monkeypatch.setattr(replay_layer, "AT_ONCE", 1)
+    monkeypatch.setattr(time_slices, "SLICE_SECONDS", time_slices.ONE_STEP)
+    (layer,) = lines()
+    count = layer.featureCount()
+    assert count > 1
+    loaded.layer.clear()
+    assert lines() == [] and layer.featureCount() == count
+    wait(lambda: layer.featureCount() < count, what="the first line")
+    assert layer.featureCount() == count - 1
+    wait(lambda: sip.isdeleted(layer), what="the last line")
+
+
+def test_of_what_is_removed_nothing_is_left_to_be_done(loaded):
+    (layer,) = lines()
+    loaded.layer.remove()
+    assert lines() == [] and sip.isdeleted(layer)
+
+
+def test_a_replay_of_selected_robots_has_their_marks_alone(loaded, at_desk, gateway, wait):
+    at_desk.desk.orders.abort("r2")
+    wait(lambda: {mark.command.robot for mark in loaded.line.marks} == {"r1", "r2"}, what="both aborts")
+    at_desk.desk.select("r2")
+    loaded.form.selected.setChecked(True)
+    loaded.form.load.click()
+    wait(lambda: not loaded.is_busy and loaded.line.marks, what="the replay")
+    assert {mark.command.robot for mark in loaded.line.marks} == {"r2"}

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import pytest
-from fleet_supervisor.plugin.desk.replay.past_commands import marks
+from fleet_supervisor.plugin.desk.replay.past_commands import arranged
 from fleet_supervisor.plugin.desk.replay.time_line import COLOURS, TimeLine
+from fleet_supervisor.plugin.desk.time_slices import whole
 from fleet_supervisor.robot_bridge.messages import CommandReport, CommandState, CommandStep
 
 WIDTH, HEIGHT = 400, 40
@@ -25,7 +26,7 @@ def line(qgis_app):
 
 
 def show(line, *commands):
-    line.show_marks(marks(commands, line.since, line.until))
+    line.show_marks(whole(arranged(commands)).marks(line.since, line.until))
 
 
 def colour_at(line, x, down):
