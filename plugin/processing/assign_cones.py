@@ -68,7 +68,7 @@ class AssignCones(FleetAlgorithm):
     <i>preview</i> is quick; <i>automatic</i> takes pyvrp where Python has it.</p>
     <p><b>Targets</b> are the stops of each robot in order with their times, <b>paths</b> the ways between
     them, <b>plan</b> is all of it as JSON. A cone that cannot be served is named, and nothing is written.</p>
-    <pre>qgis_process run fleet:assigncones -- CONES=cones.gpkg ROBOTS=robots.gpkg STORES=stores.gpkg \\
+    <pre>qgis_process run fleet:assigncones -- CONES=cones.gpkg ROBOTS=robots.gpkg STORES=stores.gpkg
     ROADS=roads.gpkg CAPACITY=8 TIME_LIMIT=10 TARGETS=targets.gpkg PATHS=paths.gpkg PLAN=plan.json</pre>
     """)
 

@@ -61,7 +61,7 @@ class ConeLayout(FleetAlgorithm):
     <p>Every cone is <b>checked</b>: on one of the surfaces (of the allowed classes), away from obstacles and
     from other cones. What is wrong becomes a layer of findings with the cone's id and the reason; the cones
     are placed nevertheless.</p>
-    <pre>qgis_process run fleet:conelayout -- LAYOUT=iso3888_1 POINT="640432,5193486.2 [EPSG:32633]" \\
+    <pre>qgis_process run fleet:conelayout -- LAYOUT=iso3888_1 POINT="640432,5193486.2 [EPSG:32633]"
     HEADING=90 DIMENSIONS="vehicle_width=1.7; exit_length=15" SITE_CRS=EPSG:32633 CONES=cones.gpkg</pre>
     """)
 

@@ -97,7 +97,7 @@ class FindRoute(FleetAlgorithm):
     Corners that stay tighter are counted and named in the log.</p>
     <p>The <b>engine</b> is RoutingKit or SciPy where Python has them, else QGIS's own; the log and
     <i>ENGINE_USED</i> say which was used. All find the same ways.</p>
-    <pre>qgis_process run fleet:route -- ROADS=roads.gpkg START="640430,5193530 [EPSG:32633]" \\
+    <pre>qgis_process run fleet:route -- ROADS=roads.gpkg START="640430,5193530 [EPSG:32633]"
     GOAL="640600,5193570 [EPSG:32633]" SURFACES=asphalt ROUTE=route.gpkg PATH=path.gpkg</pre>
     """)
 

@@ -69,8 +69,8 @@ class ImportConeLayout(FleetAlgorithm):
     <p>Metres of a table are turned by <b>rotation</b> (degrees, counter-clockwise) and then moved to the
     <b>origin</b>. A row that cannot be read is named with its column, and nothing is placed.</p>
     <p>Every cone is <b>checked</b> as those of <i>Cone layout</i> are.</p>
-    <pre>qgis_process run fleet:importconelayout -- FILE=cone_layouts.csv COLOUR_FIELD=colour \\
-    LAYOUT_FIELD=track LAYOUT=eufs_skidpad ORIGIN="640520,5193530 [EPSG:32633]" ROTATION=90 \\
+    <pre>qgis_process run fleet:importconelayout -- FILE=cone_layouts.csv COLOUR_FIELD=colour
+    LAYOUT_FIELD=track LAYOUT=eufs_skidpad ORIGIN="640520,5193530 [EPSG:32633]" ROTATION=90
     SITE_CRS=EPSG:32633 CONES=cones.gpkg</pre>
     """)
 

@@ -25,6 +25,6 @@ are obstacles, also from the side.</p>
 <p>Existing files are replaced, each in one step, after all of them could be made. docs/navigation-maps.md
 says what is in each.</p>
 <p>From a script, with no display:</p>
-<pre>qgis_process run fleet:exportnavigationmap -- \\
+<pre>qgis_process run fleet:exportnavigationmap --
   MAP=campus.txt FORMATS=occupancy FORMATS=svg RESOLUTION=0.05 OUTPUT=campus</pre>
 """)

@@ -36,6 +36,15 @@ def test_help_is_legible_in_dark_themes(qgis_app):
     assert not any("<b>" in text for text in helps)
 
 
+def test_a_command_in_a_help_can_be_pasted_into_a_shell(qgis_app):
+    """A help is shown in one line, where a backslash before a blank makes that a part of the next word."""
+    provider = FleetProvider()
+    provider.loadAlgorithms()
+    helps = [algorithm.shortHelpString() for algorithm in provider.algorithms()]
+    assert sum("qgis_process run" in text for text in helps) > 10
+    assert not any("\\" in text for text in helps)
+
+
 def documented_calls(root):
     """Yield the file, the algorithm and the names of its parameters for each command in guides and help."""
     files = [
@@ -45,6 +54,7 @@ def documented_calls(root):
     ]
     for file in files:
         text = re.sub(r"\\+\n\s*", " ", file.read_text(encoding="utf-8"))
+        text = re.sub(r"<pre>[^<]*", lambda command: " ".join(command[0].split()), text)
         for algorithm, words in re.findall(r"run fleet:(\w+)[^\n]*? -- ([^\n]+)", text):
             yield file.name, algorithm, re.findall(r'(?:^|[\s"])([A-Z][A-Z_]+)=', words)
 
