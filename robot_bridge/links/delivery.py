@@ -10,6 +10,7 @@ from websockets.asyncio.server import ServerConnection
 from websockets.exceptions import ConnectionClosed
 
 from .. import jsonrpc
+from ..emergency.stops import HELD_BACK
 from ..errors import StoreError
 from ..fleet import Fleet
 from ..messages import Abort, to_json
@@ -78,15 +79,16 @@ class Delivery:
         """Send the messages above ``last``, by urgency; return false when a stop made them out of date."""
         stops = self._stops
         for row in await self._fleet.outbox(self._robot, last[False], last[True]):
-            # Safety comes before bookkeeping: an Abort does not wait until it is noted.
-            is_abort = row.op == Abort.__name__
-            is_due = is_abort or await self._fleet.hand_over(self._robot, row.id)
+            # Noted first: it must never be taken back as something that the robot cannot have. All else is
+            # noted afterwards, so that no Abort waits for the database, nor behind what does.
+            drives = row.op in HELD_BACK
+            is_due = not drives or await self._fleet.hand_over(self._robot, row.id)
             if self._stops != stops:
                 return False
             if is_due:
                 await self._connection.send(jsonrpc.call(row.op, _params(row), row.id))
             last[row.urgent] = row.id
-            if is_abort:
+            if not drives:
                 await self._fleet.delivered([row.id])
         return True
 

@@ -10,6 +10,7 @@ import json
 import math
 from dataclasses import dataclass, field
 
+from robot_bridge.emergency.stops import HELD_BACK
 from robot_bridge.errors import StoreError
 from robot_bridge.messages import OpAck, Ready, SendPos, SetObject, Stopped, to_json
 from robot_bridge.wire import parse_params
@@ -209,12 +210,13 @@ class WebSocketRobot(Robot):
     async def _take(self, row):
         """Do what a message says and acknowledge it; return false where the gateway begins anew with all."""
         fleet = self.play.fleet
-        if row.op != "Abort" and not await fleet.hand_over(self.name, row.id):
+        drives = row.op in HELD_BACK
+        if drives and not await fleet.hand_over(self.name, row.id):
             self._last[row.urgent] = row.id
             return True
         self.hear(row.id, row.op, parse_params(row.op, row.params) or {})
         self._last[row.urgent] = row.id
-        if row.op == "Abort":
+        if not drives:
             with contextlib.suppress(StoreError):
                 await fleet.delivered([row.id])
         try:

@@ -30,7 +30,9 @@ class Wire:
 
     async def send(self, frame):
         method = json.loads(frame)["method"]
-        self.sent.append((method, [state for (state,) in self._yard.sql("select state from commands")]))
+        self.sent.append(
+            (method, [state for (state,) in self._yard.sql("select state from commands order by sa_id")])
+        )
         if method == "SetPosEnd":
             self.is_cut.set()
             await asyncio.Event().wait()
@@ -123,13 +125,21 @@ async def test_a_target_is_sent_when_its_delivery_is_noted_however_often_that_fa
     assert await line.yard.steps("target") == ["queued", "delivered"]
 
 
-async def test_an_abort_is_sent_before_that_is_noted(line, wire):
+@pytest.mark.parametrize("error", [None, StoreError])
+async def test_an_abort_waits_neither_until_it_is_noted_nor_until_what_is_before_it_is(
+    line, wire, lose, monkeypatch, error
+):
+    monkeypatch.setattr(delivery, "RETRY_AFTER", 0.0)
+    await line.yard.send("place", "SetPosIni", x=20.0, y=40.0)
     await abort(line.yard)
+    if error is not None:
+        lose(line.yard, write_all, done=False, error=error)
     wire.delivery.begin()
     async with asyncio.timeout(60):
-        while await line.yard.states() != {"abort": "delivered"}:
+        while len(wire.sent) < 2:
             await asyncio.sleep(0.01)
-    assert wire.sent == [("Abort", ["queued"])]
+    assert [method for method, _ in wire.sent] == ["SetPosIni", "Abort"]
+    assert wire.sent[1][1][1] == "queued"
 
 
 async def test_an_emergency_stop_that_comes_while_a_delivery_is_noted_keeps_it_from_being_sent(
