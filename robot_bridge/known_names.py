@@ -1,4 +1,4 @@
-"""Names that are known, told where another one is not."""
+"""Names in a text, which has no room for thousands."""
 
 from __future__ import annotations
 

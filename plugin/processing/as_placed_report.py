@@ -28,7 +28,7 @@ from ..language import tr, tr_count, tr_page
 from ..sites.site_crs import check_site_crs
 from .errors import ParameterError, shown_by_processing
 from .fleet_algorithm import FleetAlgorithm, Parameters
-from .placed_cones import deviations, read_cones
+from .placed_cones import Deviations, deviations, read_cones
 from .report_layout import Report, write_pdf
 
 INPUT, OUTPUT = "INPUT", "OUTPUT"
@@ -111,14 +111,7 @@ class AsPlacedReport(FleetAlgorithm):
             if read is None:
                 return {}
             cones, odd = read
-            if odd:
-                feedback.pushWarning(
-                    tr_count(
-                        odd,
-                        "1 feature has no planned or no placed position; it is left out.",
-                        "%n features have no planned or no placed position; they are left out.",
-                    )
-                )
+            _warn_of_odd(odd, feedback)
             tolerance = self.parameterAsDouble(parameters, TOLERANCE, context)
             figures = deviations(cones, tolerance)
             report = Report(
@@ -134,16 +127,7 @@ class AsPlacedReport(FleetAlgorithm):
             if pages is None:
                 return {}
         self._written = file
-        feedback.pushInfo(
-            tr_count(
-                figures.count,
-                "{within} of 1 cone is within {tolerance:g} m; it is {most:.3f} m off.",
-                "{within} of %n cones are within {tolerance:g} m; the worst is {most:.3f} m off.",
-                within=figures.within,
-                tolerance=tolerance,
-                most=figures.most,
-            )
-        )
+        _tell(figures, tolerance, feedback)
         numbers = (*vars(figures).values(), pages, int(odd > 0))
         return {OUTPUT: str(file), **dict(zip(NUMBERS, numbers, strict=True))}
 
@@ -173,3 +157,27 @@ def announce(bar: QgsMessageBar, file: Path) -> None:
     """Say in the window's message bar where the report is; a click opens it."""
     link = f'<a href="{file.as_uri()}">{escape(str(file))}</a>'
     bar.pushSuccess(tr("As-placed report"), tr("It is written: {link}", link=link))
+
+
+def _warn_of_odd(odd: int, feedback: QgsProcessingFeedback) -> None:
+    if odd:
+        feedback.pushWarning(
+            tr_count(
+                odd,
+                "1 feature has no planned or no placed position; it is left out.",
+                "%n features have no planned or no placed position; they are left out.",
+            )
+        )
+
+
+def _tell(figures: Deviations, tolerance: float, feedback: QgsProcessingFeedback) -> None:
+    feedback.pushInfo(
+        tr_count(
+            figures.count,
+            "{within} of 1 cone is within {tolerance:g} m; it is {most:.3f} m off.",
+            "{within} of %n cones are within {tolerance:g} m; the worst is {most:.3f} m off.",
+            within=figures.within,
+            tolerance=tolerance,
+            most=figures.most,
+        )
+    )

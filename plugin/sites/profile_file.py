@@ -129,6 +129,11 @@ def _rule(content: Any, key: str, file: Path) -> ProfileRule:
                 geometries=", ".join(GEOMETRIES),
             )
         )
+    return ProfileRule(names, fields, geometry, _setup(content, key, file))
+
+
+def _setup(content: Mapping[str, Any], key: str, file: Path) -> LayerSetup:
+    """Return the role that a rule gives to layers, and the expressions that go with it."""
     role = _text(content, "role", f"{key}.", file)
     if role not in ROLES:
         raise ProfileError(
@@ -141,7 +146,7 @@ def _rule(content: Any, key: str, file: Path) -> ProfileRule:
             )
         )
     expressions = {name: _expression(content, name, key, file) for name in EXPRESSIONS}
-    return ProfileRule(names, fields, geometry, LayerSetup(role, LayerExpressions(**expressions)))
+    return LayerSetup(role, LayerExpressions(**expressions))
 
 
 def _expression(content: Mapping[str, Any], name: str, key: str, file: Path) -> str:

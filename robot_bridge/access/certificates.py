@@ -108,15 +108,6 @@ def valid_until(file: Path) -> datetime.datetime:
     return until or certificate.not_valid_after.replace(tzinfo=datetime.timezone.utc)
 
 
-def names_of(file: Path) -> list[str]:
-    """Return the host names and addresses that the certificate in ``file`` is for."""
-    try:
-        subjects = _read_certificate(file).extensions.get_extension_for_class(x509.SubjectAlternativeName)
-    except x509.ExtensionNotFound:
-        return []
-    return [str(name.value) for name in subjects.value]
-
-
 def _subjects(names: Sequence[str], addresses: Sequence[str]) -> list[x509.GeneralName]:
     if not names and not addresses:
         raise AccessError("a certificate needs a name; give --name HOST, or --ip ADDRESS")

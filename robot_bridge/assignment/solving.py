@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from ..counting import counted
+from ..known_names import told
 from .days import Day, Days
 from .errors import CancelledError, JobError, UnservedError
 from .job import Job
@@ -23,8 +24,6 @@ AUTOMATIC, PYVRP, PREVIEW = "automatic", "pyvrp", "preview"
 PREVIEW_KEPT = f"{PYVRP}, which found nothing better than the preview"
 """The method of a plan that PyVRP looked at and could not improve."""
 METHODS = (AUTOMATIC, PYVRP, PREVIEW)
-_NAMED = 10
-"""How many cones an error names at most."""
 
 Progress = Callable[[float], bool]
 """Is told which share of the work is done, 0 to 1; what it returns says whether to go on."""
@@ -158,6 +157,4 @@ def _refuse(job: Job, left: Sequence[int]) -> None:
 
 
 def _named(job: Job, places: Sequence[int]) -> str:
-    names = [job.target(place).id for place in places]
-    more = f" and {len(names) - _NAMED} more" if len(names) > _NAMED else ""
-    return ", ".join(names[:_NAMED]) + more
+    return told([job.target(place).id for place in places])

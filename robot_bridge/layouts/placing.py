@@ -56,11 +56,6 @@ def along(cones: Sequence[Cone], line: Floats, start: float = 0.0) -> list[Cone]
     ]
 
 
-def length_of(line: Floats) -> float:
-    """Return the metres of ``line``, (n, 2)."""
-    return float(np.hypot(*np.diff(line, axis=0).T).sum())
-
-
 def _cleaned(line: Floats) -> Floats:
     """Return ``line`` without points that repeat."""
     points = np.asarray(line, dtype=np.float64)

@@ -186,16 +186,28 @@ def earlier_settings(folder: Path, id: str) -> str:
 
 
 def _first_wrong(settings: SiteSettings) -> str | None:
-    limits, bounds = settings.liveness, settings.bounds
+    """Return what is wrong first, None where nothing is."""
+    wrong = [*_not_finite(settings), *_broken_rules(settings)]
+    wrong += [text for name in TABLES for text in out_of_range(name, getattr(settings, name))]
+    return next(iter(wrong), None)
+
+
+def _not_finite(settings: SiteSettings) -> list[str]:
     numbers = {
         "site.origin": settings.origin,
-        "site.bounds": tuple(bounds),
+        "site.bounds": tuple(settings.bounds),
         "site.rotation_deg": (settings.rotation_deg,),
         "site.reached_tolerance_m": (settings.reached_tolerance_m,),
     }
-    for key, values in numbers.items():
-        if not all(math.isfinite(value) for value in values):
-            return f"{key} = {list(values)}: nan and inf are no numbers for a site; write finite ones."
+    return [
+        f"{key} = {list(values)}: nan and inf are no numbers for a site; write finite ones."
+        for key, values in numbers.items()
+        if not all(math.isfinite(value) for value in values)
+    ]
+
+
+def _broken_rules(settings: SiteSettings) -> list[str]:
+    limits, bounds = settings.liveness, settings.bounds
     rules = (
         (
             re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9_.-]*", settings.id) is not None,
@@ -225,9 +237,7 @@ def _first_wrong(settings: SiteSettings) -> str | None:
             "https://host:port, without a path.",
         ),
     )
-    wrong = [text for right, text in rules if not right]
-    wrong += [text for name in TABLES for text in out_of_range(name, getattr(settings, name))]
-    return next(iter(wrong), None)
+    return [text for right, text in rules if not right]
 
 
 def _tables(file: Path) -> Mapping[str, Any]:
