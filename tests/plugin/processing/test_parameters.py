@@ -41,7 +41,7 @@ def test_a_command_in_a_help_can_be_pasted_into_a_shell(qgis_app):
     provider = FleetProvider()
     provider.loadAlgorithms()
     helps = [algorithm.shortHelpString() for algorithm in provider.algorithms()]
-    assert sum("qgis_process run" in text for text in helps) > 10
+    assert any("qgis_process run" in text for text in helps)
     assert not any("\\" in text for text in helps)
 
 
