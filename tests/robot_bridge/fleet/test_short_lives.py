@@ -105,6 +105,18 @@ async def test_a_robot_that_says_ready_is_stored_before_it_is_answered(yard, los
     assert yard.sql("select name, magic, link from robots") == [("r1", 1, link)]
 
 
+async def test_a_robot_that_started_anew_is_told_once_more_once_though_the_gateway_dies_before_it_answers(
+    yard,
+):
+    await yard.ready()
+    await yard.send("a")
+    await yard.take()
+    await yard.fleet.receive("r1", "websocket", Ready(2), 5)
+    await yard.restart()
+    await yard.ready(magic=2)
+    assert await yard.steps("a") == ["queued", "delivered", "acknowledged", "acknowledged"]
+
+
 # --- what robots are answered that said Ready more than once before it was read ---
 
 

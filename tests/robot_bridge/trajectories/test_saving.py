@@ -191,3 +191,37 @@ async def test_a_store_that_hangs_keeps_no_more_than_may_wait_and_gets_the_newes
     times, last = await yard.stored()
     assert times == [0.0, *map(float, range(501, 1501))]
     assert (last, recorder.waiting) == (1500.0, 0)
+
+
+async def test_robots_that_are_to_be_stored_at_once_are_stored_together(yard, database, monkeypatch):
+    names, run, times = [f"r{number}" for number in range(2, 22)], database.run, []
+
+    async def counted(work, *arguments):
+        times.append(work)
+        return await run(work, *arguments)
+
+    monkeypatch.setattr(database, "run", counted)
+    for name in names:
+        yard.robots.ready(name, 1, "websocket", 0.0)
+    await asyncio.gather(*map(yard.saving.save, names))
+    assert len(times) == 1
+    stored = await run(stored_robots.names)
+    assert stored == sorted(names)
+
+
+async def test_a_robot_whose_turn_failed_is_stored_in_the_next_ones(yard, database, monkeypatch):
+    run, times = database.run, []
+
+    async def fail_first(work, *arguments):
+        times.append(work)
+        if len(times) == 1:
+            raise StoreError("the disk is full")
+        return await run(work, *arguments)
+
+    monkeypatch.setattr(database, "run", fail_first)
+    yard.robots.ready("r2", 1, "websocket", 0.0)
+    first, second = await asyncio.gather(
+        yard.saving.save("r1"), yard.saving.save("r2"), return_exceptions=True
+    )
+    assert (type(first), second) == (StoreError, None)
+    assert await run(stored_robots.names) == ["r1", "r2"]
