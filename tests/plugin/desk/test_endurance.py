@@ -10,7 +10,17 @@ from collections.abc import Iterable
 import numpy as np
 import pytest
 from benchmarks import endurance
-from benchmarks.endurance import FLAT, Run, Sample, Unloaded, endure, faults, grown, growth, kept_of_a_version
+from benchmarks.endurance import endure
+from benchmarks.endurance_findings import (
+    FLAT,
+    Run,
+    Sample,
+    Unloaded,
+    faults,
+    grown,
+    growth,
+    kept_of_a_version,
+)
 from inside_qgis.endurance.play import Player
 from inside_qgis.endurance.pulse import LATE, Pulse
 
