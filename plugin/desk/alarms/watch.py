@@ -12,6 +12,7 @@ from ...sites.surface_store import SurfaceStore
 from ...wire.status import Phase
 from ..desk import Desk
 from ..picture import Gone
+from ..time_slices import ONE_STEP, Steps, TimeSlices
 from .alarm import AlarmChange, AlarmEvent, Key
 from .board import AlarmBoard
 from .message_log import AlarmMessages
@@ -29,9 +30,9 @@ class AlarmWatch(QObject):
     """Watches as long as the link is up: what the gateway does not tell, nobody can judge."""
 
     changed = pyqtSignal()
-    """Alarms came, ended or were acknowledged, or whether somebody watches."""
+    """Alarms came, ended or were acknowledged, or whether somebody watches; soon after it was so."""
     happened = pyqtSignal(list)
-    """The AlarmEvents of one look."""
+    """The AlarmEvents since this was told last; soon after they were."""
 
     def __init__(self, desk: Desk, surfaces: SurfaceStore, parent: QObject | None = None):
         super().__init__(parent)
@@ -42,6 +43,10 @@ class AlarmWatch(QObject):
         self._turn = desk.beat.turn()
         self._generation = desk.picture.generation
         self._told = ""
+        self._untold: list[AlarmEvent] = []
+        self._unseen: set[Key] = set()
+        """Alarms that have begun and that nobody can see yet."""
+        self._telling = TimeSlices(self, ONE_STEP)
         self.board = AlarmBoard(read_limits())
         desk.pulled.connect(self._pulled)
         desk.robots_removed.connect(self._drop)
@@ -50,6 +55,7 @@ class AlarmWatch(QObject):
         """Look no more."""
         self._desk.pulled.disconnect(self._pulled)
         self._desk.robots_removed.disconnect(self._drop)
+        self._telling.stop()
         self._ground.remove()
 
     def why_not(self) -> str:
@@ -76,10 +82,11 @@ class AlarmWatch(QObject):
         link = self._desk.link
         operator = (link.who if link.phase is Phase.CONNECTED else "") or tr("this desk")
         self._tell(self.board.acknowledge(keys, operator, time.time()))
+        self._telling.finish()
 
     def acknowledge_all(self) -> None:
-        """Note that the operator has seen every alarm."""
-        self.acknowledge([alarm.key for alarm in self.board.alarms()])
+        """Note that the operator has seen every alarm that is shown."""
+        self.acknowledge([alarm.key for alarm in self.board.alarms() if alarm.key not in self._unseen])
 
     def set_limits(self, limits: Thresholds) -> None:
         """Judge by these settings from now on, in later sessions as well."""
@@ -101,9 +108,17 @@ class AlarmWatch(QObject):
 
     def _tell(self, events: list[AlarmEvent]) -> None:
         self._messages.write([event.alarm for event in events if event.change is AlarmChange.BEGAN])
-        if not events:
-            return
+        if events:
+            self._untold += events
+            self._unseen.update(event.alarm.key for event in events if event.change is AlarmChange.BEGAN)
+            self._telling.begin_soon(self._parts())
+
+    def _parts(self) -> Steps[None]:
+        """Tell of events part by part: to judge hundreds and to show it is too much for one piece."""
+        events, self._untold = self._untold, []
         self.happened.emit(events)
+        yield 0.5
+        self._unseen.clear()
         self.changed.emit()
 
     def _tell_of_watching(self) -> None:

@@ -3,13 +3,14 @@
 import csv
 import json
 import time
+from itertools import groupby
 
 import pytest
 from fleet_supervisor.plugin.desk.alarms.stored_limits import read_limits, write_limits
 from fleet_supervisor.plugin.desk.alarms.thresholds import AlarmKind, Thresholds
 from fleet_supervisor.robot_bridge.messages import CommandState, RobotState
 from qgis.core import QgsFeature, QgsGeometry, QgsProject, QgsRectangle, QgsSettings, QgsVectorLayer
-from qgis.PyQt.QtCore import Qt
+from qgis.PyQt.QtCore import Qt, QTimer
 from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import (
     QApplication,
@@ -146,6 +147,50 @@ def test_acknowledging_one_takes_it_from_the_new_ones(at_alarms, gateway, make_r
     assert at_alarms.dock.tabs.tabText(alarm_tab(at_alarms)) == "Alarms (1)"
     gateway.show(make_robot("r1", 50, 40), make_robot("r2", 80, 60))
     wait(lambda: [state for _, state in alarms(at_alarms)] == ["over"])
+
+
+def watch_of(window):
+    return window.dock.findChild(QTableView, "fleet_alarms").parent()._watch
+
+
+def test_alarms_are_judged_told_and_listed_in_pieces_between_which_the_window_looks_for_events(
+    at_alarms, gateway, make_robot, wait, monkeypatch
+):
+    told, watch, events = [], watch_of(at_alarms), QTimer()
+    look = watch.board.look
+
+    def judge(*now):
+        found = look(*now)
+        told.extend(["judged"] if found else [])
+        return found
+
+    monkeypatch.setattr(watch.board, "look", judge)
+    watch.happened.connect(lambda _: told.append("told"))
+    watch.changed.connect(lambda: told.append("listed"))
+    events.timeout.connect(lambda: told.append("events"))
+    events.start(0)
+    gateway.show(make_robot("r1", 50, 40, battery=0.1))
+    wait(lambda: alarms(at_alarms))
+    events.stop()
+    pieces = [what for what, _ in groupby(told)]
+    begun = pieces.index("judged")
+    assert pieces[begun : begun + 5] == ["judged", "events", "told", "events", "listed"]
+
+
+def test_alarms_that_are_not_shown_yet_are_not_acknowledged_with_all_others(
+    at_alarms, gateway, make_robot, wait, monkeypatch
+):
+    gateway.show(make_robot("r1", 50, 40, battery=0.1))
+    wait(lambda: len(alarms(at_alarms)) == 1)
+    watch = watch_of(at_alarms)
+    with monkeypatch.context() as late:
+        late.setattr(watch._telling, "begin_soon", lambda work: None)
+        gateway.show(make_robot("r2", 80, 60, battery=0.1))
+        wait(lambda: len(watch.board.alarms()) == 2)
+    assert len(alarms(at_alarms)) == 1
+    press(at_alarms.dock, "fleet_acknowledge_all")
+    assert [(alarm.robot, alarm.is_new) for alarm in watch.board.alarms()] == [("r2", True), ("r1", False)]
+    assert sorted(state for _, state in alarms(at_alarms)) == ["new", "seen"]
 
 
 @pytest.mark.parametrize("how", ["double click", "Enter"])
