@@ -45,7 +45,7 @@ class AlarmWatch(QObject):
         self._told = ""
         self._untold: list[AlarmEvent] = []
         self._unseen: set[Key] = set()
-        """Alarms that have begun and that nobody can see yet."""
+        """Alarms that have begun and that nobody was told of yet."""
         self._telling = TimeSlices(self, ONE_STEP)
         self.board = AlarmBoard(read_limits())
         desk.pulled.connect(self._pulled)
@@ -85,7 +85,7 @@ class AlarmWatch(QObject):
         self._telling.finish()
 
     def acknowledge_all(self) -> None:
-        """Note that the operator has seen every alarm that is shown."""
+        """Note that the operator has seen every alarm that was told of."""
         self.acknowledge([alarm.key for alarm in self.board.alarms() if alarm.key not in self._unseen])
 
     def set_limits(self, limits: Thresholds) -> None:
@@ -117,8 +117,9 @@ class AlarmWatch(QObject):
         """Tell of events part by part: to judge hundreds and to show it is too much for one piece."""
         events, self._untold = self._untold, []
         self.happened.emit(events)
-        yield 0.5
+        # The message bar counts them and says what the most pressing ones are.
         self._unseen.clear()
+        yield 0.5
         self.changed.emit()
 
     def _tell_of_watching(self) -> None:

@@ -177,7 +177,7 @@ def test_alarms_are_judged_told_and_listed_in_pieces_between_which_the_window_lo
     assert pieces[begun : begun + 5] == ["judged", "events", "told", "events", "listed"]
 
 
-def test_alarms_that_are_not_shown_yet_are_not_acknowledged_with_all_others(
+def test_alarms_that_nobody_was_told_of_yet_are_not_acknowledged_with_all_others(
     at_alarms, gateway, make_robot, wait, monkeypatch
 ):
     gateway.show(make_robot("r1", 50, 40, battery=0.1))
