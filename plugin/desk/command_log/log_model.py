@@ -19,7 +19,7 @@ from .entries import Filter, cells, step_cells
 COLUMNS = (tr("Time"), tr("Command"), tr("State"), tr("Details"))
 TIME, STATE = 0, 2
 COMMAND_ROLE = Qt.ItemDataRole.UserRole
-ROLES = frozenset(
+ANSWERED_ROLES = frozenset(
     {
         COMMAND_ROLE,
         Qt.ItemDataRole.DisplayRole,
@@ -28,7 +28,7 @@ ROLES = frozenset(
         Qt.ItemDataRole.FontRole,
     }
 )
-"""What there is to be told of a cell; a view asks for as much again, of each one that it paints."""
+"""The item roles that this model answers; a view asks for as many others of each cell that it paints."""
 PAGE = 200
 """Commands that a view is told of at first, and each time that it comes to the end of those."""
 
@@ -96,7 +96,7 @@ class LogModel(QAbstractItemModel):
         return None
 
     def data(self, index: QModelIndex, role: int = 0) -> object:
-        if role not in ROLES:
+        if role not in ANSWERED_ROLES:
             return None
         report = self.report_at(index)
         if report is None:

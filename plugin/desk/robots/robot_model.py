@@ -24,7 +24,7 @@ from .deviations import Deviations
 from .fleet_rows import FleetRows, Rows, Which, fleet_rows
 from .last_heard import heard_in_words
 
-ROLES = frozenset(
+ANSWERED_ROLES = frozenset(
     {
         Qt.ItemDataRole.DisplayRole,
         Qt.ItemDataRole.DecorationRole,
@@ -33,7 +33,7 @@ ROLES = frozenset(
         Qt.ItemDataRole.TextAlignmentRole,
     }
 )
-"""What there is to be told of a cell; a view asks for as much again, of each one that it paints."""
+"""The item roles that this model answers; a view asks for as many others of each cell that it paints."""
 
 
 class RobotModel(QAbstractTableModel):
@@ -68,7 +68,7 @@ class RobotModel(QAbstractTableModel):
         return COLUMNS[section].tip if role == Qt.ItemDataRole.ToolTipRole else None
 
     def data(self, index: QModelIndex, role: int = 0) -> object:
-        if role not in ROLES:
+        if role not in ANSWERED_ROLES:
             return None
         row = int(self._order[index.row()])
         column = COLUMNS[index.column()]
