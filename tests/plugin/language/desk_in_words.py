@@ -150,6 +150,7 @@ def loaded(name: str, path: Path):
 def show_all(show: Show) -> None:
     """Load the plugin into a window, connect it, and look at all of it."""
     desk_tests = loaded("desk_tests", ROOT / "tests" / "plugin" / "desk" / "conftest.py")
+    from every_dialog import dialogs
     from fleet_supervisor.plugin.supervisor import FleetSupervisor
 
     QgsSettings().setValue("fleet_supervisor/tour_offered", True)
@@ -328,79 +329,6 @@ def each_tab(widget: QWidget) -> Iterator[tuple[int, QWidget]]:
     for tabs in widget.findChildren(QTabWidget):
         for tab in range(tabs.count()):
             yield tab, tabs
-
-
-def dialogs(window, desk_window) -> Iterator[tuple[str, QDialog]]:
-    """Yield every dialog with something to say."""
-    from fleet_supervisor.plugin.desk.accounts.account_model import Account
-    from fleet_supervisor.plugin.desk.accounts.accounts_dialog import AccountsDialog
-    from fleet_supervisor.plugin.desk.accounts.questions import (
-        AnotherRole,
-        AnotherToken,
-        NewAccount,
-        revocation,
-    )
-    from fleet_supervisor.plugin.desk.accounts.token_dialog import TokenDialog
-    from fleet_supervisor.plugin.desk.alarms.log_dialog import AlarmLogDialog
-    from fleet_supervisor.plugin.desk.alarms.thresholds import Thresholds
-    from fleet_supervisor.plugin.desk.alarms.thresholds_dialog import ThresholdsDialog
-    from fleet_supervisor.plugin.desk.clear_dialog import ClearDialog
-    from fleet_supervisor.plugin.desk.closure_dialog import ClosureDialog
-    from fleet_supervisor.plugin.desk.commands.coordinates_dialog import CoordinatesDialog
-    from fleet_supervisor.plugin.desk.commands.override_dialog import OverrideDialog
-    from fleet_supervisor.plugin.desk.drafts import CONE, Draft
-    from fleet_supervisor.plugin.desk.site_choice.site_choice_dialog import SiteChoiceDialog
-    from fleet_supervisor.plugin.desk.site_choice.site_question import site_question
-    from fleet_supervisor.plugin.help.help_window import HelpWindow
-    from fleet_supervisor.plugin.help.topics import START
-    from fleet_supervisor.plugin.language import tr
-    from fleet_supervisor.plugin.roles.roles_dialog import RolesDialog
-    from fleet_supervisor.plugin.settings.connection_dialog import ConnectionDialog
-    from fleet_supervisor.plugin.settings.connections import Connections
-    from fleet_supervisor.plugin.settings.connections_dialog import ConnectionsDialog
-    from fleet_supervisor.plugin.settings.gateway_connection import GatewayConnection
-    from fleet_supervisor.robot_bridge.messages import (
-        EmergencyReport,
-        NewToken,
-        OperatorReport,
-        Role,
-        SiteOffer,
-        TokenState,
-    )
-
-    site = GatewayConnection("Proving ground", "wss://gateway.example.org:8765/desk", "anna")
-    Connections().put(site)
-    yield "connection", ConnectionDialog(site, Connections(), window)
-    yield "connection_new", ConnectionDialog(GatewayConnection("", ""), Connections(), window)
-    yield "connections", ConnectionsDialog(window)
-    yield "thresholds", ThresholdsDialog(Thresholds(), window)
-    yield "alarm_log", AlarmLogDialog(window)
-    yield "closure", ClosureDialog(window)
-    yield "coordinates", CoordinatesDialog(desk_window.desk, window)
-    found = "A cone target of r2 is 0.3 m from it", "It is on the obstacle bin-4"
-    draft, then = Draft("r1", CONE, ((60.0, 50.0),)).in_words(), tr("Nothing is sent yet.")
-    yield "override", OverrideDialog(draft, found, then, window, is_safe=False)
-    queue = tr("the queue of {robot}", robot="r1")
-    then = tr("The plan is sent on at once, and robots set off.")
-    yield "override_plan", OverrideDialog(queue, found, then, window, is_safe=True)
-    stop = EmergencyReport(True, "s1", time.time(), "anna", robots=5, waiting=["r1", "r2"])
-    yield "clear", ClearDialog(stop, window)
-    yield "accounts", AccountsDialog(desk_window.desk, window)
-    own = Account(OperatorReport("Ada", Role.SUPERVISOR, time.time(), TokenState.VALID), is_own=True)
-    yield "new_account", NewAccount(True, window)
-    yield "role", AnotherRole(own, window)
-    yield "new_token", AnotherToken(own, window)
-    yield "revocation", revocation(own, window, lambda: None)
-    made = NewToken("Ada", Role.SUPERVISOR, f"fleet_op_{0:043d}", time.time())
-    yield "token", TokenDialog(made, ends_link=True, parent=window)
-    yield "sites", SiteChoiceDialog(desk_window.desk, window)
-    offer = SiteOffer("south", False, "south", "South field", 1)
-    yield "site_question", site_question(offer, window, lambda: None)
-    help_window = HelpWindow(window)
-    help_window.show_topic(START)
-    yield "help", help_window
-    QgsProject.instance().read(str(ROOT / "resources" / "sample_site" / "sample_site.qgz"))
-    yield "roles", RolesDialog(QgsProject.instance(), window)
 
 
 def look_at_options(show: Show, window) -> None:
