@@ -7,15 +7,13 @@ from dataclasses import dataclass
 
 from qgis.core import QgsFeedback
 
+from ...robot_bridge.sites.reach import KNOWN_BEYOND
 from .ground_reading import check_ground_sources, read_areas, read_centrelines, read_surfaces
 from .obstacle_source import ObstacleSource
 from .placing import Bounds, SitePlacing, widened
 from .reading import check_sources, read_outlines
 from .roles import KEEPOUT, ROAD_CENTRELINE, ROAD_SURFACE
 from .site_content import SiteContent
-
-BEYOND_M = 100.0
-"""How far obstacles outside the bounds are published: a robot at the edge is sent what it can reach."""
 
 
 @dataclass(frozen=True)
@@ -44,7 +42,7 @@ def read_content(
 
     :raises LayerReadingError: when a layer has no known place on the site or an expression is not one.
     """
-    near = widened(bounds, BEYOND_M) if bounds is not None else None
+    near = widened(bounds, KNOWN_BEYOND) if bounds is not None else None
     obstacles = read_outlines(sources.obstacles, site, near, default_height, feedback)
     centrelines = read_centrelines(sources.centrelines, site, default_width, feedback)
     surfaces = read_surfaces(sources.surfaces, site, feedback)

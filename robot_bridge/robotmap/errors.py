@@ -8,7 +8,7 @@ class RobotMapError(Exception):
 
 
 class WindowError(RobotMapError):
-    """A window that encloses nothing."""
+    """A window that encloses nothing, or of which nothing is known."""
 
 
 class TextError(RobotMapError):

@@ -9,11 +9,13 @@ from ..roads.keepouts import KeepoutIndex
 from ..roads.surfaces.index import SurfaceIndex
 from ..roads.surfaces.surface import Surface
 from ..robotmap.builder import Window
+from ..robotmap.errors import WindowError
 from ..robotmap.index import OutlineIndex
 from ..robotmap.model import RobotMap
 from ..robotmap.outlines import Outlines
 from .features import Area, Centreline
 from .frame import SiteFrame
+from .reach import KNOWN_BEYOND
 from .settings import Bounds, SiteSettings
 
 
@@ -63,9 +65,25 @@ class Site:
     def map_around(self, x: float, y: float, area: float) -> RobotMap:
         """Return the answer to GetMap(x, y, A): a square of ``area`` m² centred on (x, y), site frame.
 
-        :raises WindowError: when the three are no window (no area, NaN).
+        :raises WindowError: when the three are no window (no area, NaN), or one of which nothing is known:
+            the empty map of it would say that all is free there.
         """
-        return self._map(Window.square(x, y, area))
+        window = Window.square(x, y, area)
+        if not self._is_near(window):
+            x_min, y_min, x_max, y_max = self.bounds
+            raise WindowError(
+                f"no part of {area:g} m² around ({x:.2f}, {y:.2f}) is within {KNOWN_BEYOND:g} m of site "
+                f"{self.name!r}, which reaches from ({x_min:.2f}, {y_min:.2f}) to "
+                f"({x_max:.2f}, {y_max:.2f}); what stands there is not known"
+            )
+        return self._map(window)
+
+    def _is_near(self, window: Window) -> bool:
+        """Tell whether any of ``window`` is where it is known what stands."""
+        x_min, y_min, x_max, y_max = self.bounds
+        apart_x = abs(window.x - (x_min + x_max) / 2) - (window.width + x_max - x_min) / 2
+        apart_y = abs(window.y - (y_min + y_max) / 2) - (window.height + y_max - y_min) / 2
+        return max(apart_x, apart_y) <= KNOWN_BEYOND
 
     def _map(self, window: Window) -> RobotMap:
         return self._index.map_of(window, meta=self.map_meta())

@@ -71,7 +71,7 @@ from benchmarks.clock import megabytes
 from robot_bridge.sites.publication import read_site
 before = megabytes()
 site = read_site({folder!r})
-site.map_around(0, 0, 100)
+site.map_around(site.bounds.x_min, site.bounds.y_min, 100)
 print(json.dumps(megabytes() - before))
 """
 

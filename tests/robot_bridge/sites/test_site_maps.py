@@ -70,6 +70,19 @@ def test_get_map_says_which_way_the_ramp_faces(site):
     assert ";ramp,Terrace ramp;src=ramp:1,n=0.083,0,0.9965;" in text
 
 
+@pytest.mark.parametrize(("x", "y"), [(-104.9, 80.0), (304.9, 80.0), (100.0, -104.9), (100.0, 264.9)])
+def test_around_the_site_it_is_known_what_stands_there(site, x, y):
+    assert site.map_around(x, y, 100.0).warnings == ()
+
+
+@pytest.mark.parametrize(
+    ("x", "y"), [(-105.1, 80.0), (305.1, 80.0), (100.0, -105.1), (100.0, 265.1), (1e6, 80.0)]
+)
+def test_far_from_the_site_no_map_says_that_all_is_free(site, x, y):
+    with pytest.raises(WindowError, match=r"no part of 100 m² around .* what stands there is not known"):
+        site.map_around(x, y, 100.0)
+
+
 @pytest.mark.parametrize("area", [0.0, -4.0, float("nan"), float("inf")])
 def test_an_area_that_is_none_is_refused(site, area):
     with pytest.raises(WindowError):
