@@ -44,6 +44,15 @@ class CommandReader:
         aborted = any(c.is_abort and task is not None and c.sa_id > task.sa_id for c in mine)
         return command == self.busy_with(robot) and not aborted
 
+    def is_being_aborted(self, robot: str, command: str) -> bool:
+        """Tell whether an Abort is to end the command as soon as the robot says that it has taken that on.
+
+        Not that of an emergency stop, after which nobody goes on before it is cleared.
+        """
+        task = self._open.get(command)
+        aborts = [c for c in self._open.of(robot) if c.is_abort and task is not None and c.sa_id > task.sa_id]
+        return bool(aborts) and not any(abort.is_emergency for abort in aborts)
+
     def carried_out(self, robot: str) -> OpenCommand | None:
         """Return the command that makes the robot drive, None also where somebody has asked for its end."""
         id = self.busy_with(robot)
@@ -57,6 +66,10 @@ class CommandReader:
         """Return the robot of an open command."""
         known = self._open.get(command)
         return None if known is None else known.report.robot
+
+    def awaits_abort(self, robot: str) -> bool:
+        """Tell whether an Abort that is no emergency stop's is on its way to the robot."""
+        return any(c.is_abort and not c.is_emergency and c.is_on_its_way for c in self._open.of(robot))
 
     def awaits_stop(self, robot: str) -> bool:
         """Tell whether the Abort of an emergency stop is on its way to the robot."""

@@ -238,6 +238,8 @@ class QueueDriving:
 
     async def _why_not_yet(self, robot: str, head: QueuedTask) -> str | None:
         """Return why what comes next is not sent yet, None when it may be; raises StoreError."""
+        if self._is_stopping(robot, head):
+            return life.STOPS_FIRST
         other = self.waits_for(robot, head.id)
         if other is not None:
             return f"waits for {other}"
@@ -245,6 +247,15 @@ class QueueDriving:
             return "waits for the robot to say where it is"
         # What was begun is not given up because of what another robot does.
         return None if head.is_current else await self._precedence.waits_for(robot, head.task)
+
+    def _is_stopping(self, robot: str, head: QueuedTask) -> bool:
+        """Tell whether the robot is to stop first: it was resumed before it has said that it did.
+
+        By then it may be done with its task, and what it is sent meanwhile would be ended by that Abort if it
+        came to read that last.
+        """
+        was_begun = not head.is_current and head.command is not None and self._commands.is_open(head.command)
+        return was_begun or self._commands.awaits_abort(robot)
 
     async def _message(self, queue: Queue, head: QueuedTask) -> SetPath | SetPosEnd:
         message = legs(head.task, self._site.settings.cones.offset)[head.leg]

@@ -33,7 +33,7 @@ from ..messages import (
 from ..places import check_keepouts, check_places
 from ..queues import edits, life, sharing
 from ..queues.legs import legs
-from ..queues.queue import Queue, queue_report
+from ..queues.queue import Queue, QueuedTask, queue_report
 from ..store import placements, queues
 from .context import QueueContext
 
@@ -95,9 +95,12 @@ class QueueOrders:
                 return await self._pause(request.robot, reason, operator)
 
     async def resume(self, request: ResumeQueue, operator: str) -> QueueReport:
-        """Let a queue go on."""
+        """Let a queue go on; where its robot has not stopped yet as it was told to, as soon as it has."""
         async with self._editing(request.robot, request.revision) as queue:
-            return await self._edit(queue, edits.resumed(queue, operator, self._clock()), operator)
+            after, current = edits.resumed(queue, operator, self._clock()), queue.current
+            if current is not None and self._is_being_aborted(queue.robot, current):
+                after = after.with_head(edits.given_back(current, life.STOPS_FIRST))
+            return await self._edit(queue, after, operator)
 
     async def take_over(self, request: TakeOver, operator: str) -> list[QueueReport]:
         """Let other robots do what waits in one robot's queue, all of it or nothing."""
@@ -150,6 +153,9 @@ class QueueOrders:
         turns = self._site.settings.cones.offset != (0.0, 0.0)
         tasks = [_collecting(cone, turns) for cone in found if cone.placement not in queued]
         return CollectingTasks(tasks, len(found) - len(tasks))
+
+    def _is_being_aborted(self, robot: str, task: QueuedTask) -> bool:
+        return task.command is not None and self._commands.is_being_aborted(robot, task.command)
 
     async def _pause(self, robot: str, reason: str, operator: str) -> QueueReport:
         queue = self._book.get(robot)

@@ -12,6 +12,8 @@ from .edits import given_back
 from .queue import Queue, QueuedTask
 
 GATEWAY = "gateway"
+STOPS_FIRST = "goes on as soon as the robot has acknowledged that it is to stop"
+"""Why a task is not sent that was resumed before its robot had stopped."""
 Path = list[tuple[float, float]]
 """(x, y) in metres in the site frame."""
 
@@ -65,7 +67,8 @@ def settled(queue: Queue, report: CommandReport, legs: int, *, skips: bool) -> S
         return failed(queue, f"robot {queue.robot} refused it or gave it up: {reason}", step.at, skips=skips)
     why = because(f"its command is {report.state.value}", step.reason)
     given = queue.with_head(given_back(head, why))
-    resumed_since = queue.at is not None and queue.at > step.at
+    # Resumed in the same moment it was after that: what pauses it then has done so by now.
+    resumed_since = queue.at is not None and queue.at >= step.at
     return Settled(given if resumed_since else given.paused(f"task {head.id}: {why}", step.by, step.at))
 
 

@@ -245,19 +245,9 @@ class Play:
                 assert not queue.tasks
 
     async def resume_until_done(self):
-        """Let all queues go on until everything is done, again where they paused once more.
-
-        They do if they were resumed before their robot, which was out of reach, had taken an Abort on.
-        """
+        """Let all queues go on until everything is done, also those whose robots have not stopped yet."""
         await self.resume_all()
-        await self.until(lambda: self.is_done() or self._held_again())
-        for robot in self._held_again():
-            assert self.was_disturbed
-            await self.resume(robot)
         await self.until_done()
-
-    def _held_again(self):
-        return [robot for robot in self.robots if self.is_held(robot, "the robot acknowledged the Abort")]
 
     async def order(self, id, op, robot="r1", **params):
         """Order a robot to do something beside its queue."""

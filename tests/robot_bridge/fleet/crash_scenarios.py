@@ -167,6 +167,19 @@ async def halted(play):
     assert len(put_down) == 1 or play.how == START_ANEW
 
 
+async def continued_at_once(play):
+    """Robots are paused, and told to go on before they can have stopped: each cone is put down once."""
+    await play.begin(WebSocketRobot(play, "r1", BEGIN), SqlRobot(play, "r2", BEFORE_OTHER))
+    await play.give(*course())
+    await play.give(OTHER, robot="r2")
+    await play.wait(2)
+    for name in play.robots:
+        await play.ask(lambda fleet, name=name: fleet.pauses.pause(PauseRobot(name), "Ada"))
+    await play.resume_until_done()
+    play.check({"r1": COURSE, "r2": [OTHER.task]})
+    play.check_cones([OTHER, *COURSE_CONES], interrupted=True)
+
+
 async def made_current(play):
     await play.begin(WebSocketRobot(play, "r1", BEGIN))
     await play.give(*(task(id, "place") for id in "abc"))
@@ -365,6 +378,7 @@ SCENARIOS = {
         aborted,
         aborted_too_late,
         halted,
+        continued_at_once,
         made_current,
         taken_over,
         stopped,

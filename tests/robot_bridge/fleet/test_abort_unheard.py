@@ -138,13 +138,15 @@ async def test_a_queue_that_was_resumed_after_the_robot_took_the_abort_on_goes_o
     assert (await line.sent()).count(CONE) == 2
 
 
-async def test_one_that_was_resumed_before_that_pauses_again(line):
+async def test_one_that_was_resumed_before_that_goes_on_then_and_not_before(line):
     await begin(line)
     await abort(line)
     await line.go()
     await line.resume()
+    assert (await line.sent()).count(CONE) == 1
     await come_back(line)
+    line.yard.now += 1
     await line.yard.at(40.0, 40.0)
     await line.go()
-    assert await line.states() == {"a": "waiting"}
-    assert (await line.seen()).state.value == "paused"
+    assert await line.states() == {"a": "current"}
+    assert (await line.sent()).count(CONE) == 2

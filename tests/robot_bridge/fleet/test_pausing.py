@@ -13,15 +13,18 @@ from robot_bridge.commanding.writing import write_drafts
 from robot_bridge.errors import RefusedError, UncertainError
 from robot_bridge.messages import (
     AbortTask,
+    ClearEmergencyStop,
     EmergencyStop,
     GetPath,
     GetQueue,
     MakeCurrent,
+    PauseQueue,
     PauseRobot,
     QueueTask,
     ResolveConflict,
     SetQueue,
 )
+from robot_bridge.queues.life import STOPS_FIRST
 
 LAP = [(20.0, 40.0), (50.0, 40.0), (50.0, 60.0), (20.0, 60.0), (20.0, 40.0)]
 
@@ -111,6 +114,99 @@ async def test_a_cone_sent_directly_is_placed_once(line):
     assert (cone.x, cone.y) == (60.0, 40.1)
 
 
+async def unheard(line, how):
+    """Let r1 be under way and paused, and not have heard of it; return where it is to go."""
+    if how == "its own task":
+        await line.set(task("a"))
+    else:
+        await line.yard.send("x", x=50.0, y=40.0)
+    await line.yard.take()
+    await line.yard.at(35.0, 40.0, v=1.0)
+    await pause(line)
+    return 50.0, 40.0
+
+
+@pytest.mark.parametrize("how", ["sent directly", "its own task"])
+@pytest.mark.parametrize("restarted", [False, True])
+async def test_continue_before_the_robot_has_stopped_holds_and_sends_it_on_once_it_has(line, how, restarted):
+    place = await unheard(line, how)
+    await line.resume()
+    line.yard.now += 1
+    if restarted:
+        await line.yard.restart()
+        await line.go()
+    report = await line.seen()
+    assert report.state.value == "running"
+    assert [one.reason for one in report.tasks] == [STOPS_FIRST]
+    assert await line.sent() == [place, "Abort"], "it was sent before it has stopped"
+    assert await line.reach(35.5, 40.0) == ["Abort"]
+    assert (await line.seen()).state.value == "running"
+    assert await line.sent() == [place, "Abort", place]
+    assert await line.reach(*place) == ["SetPosEnd"]
+    report = await line.seen()
+    assert (report.tasks, report.ended[0].attempts) == ([], 2)
+
+
+async def test_so_it_does_after_an_abort_of_a_task_of_its_queue(line):
+    await line.set(task("a"))
+    await line.yard.take()
+    await line.yard.at(35.0, 40.0, v=1.0)
+    await line.yard.fleet.orders.abort(AbortTask("abort-0001", robot="r1"), "Ada")
+    await line.go()
+    await line.resume()
+    line.yard.now += 1
+    assert await line.sent() == [PLACES["a"], "Abort"]
+    assert await line.reach(35.5, 40.0) == ["Abort"]
+    assert await line.sent() == [PLACES["a"], "Abort", PLACES["a"]]
+
+
+async def test_a_queue_that_was_resumed_while_its_robot_drives_on_leaves_its_task_as_it_is(line):
+    await line.set(task("a"))
+    await line.yard.take()
+    await line.queues.pause(PauseQueue("r1"), "Eve")
+    await line.resume()
+    (only,) = (await line.seen()).tasks
+    assert (only.state.value, only.reason) == ("current", None)
+
+
+async def test_paused_again_after_a_continue_that_came_early_it_stands(line):
+    place = await unheard(line, "sent directly")
+    await line.resume()
+    await pause(line)
+    assert await line.reach(35.5, 40.0) == ["Abort"]
+    await line.go()
+    assert (await line.seen()).state.value == "paused"
+    assert await line.sent() == [place, "Abort"]
+    await line.resume()
+    assert await line.sent() == [place, "Abort", place]
+
+
+async def test_an_emergency_stop_after_a_continue_that_came_early_holds_it(line):
+    place = await unheard(line, "its own task")
+    await line.resume()
+    await line.yard.fleet.emergency.stop(EmergencyStop("stop-0001"), "Ada")
+    await line.yard.fleet.emergency.clear(ClearEmergencyStop("clear", "stop-0001"), "Eve")
+    await line.reach(35.5, 40.0)
+    await line.reach(35.5, 40.0)
+    assert (await line.seen()).state.value == "paused"
+    assert (await line.sent()).count(place) == 1
+
+
+async def test_a_continue_before_the_robot_has_heard_of_an_emergency_stop_does_not_hold(line):
+    await line.set(task("a"))
+    await line.yard.take()
+    await line.yard.at(35.0, 40.0, v=1.0)
+    await line.yard.fleet.emergency.stop(EmergencyStop("stop-0001"), "Ada")
+    await line.go()
+    await line.resume()
+    line.yard.now += 1
+    await line.yard.fleet.emergency.clear(ClearEmergencyStop("clear", "stop-0001"), "Eve")
+    await line.reach(35.5, 40.0)
+    await line.reach(35.5, 40.0)
+    assert (await line.seen()).state.value == "paused"
+    assert (await line.sent()).count(PLACES["a"]) == 1
+
+
 @pytest.mark.parametrize("resumed", ["after it is heard", "before it is heard"])
 async def test_a_robot_that_was_there_before_it_heard_of_the_pause_places_no_second_cone(line, resumed):
     await line.yard.send("x", x=60.0, y=40.0, cone=True)
@@ -134,7 +230,9 @@ async def test_a_command_that_was_not_fetched_is_kept_too(line):
     await pause(line)
     assert (await line.yard.states())["x"] == "aborted"
     await line.resume()
-    assert await line.reach(60.0, 40.0) == ["Abort", "SetPosEnd"]
+    assert (await line.seen()).tasks[0].reason == STOPS_FIRST
+    assert await line.reach(20.0, 40.0) == ["Abort"]
+    assert await line.reach(60.0, 40.0) == ["SetPosEnd"]
     assert (await line.seen()).ended[0].state.value == "done"
 
 
