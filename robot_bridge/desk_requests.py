@@ -292,27 +292,27 @@ def _surfaces(fleet: Fleet, request: GetSurfaces) -> Json:
 
 
 async def _get_route(fleet: Fleet, request: GetRoute, _caller: Caller) -> Json:
-    return to_json(await road_requests.route(fleet.roads, fleet.robots, fleet.ways, request))
+    return to_json(await road_requests.route(fleet.roads.planner, fleet.robots, fleet.roads.ways, request))
 
 
 async def _close_road(fleet: Fleet, request: CloseRoad, caller: Caller) -> Json:
-    return to_json(await fleet.closures.close(request, caller.operator))
+    return to_json(await fleet.roads.closures.close(request, caller.operator))
 
 
 async def _open_road(fleet: Fleet, request: OpenRoad, caller: Caller) -> Json:
-    return to_json(await fleet.closures.open(request, caller.operator))
+    return to_json(await fleet.roads.closures.open(request, caller.operator))
 
 
 async def _get_closures(fleet: Fleet, _request: GetClosures, _caller: Caller) -> Json:
-    return to_json(fleet.closures.report())
+    return to_json(fleet.roads.closures.report())
 
 
 async def _get_conflicts(fleet: Fleet, _request: GetConflicts, _caller: Caller) -> Json:
-    return to_json(await fleet.traffic.conflicts())
+    return to_json(await fleet.roads.traffic.conflicts())
 
 
 async def _resolve_conflict(fleet: Fleet, request: ResolveConflict, caller: Caller) -> Json:
-    return to_json(await fleet.traffic.resolve(request, caller.operator))
+    return to_json(await fleet.roads.traffic.resolve(request, caller.operator))
 
 
 SERVICES: dict[type[DeskRequest], Service] = {

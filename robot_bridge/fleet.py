@@ -6,23 +6,22 @@ before it is answered.
 
 from __future__ import annotations
 
-import asyncio
 import logging
 import time
 from collections import Counter
-from collections.abc import Callable, Coroutine, Iterable
+from collections.abc import Callable, Coroutine
 from typing import Any
 
-from . import exchange
 from .answering import Answering
 from .commanding.book import CommandBook
+from .commanding.drafting import Rules
 from .commanding.orders import Orders
 from .emergency.journal import StopJournal
-from .emergency.stops import HELD_BACK, EmergencyStops
+from .emergency.stops import EmergencyStops
 from .exchange import Outcome
 from .ground_track import GroundTracks
-from .handshake import Holds, refusal
 from .listeners import Listeners
+from .mailboxes import Mailboxes
 from .messages import (
     Answer,
     Command,
@@ -38,8 +37,6 @@ from .messages import (
     RobotReport,
     SendGPS,
     SendPos,
-    SetMap,
-    Start,
     Stopped,
     to_json,
 )
@@ -52,19 +49,15 @@ from .queueing.context import QueueContext
 from .queueing.driving import QueueDriving
 from .queueing.orders import QueueOrders
 from .queueing.pausing import RobotPauses
+from .reception import Reception
 from .removals import Removals
-from .road_traffic.closure_book import ClosureBook
-from .road_traffic.detours import Detours
 from .road_traffic.road_planning import RoadPlanner
-from .road_traffic.traffic_control import TrafficControl
-from .road_traffic.waiting_robots import WaitingRobots
-from .road_traffic.ways import Ways
+from .road_traffic.roads import Roads
 from .robots import Robot, Robots
 from .served_site import ServedSite, SiteChoice
 from .snapshots import ReportRow, Snapshots
-from .store import answers, commands, facts, requests
+from .store import commands
 from .store import robots as stored_robots
-from .store.answers import AnswerRow
 from .store.database import Database
 from .trajectories.recorder import Recorder
 from .trajectories.saving import Saving
@@ -95,58 +88,44 @@ class Fleet:
         self.snapshots = Snapshots(self.robots, clock)
         self._book = CommandBook(
             database,
+            self.robots,
             site.report.reached_tolerance,
             clock,
+            Rules(self._check, self._consider, lambda messages: keepout_refusals(site, messages)),
             self._command_changed,
             self._outbox_changed,
-            self._check,
-            self._consider,
         )
-        self._book.seen = self.robots.pose
-        self._book.fence = lambda messages: keepout_refusals(site, messages)
-        self._book.unseen = lambda robot: self.robots.is_unseen(robot, clock())
-        self.ways = Ways(self.robots, self._book)
-        self.roads = planner if isinstance(planner, RoadPlanner) else None
         self.orders = Orders(site, self.robots, self._book, database)
         self.emergency = EmergencyStops(self._book, database, clock, self.robots.names, announce, stops)
         self._queue_book = QueueBook(database, self.robots, announce)
         about_queues = QueueContext(site, self.robots, self._book, self._queue_book, database, clock)
         self.queues = QueueOrders(about_queues)
         self.driving = QueueDriving(about_queues)
-        self._detours = Detours(
-            self.ways,
-            self.roads,
+        self.roads = Roads(
+            site,
+            self.robots,
+            self._book,
             self.orders,
             self.driving,
-            self._book,
-            lambda: self.site.settings.routes.no_way == "stop",
-        )
-        self.closures = ClosureBook(database, clock, self.roads, self._detours, announce)
-        self._waiting = WaitingRobots(database, self._book, self._detours)
-        self.pauses = RobotPauses(about_queues, self._waiting.row_of)
-        self.traffic = TrafficControl(
+            database,
             clock,
-            self.robots,
-            self.ways,
-            self.roads,
-            self._detours,
-            self._waiting,
-            lambda: self.site.settings.routes,
+            planner if isinstance(planner, RoadPlanner) else None,
             announce,
         )
+        self.pauses = RobotPauses(about_queues, self.roads.waiting.row_of)
         self.recorder = Recorder(lambda: self.site.settings.trajectories)
         self._saving = Saving(database, self.robots, self.recorder, clock)
-        self._removals = Removals(self.robots, self._saving, self._book, self.emergency, self._waiting)
+        self.mailboxes = Mailboxes(database, self.robots, self._book, self.emergency, self._saving)
+        self.reception = Reception(
+            site, self.robots, self._book, self.emergency, self.mailboxes, self._saving, database, clock
+        )
+        self._removals = Removals(self.robots, self._saving, self._book, self.emergency, self.roads.waiting)
         self.observations = ObservationBook(site, database, clock, self._observation_changed)
         self._answering = Answering(
-            site, database, self.robots, self._book, planner or StraightPlanner(), self.ways
+            site, database, self.robots, self._book, planner or StraightPlanner(), self.roads.ways
         )
         self._tracks = GroundTracks()
-        self.holds = Holds()
         self.tally = Tally()
-        self._database_id = ""
-        self._outboxes: dict[str, asyncio.Event] = {}
-        self._greeting: dict[str, asyncio.Lock] = {}
 
     @property
     def database(self) -> Database:
@@ -155,7 +134,7 @@ class Fleet:
 
     async def start(self) -> None:
         """Go on where the last gateway on this database stopped, and tell its robots Start."""
-        self._database_id = await self._database.run(facts.database_id)
+        await self.reception.restore()
         known = await self._database.run(stored_robots.load)
         for robot in known:
             self.robots.restore(robot, self._clock())
@@ -164,23 +143,19 @@ class Fleet:
         for robot in known:
             self.robots.assign(robot.name, self._book.busy_with(robot.name))
         await self.emergency.restore()
-        await self.closures.restore()
-        await self._waiting.restore()
+        await self.roads.restore()
         await self._queue_book.restore()
         await self.observations.restore()
-        greetings = [Outcome(robot.name, answer=self.greeting()) for robot in known if robot.link == "sql"]
-        await self.finish(greetings, [], acks=False)
+        start = self.reception.greeting()
+        greetings = [Outcome(robot.name, answer=start) for robot in known if robot.link == "sql"]
+        await self.mailboxes.finish(greetings, [], acks=False)
 
     # --- robots ---------------------------------------------------------------------------------------
-
-    def greeting(self) -> Start:
-        """Return what robots are told when the gateway begins to listen to them."""
-        return Start(self._database_id)
 
     async def receive(
         self, robot: str, link: str, request: Request, id: int | None, *, waited: bool = False
     ) -> Outcome:
-        """Deal with request ``id`` of a robot; its link sends what comes of it, through :meth:`finish`.
+        """Deal with request ``id`` of a robot; its link sends what comes of it: :meth:`.Mailboxes.finish`.
 
         One that has ``waited`` until there was a gateway to read it tells what was, not what is.
 
@@ -190,8 +165,7 @@ class Fleet:
         now = self._clock()
         self.tally.requests[link, type(request).__name__] += 1
         if isinstance(request, Ready):
-            async with self._greeting.setdefault(robot, asyncio.Lock()):
-                return await self._receive_ready(robot, link, request, id)
+            return await self.reception.receive(robot, link, request, id)
         if isinstance(request, SendGPS):
             request = self._pose_of(robot, request, now)
         if isinstance(request, SendPos):
@@ -213,84 +187,10 @@ class Fleet:
         self.tally.requests[link, "SendPos"] += 1
         return self._take_pose(robot, link, pose, self._clock())
 
-    async def finish(self, outcomes: list[Outcome], request_ids: list[int], *, acks: bool) -> None:
-        """Write the answers of requests into SA, with their OpAcks if ``acks``, and delete them from RR.
-
-        One transaction, with the positions that they told: a request is either answered and gone, or will be
-        dealt with again. A robot that said Ready is stored before.
-        """
-        if outcomes or request_ids:
-            rows = exchange.rows_of(outcomes, acks=acks)
-            if admitted := {outcome.robot for outcome in outcomes if outcome.admitted}:
-                # Together: one by one, the Readys of a whole fleet outlast a gateway that is killed soon.
-                await self._saving.save(*admitted)
-            if request_ids:
-                # A request whose answer a power cut undid is there again, and is dealt with again.
-                # It may have waited for long: where the robot was then must not be in memory alone.
-                await self._saving.jot_with(exchange.finish, outcomes, rows, request_ids)
-            else:
-                await self._database.run(exchange.finish, outcomes, rows, request_ids, [])
-        for outcome in outcomes:
-            if outcome.answer is not None:
-                self._outbox_changed(outcome.robot)
-
     def closed(self, robot: str) -> None:
         """Note that the robot closed its link in good order."""
         self.robots.closed(robot)
         self._saving.touch(robot)
-
-    async def outbox(self, robot: str, after: int, after_urgent: int = 0) -> list[AnswerRow]:
-        """Return the robot's messages as :func:`.answers.read`, without those that must not be sent now."""
-        rows = await self._database.read(answers.read, robot, after, after_urgent)
-        return [row for row in rows if row.op not in HELD_BACK] if self.emergency.in_force else rows
-
-    def outbox_event(self, robot: str) -> asyncio.Event:
-        """Return the event that is set whenever the robot's outbox holds something new."""
-        return self._outboxes.setdefault(robot, asyncio.Event())
-
-    async def hand_over(self, robot: str, id: int) -> bool:
-        """Note that message ``id`` of SA is about to be sent to its robot; false where it must not be."""
-        return await self._book.hand_over(robot, id)
-
-    async def delivered(self, ids: Iterable[int]) -> None:
-        """Note that messages of SA have reached their robots."""
-        await self._book.delivered(ids)
-
-    async def delivered_by_deletion(self, link: str) -> None:
-        """Note the messages that the robots of ``link`` have read and deleted from SA themselves."""
-        sent = self._undelivered(link)
-        if sent:
-            await self._book.delivered(sent - await self._database.run(answers.waiting, sorted(sent)))
-
-    async def take_up(self) -> int:
-        """Take note of what waits in RR from before it was read; return the id of the newest of it.
-
-        Acknowledgements among that may have been dealt with already: their commands are judged by positions
-        that come after them alone.
-        """
-        newest, acks = await self._database.read(requests.backlog)
-        for robot, id in acks:
-            self._book.await_again(robot, id)
-        return newest
-
-    async def look(self, link: str) -> list[requests.RequestRow]:
-        """Return the oldest requests in RR, which stay there until :meth:`finish`; note what was read."""
-        sent = self._undelivered(link)
-        rows, waiting = await self._database.read(exchange.look, sorted(sent))
-        if rows and (late := self._undelivered(link) - sent):
-            # Sent while the database looked; its acknowledgement may be among the rows already.
-            sent |= late
-            waiting |= await self._database.read(answers.waiting, sorted(late))
-        if sent - waiting:
-            await self._book.delivered(sent - waiting)
-        return rows
-
-    def _undelivered(self, link: str) -> set[int]:
-        return {
-            id
-            for id, robot in self._book.undelivered().items()
-            if robot in self.robots and self.robots.get(robot).link == link
-        }
 
     # --- operators ------------------------------------------------------------------------------------
 
@@ -316,16 +216,14 @@ class Fleet:
         self.robots.limit(report.stale_after, report.lost_after)
         self._book.tolerance = report.reached_tolerance
         await self.observations.restore()
-        await self.closures.site_changed()
+        await self.roads.closures.site_changed()
         self.listeners.announce("site", report.id, to_json(report))
 
     # --- time -----------------------------------------------------------------------------------------
 
     async def watch_roads(self) -> None:
-        """Open roads that were closed until now; see to robots on closed ones, and in each other's way."""
-        await self.closures.expire()
-        await self.closures.catch_up()
-        await self.traffic.watch(listened_to=bool(self.listeners))
+        """See to closed roads, and to robots in each other's way."""
+        await self.roads.watch(listened_to=bool(self.listeners))
 
     def age(self) -> None:
         """Bring the liveness of every robot up to now."""
@@ -360,42 +258,16 @@ class Fleet:
             await self.observations.add(robot, link, request, id)
         elif isinstance(request, Question):
             if isinstance(request, GetPath):
-                self._waiting.check(robot.name)
+                self.roads.waiting.check(robot.name)
             answer, note = await self._answering.answer(robot.name, request)
             self.emergency.check(answer)
             return answer, note
         return None, ""
 
-    async def _receive_ready(self, robot: str, link: str, request: Ready, id: int | None) -> Outcome:
-        reason = await self._refusal(robot, request.magic)
-        if reason is not None:
-            log.warning("link %s: a second robot said Ready: %s", link, reason)
-            return Outcome(robot, OpAck(id=id, ok=False, reason=reason, magic=request.magic))
-        if starts_anew := self.robots.starts_anew(robot, request.magic):
-            # Before it is known by its new number: after a failure it must be seen to start anew once more.
-            await self.delivered_by_deletion(self.robots.get(robot).link)
-            reason = f"robot {robot} started anew; sent once more"
-            await self._book.deliver_again(robot, reason, self.site.settings.commands.expire_after_s)
-        self.robots.ready(robot, request.magic, link, self._clock())
-        self._saving.touch(robot)
-        if starts_anew:
-            # Not only with its answer: should the gateway die until then, it has not started anew once more.
-            await self._saving.save(robot)
-        await self.emergency.ready(robot)
-        content = await asyncio.to_thread(self.site.whole_map)
-        ack = OpAck(id=id, magic=request.magic, robot=robot, database=self._database_id)
-        return Outcome(robot, ack, SetMap(content), void=("Start", "OpAck"))
-
     def _pose_of(self, robot: str, fix: SendGPS, now: float) -> SendPos:
         last = self.robots.get(robot).pose
         place, theta = self.site.place_on_earth(fix.lat, fix.lon, fix.heading)
         return self._tracks.pose(robot, fix, place, theta, last, now)
-
-    async def _refusal(self, robot: str, magic: int) -> str | None:
-        if robot not in self.robots:
-            return None
-        known, limit = self.robots.get(robot), self.site.report.stale_after
-        return await refusal(known, magic, self._clock() - known.received_at, limit, self.holds)
 
     def _take_pose(
         self, robot: str, link: str, pose: SendPos, now: float, *, waited: bool = False
@@ -419,21 +291,21 @@ class Fleet:
     def _check(self, message: Command) -> None:
         """Raise RefusedError for a message that must not be sent to any robot now."""
         self.emergency.check(message)
-        self.closures.check(message)
+        self.roads.closures.check(message)
 
     async def _consider(self, message: Command) -> None:
-        await self.closures.consider(message)
+        await self.roads.closures.consider(message)
 
     def _command_changed(self, command: CommandReport) -> None:
         self.robots.assign(command.robot, self._book.busy_with(command.robot))
         self.tally.steps[command.state.value] += 1
         self.emergency.take(command)
         self.driving.take(command)
-        self._waiting.take(command)
+        self.roads.take(command)
         self.listeners.announce("command", command.command, to_json(command))
 
     def _observation_changed(self, observation: ObservationReport) -> None:
         self.listeners.announce("observation", str(observation.observation), to_json(observation))
 
     def _outbox_changed(self, robot: str) -> None:
-        self.outbox_event(robot).set()
+        self.mailboxes.changed(robot)

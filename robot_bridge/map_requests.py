@@ -21,4 +21,4 @@ async def send_map(fleet: Fleet, request: SendMap) -> None:
             f"robot {request.robot!r} is offline; it is sent the map by itself when it connects"
         )
     content = await asyncio.to_thread(fleet.site.whole_map)
-    await fleet.finish([Outcome(request.robot, answer=SetMap(content))], [], acks=False)
+    await fleet.mailboxes.finish([Outcome(request.robot, answer=SetMap(content))], [], acks=False)

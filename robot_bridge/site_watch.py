@@ -157,7 +157,7 @@ class SiteWatch:
         content = await asyncio.to_thread(self._maps.whole_map)
         for name in self._fleet.robots.names():
             if self._fleet.robots.get(name).state is not RobotState.OFFLINE:
-                await self._fleet.finish([Outcome(name, answer=SetMap(content))], [], acks=False)
+                await self._fleet.mailboxes.finish([Outcome(name, answer=SetMap(content))], [], acks=False)
 
 
 def _stamp(file: Path) -> tuple[int, int, int] | None:

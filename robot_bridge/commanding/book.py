@@ -3,36 +3,34 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Awaitable, Callable, Coroutine, Iterable, Sequence
+from collections.abc import Callable, Coroutine, Iterable, Sequence
 from typing import Any
 
 from sqlalchemy import Connection
 
+from ..command_life.acknowledging import ABORTED, answered, started_anew
 from ..command_life.arrival import PathArrival, judge
 from ..command_life.open_command import (
     GATEWAY,
-    NOTHING,
     OpenCommand,
     Order,
     Recall,
-    drafted,
     ended_by,
     given_up_by,
-    recalled,
-    superseded,
 )
 from ..command_life.open_commands import OpenCommands
-from ..command_life.states import is_open, may_become
-from ..errors import DataRefusedError, RefusedError, StoreError
-from ..messages import Command, CommandReport, CommandState, OpAck, SendPos, SetPath
+from ..command_life.states import is_open
+from ..errors import DataRefusedError, StoreError
+from ..messages import CommandReport, CommandState, OpAck, SendPos, SetPath
+from ..robots import Robots
 from ..store import commands
 from ..store.commands import StoredCommand
 from ..store.database import Database, to_its_end
+from .drafting import Drafting, Rules
 from .holding import HeldRobots
 from .reader import CommandReader
 from .writing import (
     Also,
-    Draft,
     opened,
     write_acknowledged,
     write_again,
@@ -49,7 +47,6 @@ DRIVEN_STEP = 0.5
 """metres along a path between two that are stored."""
 NOWHERE = SendPos(x=1e9, y=1e9, theta=0.0, v=0.0)
 """Where a robot was of which that was not stored: far from wherever it is now."""
-ABORTED = "the robot acknowledged the Abort"
 ABORTED_TOO_LATE = "it stood at its end when it was heard again, and the Abort came too late"
 MOST_LATE = 1000
 """acknowledgements of ended commands that wait for the database."""
@@ -59,36 +56,28 @@ class CommandBook(CommandReader):
     """Holds the open commands and takes them through their lives.
 
     Every change is committed before it is shown: ``changed`` is called with each command's new report, and
-    ``outbox_changed`` with the robot for which SA holds something new. ``check`` raises RefusedError for a
-    message that must not be sent to a robot now; ``consider`` is awaited before, for what of that takes long.
+    ``outbox_changed`` with the robot for which SA holds something new.
     """
 
     def __init__(
         self,
         database: Database,
+        robots: Robots,
         tolerance: float,
         clock: Callable[[], float],
+        rules: Rules,
         changed: Callable[[CommandReport], None],
         outbox_changed: Callable[[str], None],
-        check: Callable[[Command], None],
-        consider: Callable[[Command], Awaitable[None]],
     ) -> None:
         super().__init__(OpenCommands())
-        self._database = database
+        self.drafting = Drafting(self._open, robots, rules)
         self.tolerance = tolerance
+        """metres within which a target counts as reached."""
+        self._database = database
+        self._robots = robots
         self._clock = clock
         self._changed = changed
         self._outbox_changed = outbox_changed
-        self._check = check
-        self._consider = consider
-        self.waits: Callable[[str], bool] = lambda _robot: False
-        """Tells whether a robot waits for another: that ends with whatever else it is told."""
-        self.seen: Callable[[str], SendPos | None] = lambda _robot: None
-        """Tells where a robot was seen last."""
-        self.unseen: Callable[[str], bool] = lambda _robot: False
-        """Tells whether a robot may have come further since it was seen last."""
-        self.fence: Callable[[Sequence[Command]], Awaitable[Sequence[RefusedError | None]]] = _let_pass
-        """Tells of messages of orders that are fenced why each must not be sent, None where it may be."""
         self._held = HeldRobots(database, self._look_up)
         self._late: set[tuple[str, int]] = set()
 
@@ -214,9 +203,11 @@ class CommandBook(CommandReader):
     async def _issue(self, orders: list[Order], also: Also | None) -> list[CommandReport]:
         async with self._held.of(order.robot for order in orders):
             # What takes long first: nothing may come between the checks and the transaction.
-            found = await self._considered(orders)
+            found = await self.drafting.consider(orders)
             now = self._clock()
-            drafts = [self._draft(order, fault, now) for order, fault in zip(orders, found, strict=True)]
+            drafts = [
+                self.drafting.draft(order, fault, now) for order, fault in zip(orders, found, strict=True)
+            ]
             issued, changed = await self._held.run(write_drafts, drafts, also)
             for command in changed:
                 self._apply(command)
@@ -227,44 +218,9 @@ class CommandBook(CommandReader):
                     self._outbox_changed(command.report.robot)
             return [command.report for command in issued]
 
-    async def _considered(self, orders: Sequence[Order]) -> list[RefusedError | None]:
-        """Find out what takes long about orders; return why each must not be sent, None where it may be."""
-        for order in orders:
-            await self._consider(order.message)
-        refusals = iter(await self.fence([order.message for order in orders if order.fenced]))
-        return [next(refusals) if order.fenced else None for order in orders]
-
-    def _draft(self, order: Order, refusal: RefusedError | None, now: float) -> Draft:
-        try:
-            self._check(order.message)
-            self._check_task(order)
-        except RefusedError as error:
-            refusal = refusal or error
-        mine = self._open.of(order.robot)
-        command = dataclasses.replace(drafted(order, now), handed=self.seen(order.robot))
-        ended, recalls = superseded(order, mine, now), recalled(order, mine, now)
-        return Draft(order, command, ended, recalls, refusal, self.waits(order.robot))
-
-    def _check_task(self, order: Order) -> None:
-        if order.instead_of is not None and not self._is_open_to(order.robot, order.instead_of):
-            raise RefusedError(f"robot {order.robot!r} has been told otherwise in the meantime")
-        if order.aborts is not None and order.aborts != self.busy_with(order.robot):
-            raise RefusedError(
-                f"command {order.aborts} is no longer what robot {order.robot!r} is doing; look at the log, "
-                "and abort the robot if it is to stop all the same"
-            )
-
-    def _is_open_to(self, robot: str, task: str) -> bool:
-        if task == NOTHING:
-            return not any(c.is_motion or c.is_abort for c in self._open.of(robot))
-        return self.is_carrying_out(robot, task)
-
     async def _lead(self, robot: str, task: str, path: SetPath, write: Callable[[Connection], None]) -> None:
         async with self._held.of([robot]):
-            await self._consider(path)
-            self._check(path)
-            if not self.is_carrying_out(robot, task):
-                raise RefusedError(f"robot {robot!r} has been told otherwise in the meantime")
+            await self.drafting.check_way(robot, task, path)
             await self._held.run(write)
             self._outbox_changed(robot)
 
@@ -284,7 +240,7 @@ class CommandBook(CommandReader):
                 return None
             if command is not None:
                 command.acknowledgement_waits = False
-            steps = [] if command is None else self._taken(command, robot, ack)
+            steps = [] if command is None else self._answered(command, ack)
             # One transaction: a message that is gone from SA with its step unsaved would be lost.
             await self._held.run(write_acknowledged, robot, ack.id, steps)
             for step in steps:
@@ -326,23 +282,10 @@ class CommandBook(CommandReader):
 
     async def _deliver_again(self, robot: str, reason: str, expire_after: float) -> None:
         async with self._held.of([robot]):
-            mine, now = self._open.of(robot), self._clock()
-            forgotten = [c for c in mine if c.report.state is not CommandState.QUEUED]
-            if not forgotten:
+            anew = started_anew(self._open.of(robot), reason, self._clock(), expire_after, self._robots.pose)
+            if anew is None:
                 return
-            ended = [end for c in mine for end in ended_by(c, mine, now, "the robot started anew")]
-            ended += [
-                c.step(CommandState.EXPIRED, now, GATEWAY, "the robot started anew, and it was too old then")
-                for c in mine
-                if c.is_on_its_way and c.expired(now, expire_after)
-            ]
-            ended = list({c.report.command: c for c in reversed(ended)}.values())
-            gone = {command.report.command for command in ended}
-            first = min(c.sa_id for c in forgotten)
-            again = [
-                self._anew(c, reason, now) for c in mine if c.report.command not in gone and c.sa_id >= first
-            ]
-            for command in await self._held.run(write_again, again, ended):
+            for command in await self._held.run(write_again, anew.again, anew.ended):
                 self._apply(command)
             self._outbox_changed(robot)
 
@@ -364,41 +307,13 @@ class CommandBook(CommandReader):
 
     # -------------------------------------------------------------------------------------------------------
 
-    def _taken(self, command: OpenCommand, robot: str, ack: OpAck) -> list[OpenCommand]:
-        """Return what a robot's OpAck of ``command`` changes."""
-        now = self._clock()
-        if not ack.ok:
-            return [command.step(CommandState.FAILED, now, robot, ack.reason)]
-        if may_become(command.report.state, CommandState.ACKNOWLEDGED):
-            steps = []
-            if command.report.state is CommandState.QUEUED:
-                # What a robot answers to has reached it, even if that was not seen yet.
-                command = command.step(CommandState.DELIVERED, now, GATEWAY)
-                steps.append(command)
-            steps.append(command.step(CommandState.ACKNOWLEDGED, now, robot).judged(self.tolerance))
-            return [*steps, *ended_by(command, self._ended_with_it(robot), now, ABORTED)]
-        if command.arrival is None:
-            return [command.noted(now, robot, "acknowledged again").judged(self.tolerance)]
-        return []
-
-    def _ended_with_it(self, robot: str) -> list[OpenCommand]:
-        """Return the commands that end when the robot acknowledges an Abort.
-
-        One that nobody saw lately may have come to the end of what it had taken on before the Abort reached
-        it: that ends with its next position.
-        """
-        mine, unseen = self._open.of(robot), self.unseen(robot)
-        return [command for command in mine if not (unseen and command.arrival)]
-
-    def _anew(self, command: OpenCommand, reason: str, now: float) -> OpenCommand:
-        """Return a command to be sent once more; one that was never fetched keeps its place behind."""
-        if command.report.state is CommandState.QUEUED:
-            reason = "behind what the robot is told once more"
-        noted, handed = command.noted(now, GATEWAY, reason), self.seen(command.report.robot)
-        return dataclasses.replace(noted, written_at=now, handed=handed, out_of_sight=False)
+    def _answered(self, command: OpenCommand, ack: OpAck) -> list[OpenCommand]:
+        robot, now = command.report.robot, self._clock()
+        unseen = self._robots.is_unseen(robot, now)
+        return answered(command, ack, self._open.of(robot), now, self.tolerance, unseen=unseen)
 
     def _restored(self, stored: StoredCommand) -> OpenCommand:
-        seen = self.seen(stored.report.robot)
+        seen = self._robots.pose(stored.report.robot)
         command = dataclasses.replace(opened(stored), handed=seen or NOWHERE, out_of_sight=True)
         if stored.report.state is CommandState.ACKNOWLEDGED:
             command.arrival = judge(
@@ -429,8 +344,3 @@ class CommandBook(CommandReader):
             if known is None or (known.report, known.sa_id) != (found.report, found.sa_id):
                 self._apply(self._restored(found))
                 self._outbox_changed(found.report.robot)
-
-
-async def _let_pass(messages: Sequence[Command]) -> list[RefusedError | None]:
-    """Refuse nothing."""
-    return [None] * len(messages)

@@ -62,7 +62,7 @@ class Delivery:
             return
 
     async def _deliver(self) -> None:
-        event = self._fleet.outbox_event(self._robot)
+        event = self._fleet.mailboxes.event(self._robot)
         last = {False: 0, True: 0}
         while True:
             event.clear()
@@ -78,18 +78,18 @@ class Delivery:
     async def _send_waiting(self, last: dict[bool, int]) -> bool:
         """Send the messages above ``last``, by urgency; return false when a stop made them out of date."""
         stops = self._stops
-        for row in await self._fleet.outbox(self._robot, last[False], last[True]):
+        for row in await self._fleet.mailboxes.outbox(self._robot, last[False], last[True]):
             # Noted first: it must never be taken back as something that the robot cannot have. All else is
             # noted afterwards, so that no Abort waits for the database, nor behind what does.
             drives = row.op in HELD_BACK
-            is_due = not drives or await self._fleet.hand_over(self._robot, row.id)
+            is_due = not drives or await self._fleet.mailboxes.hand_over(self._robot, row.id)
             if self._stops != stops:
                 return False
             if is_due:
                 await self._connection.send(jsonrpc.call(row.op, _params(row), row.id))
             last[row.urgent] = row.id
             if not drives:
-                await self._fleet.delivered([row.id])
+                await self._fleet.mailboxes.delivered([row.id])
         return True
 
 

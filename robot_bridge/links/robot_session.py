@@ -76,7 +76,7 @@ class RobotSession:
     async def run(self) -> bool:
         """Serve the connection to its end; return true if the robot closed it in good order."""
         try:
-            await self._connection.send(jsonrpc.call("Start", to_json(self._fleet.greeting())))
+            await self._connection.send(jsonrpc.call("Start", to_json(self._fleet.reception.greeting())))
             if (call_id := self._fleet.emergency.call_id) is not None:
                 self.stop_now(call_id)
             self._connection.short_cut.handler = self._take_at_once
@@ -142,7 +142,7 @@ class RobotSession:
         try:
             outcome = await work
             if outcome.answer is not None:
-                await self._fleet.finish([outcome], [], acks=False)
+                await self._fleet.mailboxes.finish([outcome], [], acks=False)
         except (MessageError, BridgeError) as error:
             self._fleet.tally.refused[NAME] += 1
             log.warning("link websocket: robot %r: %s", self.robot, error)
@@ -167,7 +167,7 @@ class RobotSession:
                 )
             return await self._fleet.receive(self.robot, NAME, request, id)
         # A robot that starts anew inside its own connection is no second one.
-        self._fleet.holds.free(self.robot, self)
+        self._fleet.reception.holds.free(self.robot, self)
         outcome = await self._fleet.receive(self.robot, NAME, request, id)
         if outcome.admitted:
             self._admitted = True

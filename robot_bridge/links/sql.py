@@ -69,9 +69,9 @@ class SqlLink:
         if version is not None and version == self._seen_version:
             return False
         if self._waited_up_to is None:
-            self._waited_up_to = await self._fleet.take_up()
+            self._waited_up_to = await self._fleet.mailboxes.take_up()
         found = False
-        while rows := await self._fleet.look(NAME):
+        while rows := await self._fleet.mailboxes.look(NAME):
             found = True
             await self._deal_with_all(rows)
             if len(rows) < AT_ONCE:
@@ -96,11 +96,11 @@ class SqlLink:
 
     async def _finish(self, outcomes: list[Outcome], ids: list[int]) -> None:
         try:
-            await self._fleet.finish(outcomes, ids, acks=True)
+            await self._fleet.mailboxes.finish(outcomes, ids, acks=True)
         except DataRefusedError:
             # Nothing that the gateway writes should be refused; what is must not come back for ever.
             note_unforeseen(log, f"link sql: requests {ids}, which stay without an answer")
-            await self._fleet.finish([], ids, acks=True)
+            await self._fleet.mailboxes.finish([], ids, acks=True)
 
     async def _deal_with(self, row: RequestRow) -> Outcome | None:
         try:
@@ -130,7 +130,7 @@ class SqlLink:
         if robot in self._greeted:
             return None
         self._greeted.add(robot)
-        return Outcome(robot, answer=self._fleet.greeting())
+        return Outcome(robot, answer=self._fleet.reception.greeting())
 
 
 def _refusal(row: RequestRow, reason: str) -> Outcome:

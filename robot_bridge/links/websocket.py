@@ -37,7 +37,7 @@ class WebSocketLink:
             self._names -= Counter([name])
             held = self._holders.get(name) is session
             if held:
-                self._fleet.holds.free(name, session)
+                self._fleet.reception.holds.free(name, session)
                 del self._holders[name]
         if in_order and held:
             self._fleet.closed(name)
@@ -55,7 +55,7 @@ class WebSocketLink:
         """Let ``session`` be the connection of its robot, and end the one before."""
         former = self._holders.get(session.robot)
         self._holders[session.robot] = session
-        self._fleet.holds.take(session.robot, session)
+        self._fleet.reception.holds.take(session.robot, session)
         if former is not None and former is not session:
             former.replace()
 

@@ -38,7 +38,7 @@ class WaitingRobots:
         self._rows: dict[str, HoldRow] = {}
         self._doubtful = False
         """whether a robot may be stored as one that waits without being known here."""
-        book.waits = self.waits
+        book.drafting.waits = self.waits
         detours.queues.waits_for = self.waits_for
 
     def __len__(self) -> int:

@@ -65,12 +65,12 @@ class Yard:
 
     async def ready(self, robot="r1", magic=1, link="websocket"):
         outcome = await self.fleet.receive(robot, link, Ready(magic), 1)
-        await self.fleet.finish([outcome], [], acks=False)
+        await self.fleet.mailboxes.finish([outcome], [], acks=False)
 
     async def deliver(self, robot="r1"):
         """Hand the robot its outbox; return the rows."""
-        rows = await self.fleet.outbox(robot, 0)
-        await self.fleet.delivered([row.id for row in rows])
+        rows = await self.fleet.mailboxes.outbox(robot, 0)
+        await self.fleet.mailboxes.delivered([row.id for row in rows])
         return rows
 
     async def ack(self, id, robot="r1", **how):
@@ -187,16 +187,16 @@ class RoadYard(Yard):
         self.news[method] = params
 
     async def close_road(self, x, y, id="closure-1", **how):
-        return await self.fleet.closures.close(CloseRoad(id, x, y, **how), "Ada")
+        return await self.fleet.roads.closures.close(CloseRoad(id, x, y, **how), "Ada")
 
     async def open_road(self, id="closure-1"):
-        return await self.fleet.closures.open(OpenRoad(id), "Bob")
+        return await self.fleet.roads.closures.open(OpenRoad(id), "Bob")
 
     async def way(self, start, goal, **how):
         return await self.route(GetRoute(*goal, start=start, **how))
 
     async def route(self, request):
-        return await route(self.fleet.roads, self.fleet.robots, self.fleet.ways, request)
+        return await route(self.fleet.roads.planner, self.fleet.robots, self.fleet.roads.ways, request)
 
     async def drive(self, id, points, robot="r1"):
         """Send a robot, which has plugged in at the first point, along ``points``; it takes that on."""
@@ -210,12 +210,12 @@ class RoadYard(Yard):
         """Let r1 stand where it waits for r2, the first part of its way driven; return how it waits."""
         await self.drive("one", [(16.0, 8.0), (44.0, 22.0), (90.0, 22.0)])
         await self.drive("two", [(13.0, 22.0), (56.0, 22.0), (56.0, 40.0)], robot="r2")
-        await self.fleet.traffic.resolve(ResolveConflict("r1", "r2", "waiting"), "Ada")
-        (hold,) = (await self.fleet.traffic.conflicts()).waiting
+        await self.fleet.roads.traffic.resolve(ResolveConflict("r1", "r2", "waiting"), "Ada")
+        (hold,) = (await self.fleet.roads.traffic.conflicts()).waiting
         await self.take()
         for share in (0.25, 0.5, 0.75, 1.0):
             await self.at(16.0 + share * (hold.x - 16.0), 8.0 + share * (hold.y - 8.0), v=1.0 - share)
-        assert self.fleet.ways.of("r1") is None
+        assert self.fleet.roads.ways.of("r1") is None
         return hold
 
     async def new_path(self, robot="r1"):

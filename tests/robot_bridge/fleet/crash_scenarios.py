@@ -323,11 +323,11 @@ async def led_round_a_closed_road(play, robot=WebSocketRobot):
     tasks = [QueueTask("task-0001", 126.0, 8.0, path=along), QueueTask("task-0002", 126.0, 12.0)]
     await play.give(*tasks)
     await play.until(lambda: play.robots["r1"].record.began)
-    await play.ask(lambda fleet: fleet.closures.close(CloseRoad("closure-1", *SOUTH), "Ada"))
+    await play.ask(lambda fleet: fleet.roads.closures.close(CloseRoad("closure-1", *SOUTH), "Ada"))
     has_passed = play.robots["r1"].x > SOUTH[0]
     assert not has_passed or play.was_disturbed
     await play.until(lambda: play.is_done() or play.is_held("r1", "no other way"))
-    (closed,) = play.fleet.closures.report().closures
+    (closed,) = play.fleet.roads.closures.report().closures
     assert closed.edges == 1
     if not play.is_done():
         # It was in the midst of that road by then.
@@ -358,7 +358,9 @@ async def waited_beside_its_queue(play):
 async def _let_pass(play):
     await play.order("two", "SetPath", robot="r2", points=CROSSING[1])
     await play.wait(2)
-    await play.ask_once(lambda fleet: fleet.traffic.resolve(ResolveConflict("r1", "r2", "waiting"), "Ada"))
+    await play.ask_once(
+        lambda fleet: fleet.roads.traffic.resolve(ResolveConflict("r1", "r2", "waiting"), "Ada")
+    )
     assert play.sql("select robot from holds") == [("r1",)] or play.was_disturbed
     await play.until(lambda: play.sql("select robot from holds") == [])
     await play.until_done()

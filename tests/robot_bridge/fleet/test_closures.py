@@ -37,7 +37,7 @@ async def test_a_closed_road_is_driven_round_until_it_is_opened_whoever_restarts
     assert each.news["closures"] == {"closures": []}
     assert highest((await each.way(*there)).points) == pytest.approx(8.0, abs=0.01)
     await each.restart()
-    assert each.fleet.closures.report().closures == []
+    assert each.fleet.roads.closures.report().closures == []
 
 
 async def test_the_same_again_changes_nothing_and_what_was_never_closed_is_refused(roads):
@@ -59,10 +59,10 @@ async def test_a_road_closed_for_a_time_opens_by_itself(roads):
     await roads.close_road(*SOUTH, seconds=60.0)
     roads.now += 59
     await roads.fleet.watch_roads()
-    assert len(roads.fleet.closures.report().closures) == 1
+    assert len(roads.fleet.roads.closures.report().closures) == 1
     roads.now += 1
     await roads.fleet.watch_roads()
-    assert roads.fleet.closures.report().closures == []
+    assert roads.fleet.roads.closures.report().closures == []
     assert highest((await roads.way((10.0, 8.0), (126.0, 8.0))).points) < 8.1
 
 
@@ -76,7 +76,7 @@ async def test_a_closed_road_stays_closed_in_a_new_publication_and_one_that_is_g
     settings = replace(site.settings, version=2)
     own_site.take_over(replace(site, centrelines=(*split, *halves), settings=settings))
     await roads.fleet.site_changed()
-    (report,) = roads.fleet.closures.report().closures
+    (report,) = roads.fleet.roads.closures.report().closures
     assert report.edges == 2
     assert highest((await roads.way((10.0, 8.0), (126.0, 8.0))).points) > 20
     own_site.take_over(replace(site, centrelines=tuple(split), settings=settings))
@@ -117,7 +117,7 @@ async def test_a_robot_that_asked_for_its_way_is_told_another_and_keeps_its_task
     await roads.take()
     outcome = await roads.fleet.receive("r1", "websocket", GetPath(), 7)
     assert highest(outcome.answer.points) == pytest.approx(8.0, abs=0.01)
-    await roads.fleet.finish([outcome], [], acks=False)
+    await roads.fleet.mailboxes.finish([outcome], [], acks=False)
     await roads.take()
     closed = await roads.close_road(*SOUTH)
     assert [robot.became for robot in closed.robots] == ["another way"]

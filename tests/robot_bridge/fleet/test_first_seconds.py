@@ -60,7 +60,7 @@ async def test_a_path_that_was_driven_although_its_delivery_was_not_noted_is_rea
     await roads.at(*PATH[0])
     await roads.fleet.save()
     await roads.send("a", "SetPath", points=PATH)
-    assert [row.op for row in await roads.fleet.outbox("r1", 0)] == ["SetPath"]
+    assert [row.op for row in await roads.fleet.mailboxes.outbox("r1", 0)] == ["SetPath"]
     await roads.restart()
     await roads.ready()
     await roads.at(*PATH[1])
@@ -149,7 +149,7 @@ async def test_robots_whose_road_was_closed_when_the_gateway_died_are_led_round(
     async def died(*_):
         raise StoreError("the gateway is gone")
 
-    monkeypatch.setattr(roads.fleet.closures._detours, "around", died)
+    monkeypatch.setattr(roads.fleet.roads.closures._detours, "around", died)
     with pytest.raises(StoreError):
         await roads.close_road(*SOUTH, reason="tree")
     await roads.restart()
@@ -189,7 +189,7 @@ async def test_a_robot_that_waits_is_sent_on_although_it_was_stored_where_it_had
     await roads.fleet.watch_roads()
     await roads.ready()
     await roads.fleet.watch_roads()
-    assert (await roads.fleet.traffic.conflicts()).waiting == [hold]
+    assert (await roads.fleet.roads.traffic.conflicts()).waiting == [hold]
     await roads.at(hold.x, hold.y)
     await roads.at(60.0, 40.0, robot="r2")
     roads.now = hold.until + 1
@@ -203,10 +203,10 @@ async def test_nobody_gives_way_from_where_he_was(roads):
     await roads.fleet.save()
     await roads.restart()
     with pytest.raises(RefusedError, match="it is not known where r1 is now"):
-        await roads.fleet.traffic.resolve(ResolveConflict("r1", "r2"), "Ada")
+        await roads.fleet.roads.traffic.resolve(ResolveConflict("r1", "r2"), "Ada")
     await roads.ready()
     await roads.at(16.0, 8.0, v=1.0)
-    assert (await roads.fleet.traffic.resolve(ResolveConflict("r1", "r2"), "Ada")).robot == "r1"
+    assert (await roads.fleet.roads.traffic.resolve(ResolveConflict("r1", "r2"), "Ada")).robot == "r1"
 
 
 async def test_a_way_is_told_from_where_a_robot_is_not_from_where_it_was(roads):

@@ -38,12 +38,12 @@ async def test_a_head_on_conflict_is_resolved_by_another_way(roads):
     await roads.drive("one", [(10.0, 8.0), (126.0, 8.0)])
     await roads.drive("two", [(119.0, 8.0), (20.0, 8.0)], robot="r2")
     with pytest.raises(RefusedError, match="r1 cannot give way to r2: waiting does not resolve it"):
-        await roads.fleet.traffic.resolve(ResolveConflict("r1", "r2", "waiting"), "Ada")
+        await roads.fleet.roads.traffic.resolve(ResolveConflict("r1", "r2", "waiting"), "Ada")
     assert (await roads.states())["one"] == "acknowledged"
-    resolved = await roads.fleet.traffic.resolve(ResolveConflict("r1", "r2"), "Ada")
+    resolved = await roads.fleet.roads.traffic.resolve(ResolveConflict("r1", "r2"), "Ada")
     assert (resolved.became, resolved.delay) == ("another way", pytest.approx(8.6, abs=0.3))
     assert highest(await roads.new_path()) == pytest.approx(22.0, abs=0.5)
-    assert (await roads.fleet.traffic.conflicts()).conflicts == []
+    assert (await roads.fleet.roads.traffic.conflicts()).conflicts == []
     states = await roads.states()
     assert (states["one"], states["two"]) == ("superseded", "acknowledged")
 
@@ -52,12 +52,12 @@ async def test_a_robot_waits_for_another_at_a_crossing_and_is_sent_on(each):
     # They meet where the road from the south joins the ring at (44, 22).
     await each.drive("one", [(16.0, 8.0), (44.0, 22.0), (90.0, 22.0)])
     await each.drive("two", [(13.0, 22.0), (56.0, 22.0), (56.0, 40.0)], robot="r2")
-    assert len((await each.fleet.traffic.conflicts()).conflicts) == 1
-    resolved = await each.fleet.traffic.resolve(ResolveConflict("r1", "r2", "waiting"), "Ada")
+    assert len((await each.fleet.roads.traffic.conflicts()).conflicts) == 1
+    resolved = await each.fleet.roads.traffic.resolve(ResolveConflict("r1", "r2", "waiting"), "Ada")
     assert (resolved.robot, resolved.became) == ("r1", "waits")
-    (hold,) = (await each.fleet.traffic.conflicts()).waiting
+    (hold,) = (await each.fleet.roads.traffic.conflicts()).waiting
     assert (hold.robot, hold.other, hold.by) == ("r1", "r2", "Ada")
-    assert (await each.fleet.traffic.conflicts()).conflicts == []
+    assert (await each.fleet.roads.traffic.conflicts()).conflicts == []
     points = await each.new_path()
     assert points[-1] == [hold.x, hold.y]
     await each.take()
@@ -81,7 +81,7 @@ async def test_a_robot_waits_for_another_at_a_crossing_and_is_sent_on(each):
     rest = await each.new_path()
     assert rest[0] == [hold.x, hold.y]
     assert rest[-1] == [90.0, 22.0]
-    assert (await each.fleet.traffic.conflicts()).waiting == []
+    assert (await each.fleet.roads.traffic.conflicts()).waiting == []
 
 
 async def test_a_robot_with_a_target_waits_in_the_same_way_and_keeps_its_task(roads):
@@ -90,13 +90,13 @@ async def test_a_robot_with_a_target_waits_in_the_same_way_and_keeps_its_task(ro
     await roads.send("cone", x=92.0, y=22.0, cone=True)
     await roads.take()
     outcome = await roads.fleet.receive("r1", "websocket", GetPath(), 7)
-    await roads.fleet.finish([outcome], [], acks=False)
+    await roads.fleet.mailboxes.finish([outcome], [], acks=False)
     await roads.take()
     metres = math.dist((16, 8), (44, 22)) + 1
     await roads.drive("two", [(44.0 - metres, 22.0), (56.0, 22.0), (56.0, 40.0)], robot="r2")
-    resolved = await roads.fleet.traffic.resolve(ResolveConflict("r1", "r2", "waiting"), "Ada")
+    resolved = await roads.fleet.roads.traffic.resolve(ResolveConflict("r1", "r2", "waiting"), "Ada")
     assert resolved.command == "command-cone"
-    (hold,) = (await roads.fleet.traffic.conflicts()).waiting
+    (hold,) = (await roads.fleet.roads.traffic.conflicts()).waiting
     assert (await roads.new_path())[-1] == [hold.x, hold.y]
     await roads.take()
     with pytest.raises(RefusedError, match="GetPath: robot 'r1' waits for 'r2'"):
@@ -112,10 +112,10 @@ async def test_a_robot_with_a_target_waits_in_the_same_way_and_keeps_its_task(ro
 async def test_a_robot_that_waits_and_is_told_otherwise_waits_no_longer(roads):
     await roads.drive("one", [(16.0, 8.0), (44.0, 22.0), (90.0, 22.0)])
     await roads.drive("two", [(13.0, 22.0), (56.0, 22.0), (56.0, 40.0)], robot="r2")
-    await roads.fleet.traffic.resolve(ResolveConflict("r1", "r2", "waiting"), "Ada")
+    await roads.fleet.roads.traffic.resolve(ResolveConflict("r1", "r2", "waiting"), "Ada")
     await roads.send("other", x=20.0, y=8.0)
     await roads.fleet.watch_roads()
-    assert (await roads.fleet.traffic.conflicts()).waiting == []
+    assert (await roads.fleet.roads.traffic.conflicts()).waiting == []
 
 
 async def test_who_cannot_give_way_says_why_and_nothing_changes(roads):
@@ -123,13 +123,13 @@ async def test_who_cannot_give_way_says_why_and_nothing_changes(roads):
     await roads.ready("r2")
     await roads.at(60.0, 8.0, robot="r2")
     with pytest.raises(RefusedError, match="not in each other's way now; nothing was done"):
-        await roads.fleet.traffic.resolve(ResolveConflict("r1", "r2"), "Ada")
+        await roads.fleet.roads.traffic.resolve(ResolveConflict("r1", "r2"), "Ada")
     await roads.drive("longer", [(20.0, 8.0), (100.0, 8.0)])
     with pytest.raises(RefusedError, match="r2 has no task or waits already"):
-        await roads.fleet.traffic.resolve(ResolveConflict("r2", "r1"), "Ada")
+        await roads.fleet.roads.traffic.resolve(ResolveConflict("r2", "r1"), "Ada")
     before = await roads.states()
     with pytest.raises(RefusedError, match="r1 cannot give way to r2: neither waiting nor another way"):
-        await roads.fleet.traffic.resolve(ResolveConflict("r1", "r2"), "Ada")
+        await roads.fleet.roads.traffic.resolve(ResolveConflict("r1", "r2"), "Ada")
     assert await roads.states() == before
 
 
@@ -158,7 +158,7 @@ async def test_who_waits_is_stored_with_what_sends_it_there_or_nothing_is(roads,
     monkeypatch.setattr(stored_closures, "hold", full)
     before = await roads.states()
     with pytest.raises(StoreError, match="the disk is full"):
-        await roads.fleet.traffic.resolve(ResolveConflict("r1", "r2", "waiting"), "Ada")
+        await roads.fleet.roads.traffic.resolve(ResolveConflict("r1", "r2", "waiting"), "Ada")
     assert await roads.states() == before
     assert await roads.take() == []
-    assert (await roads.fleet.traffic.conflicts()).waiting == []
+    assert (await roads.fleet.roads.traffic.conflicts()).waiting == []

@@ -358,14 +358,14 @@ async def test_where_a_robot_waits_for_another_it_goes_on_after_the_pause(roads)
     report = await roads.fleet.pauses.pause(PauseRobot("r1"), "Eve")
     assert (report.state.value, [one.path_points > 0 for one in report.tasks]) == ("paused", [True])
     assert (report.tasks[0].x, report.tasks[0].y) == (90.0, 22.0)
-    assert (await roads.fleet.traffic.conflicts()).waiting == []
+    assert (await roads.fleet.roads.traffic.conflicts()).waiting == []
 
 
 async def test_on_its_way_to_where_it_waits_both_parts_of_its_way_are_kept(roads):
     await roads.drive("one", [(16.0, 8.0), (44.0, 22.0), (90.0, 22.0)])
     await roads.drive("two", [(13.0, 22.0), (56.0, 22.0), (56.0, 40.0)], robot="r2")
-    await roads.fleet.traffic.resolve(ResolveConflict("r1", "r2", "waiting"), "Ada")
-    (hold,) = (await roads.fleet.traffic.conflicts()).waiting
+    await roads.fleet.roads.traffic.resolve(ResolveConflict("r1", "r2", "waiting"), "Ada")
+    (hold,) = (await roads.fleet.roads.traffic.conflicts()).waiting
     await roads.take()
     report = await roads.fleet.pauses.pause(PauseRobot("r1"), "Eve")
     assert [(one.x, one.y) for one in report.tasks] == [(hold.x, hold.y), (90.0, 22.0)]
@@ -377,11 +377,11 @@ async def test_a_target_that_it_waits_on_its_way_to_is_kept_as_one_task(roads):
     await roads.send("cone", x=92.0, y=22.0, cone=True)
     await roads.take()
     outcome = await roads.fleet.receive("r1", "websocket", GetPath(), 7)
-    await roads.fleet.finish([outcome], [], acks=False)
+    await roads.fleet.mailboxes.finish([outcome], [], acks=False)
     await roads.take()
     metres = math.dist((16, 8), (44, 22)) + 1
     await roads.drive("two", [(44.0 - metres, 22.0), (56.0, 22.0), (56.0, 40.0)], robot="r2")
-    await roads.fleet.traffic.resolve(ResolveConflict("r1", "r2", "waiting"), "Ada")
+    await roads.fleet.roads.traffic.resolve(ResolveConflict("r1", "r2", "waiting"), "Ada")
     report = await roads.fleet.pauses.pause(PauseRobot("r1"), "Eve")
     assert [(one.kind.value, one.x, one.y) for one in report.tasks] == [("place", 92.0, 22.0)]
 
@@ -394,8 +394,8 @@ async def test_a_task_of_its_queue_that_waits_for_another_robot_is_not_there_twi
     await roads.fleet.driving.advance()
     await roads.take()
     await roads.drive("two", ways[1], robot="r2")
-    await roads.fleet.traffic.resolve(ResolveConflict("r1", "r2", "waiting"), "Ada")
-    (hold,) = (await roads.fleet.traffic.conflicts()).waiting
+    await roads.fleet.roads.traffic.resolve(ResolveConflict("r1", "r2", "waiting"), "Ada")
+    (hold,) = (await roads.fleet.roads.traffic.conflicts()).waiting
     await roads.take()
     for share in (0.25, 0.5, 0.75, 1.0):
         await roads.at(16.0 + share * (hold.x - 16.0), 8.0 + share * (hold.y - 8.0), v=1.0 - share)

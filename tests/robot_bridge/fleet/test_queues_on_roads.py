@@ -77,10 +77,10 @@ async def test_the_task_of_a_queue_goes_on_by_another_way_when_its_road_is_close
 
 async def test_the_path_of_a_queue_waits_for_another_robot_and_goes_on_as_the_same_task(each):
     await set_off_with_a_queue(each)
-    resolved = await each.fleet.traffic.resolve(ResolveConflict("r1", "r2", "waiting"), "Ada")
+    resolved = await each.fleet.roads.traffic.resolve(ResolveConflict("r1", "r2", "waiting"), "Ada")
     assert (resolved.robot, resolved.became) == ("r1", "waits")
-    (hold,) = (await each.fleet.traffic.conflicts()).waiting
-    assert (await each.fleet.traffic.conflicts()).conflicts == []
+    (hold,) = (await each.fleet.roads.traffic.conflicts()).waiting
+    assert (await each.fleet.roads.traffic.conflicts()).conflicts == []
     queue = await queue_of(each)
     assert [(one.state.value, one.label, one.reason) for one in queue.tasks] == [
         ("current", "waits for r2", None),
@@ -124,8 +124,8 @@ async def test_a_cone_whose_robot_waited_is_put_down_where_it_belongs(roads, own
     cones = replace(settings.cones, offset_ahead_m=0.4)
     own_site.take_over(replace(own_site.site, settings=replace(settings, cones=cones)))
     await set_off_with_a_queue(roads, kind=TaskKind.PLACE, theta=0.0, cone="C1")
-    await roads.fleet.traffic.resolve(ResolveConflict("r1", "r2", "waiting"), "Ada")
-    (hold,) = (await roads.fleet.traffic.conflicts()).waiting
+    await roads.fleet.roads.traffic.resolve(ResolveConflict("r1", "r2", "waiting"), "Ada")
+    (hold,) = (await roads.fleet.roads.traffic.conflicts()).waiting
     first = await roads.new_path()
     await roads.take()
     await drive_to(roads, first)
@@ -148,8 +148,8 @@ async def test_a_cone_whose_robot_waited_is_put_down_where_it_belongs(roads, own
 
 async def test_a_queue_that_is_changed_while_its_robot_waits_does_what_it_was_changed_to(roads):
     await set_off_with_a_queue(roads)
-    await roads.fleet.traffic.resolve(ResolveConflict("r1", "r2", "waiting"), "Ada")
-    (hold,) = (await roads.fleet.traffic.conflicts()).waiting
+    await roads.fleet.roads.traffic.resolve(ResolveConflict("r1", "r2", "waiting"), "Ada")
+    (hold,) = (await roads.fleet.roads.traffic.conflicts()).waiting
     first = await roads.new_path()
     await roads.take()
     await drive_to(roads, first)
@@ -157,7 +157,7 @@ async def test_a_queue_that_is_changed_while_its_robot_waits_does_what_it_was_ch
     await roads.fleet.queues.set(SetQueue("r1", revision, [QueueTask("task-0009", 30.0, 10.0)]), "Ada")
     await roads.fleet.driving.advance()
     assert await roads.take() == ["SetPosEnd"]
-    assert (await roads.fleet.traffic.conflicts()).waiting == []
+    assert (await roads.fleet.roads.traffic.conflicts()).waiting == []
     roads.now = hold.until + 60
     await roads.at(60.0, 40.0, robot="r2")
     await roads.fleet.watch_roads()
@@ -166,8 +166,8 @@ async def test_a_queue_that_is_changed_while_its_robot_waits_does_what_it_was_ch
 
 async def test_a_queue_that_is_paused_while_its_robot_waits_stays_paused(roads):
     await set_off_with_a_queue(roads)
-    await roads.fleet.traffic.resolve(ResolveConflict("r1", "r2", "waiting"), "Ada")
-    (hold,) = (await roads.fleet.traffic.conflicts()).waiting
+    await roads.fleet.roads.traffic.resolve(ResolveConflict("r1", "r2", "waiting"), "Ada")
+    (hold,) = (await roads.fleet.roads.traffic.conflicts()).waiting
     first = await roads.new_path()
     await roads.take()
     await drive_to(roads, first)
@@ -177,7 +177,7 @@ async def test_a_queue_that_is_paused_while_its_robot_waits_stays_paused(roads):
     await roads.fleet.watch_roads()
     await roads.fleet.driving.advance()
     assert await roads.take() == []
-    assert (await roads.fleet.traffic.conflicts()).waiting == []
+    assert (await roads.fleet.roads.traffic.conflicts()).waiting == []
     await roads.fleet.queues.resume(ResumeQueue("r1", (await queue_of(roads)).revision), "Ada")
     await roads.fleet.driving.advance()
     assert (await roads.new_path())[-1] == [90.0, 22.0]

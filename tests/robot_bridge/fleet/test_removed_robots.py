@@ -124,7 +124,7 @@ async def test_it_waits_for_nobody_any_more(roads):
     await roads.fleet.save()
     remove(roads)
     await roads.fleet.save()
-    assert (await roads.fleet.traffic.conflicts()).waiting == []
+    assert (await roads.fleet.roads.traffic.conflicts()).waiting == []
     await roads.fleet.watch_roads()
     assert roads.sql("select count(*) from holds") == [(0,)]
 

@@ -51,9 +51,9 @@ async def test_a_way_is_as_wide_as_the_robots(roads, own_site):
     own_site.take_over(replace(site, centrelines=tuple(lines), settings=wide))
     await roads.fleet.site_changed()
     assert highest((await roads.way(*there)).points) == pytest.approx(22.0, abs=0.5)
-    assert highest(roads.fleet.roads.path(*there).points) == pytest.approx(22.0, abs=0.5)
+    assert highest(roads.fleet.roads.planner.path(*there).points) == pytest.approx(22.0, abs=0.5)
     broad = replace(wide, version=3, routes=replace(wide.routes, robot_width_m=50.0))
     own_site.take_over(replace(site, centrelines=tuple(lines), settings=broad))
     await roads.fleet.site_changed()
     with pytest.raises(RefusedError, match="wide, narrower than 50 m"):
-        roads.fleet.roads.path(*there)
+        roads.fleet.roads.planner.path(*there)

@@ -96,17 +96,17 @@ async def test_a_cone_that_was_put_down_while_no_gateway_ran_is_put_down_once(li
 
 async def test_what_is_taken_back_while_its_delivery_is_to_be_noted_is_not_sent(line):
     await line.yard.send("target")
-    (row,) = await line.yard.fleet.outbox("r1", 0)
-    _, may_be_sent = await asyncio.gather(abort(line.yard), line.yard.fleet.hand_over("r1", row.id))
+    (row,) = await line.yard.fleet.mailboxes.outbox("r1", 0)
+    _, may_be_sent = await asyncio.gather(abort(line.yard), line.yard.fleet.mailboxes.hand_over("r1", row.id))
     assert (await line.yard.states())["target"] == "aborted"
     assert not may_be_sent
 
 
 async def test_what_is_no_commands_message_is_sent_as_it_is(line):
     await line.yard.ready()
-    (row,) = await line.yard.fleet.outbox("r1", 0)
+    (row,) = await line.yard.fleet.mailboxes.outbox("r1", 0)
     assert row.op == "SetMap"
-    assert await line.yard.fleet.hand_over("r1", row.id)
+    assert await line.yard.fleet.mailboxes.hand_over("r1", row.id)
 
 
 @pytest.mark.parametrize(
@@ -145,7 +145,8 @@ async def test_an_abort_waits_neither_until_it_is_noted_nor_until_what_is_before
 async def test_an_emergency_stop_that_comes_while_a_delivery_is_noted_keeps_it_from_being_sent(
     line, wire, monkeypatch
 ):
-    fleet, hand_over = line.yard.fleet, line.yard.fleet.hand_over
+    fleet, mailboxes = line.yard.fleet, line.yard.fleet.mailboxes
+    hand_over = mailboxes.hand_over
     fleet.emergency.reach(wire.delivery.stop_now)
 
     async def stopped_meanwhile(robot, id):
@@ -153,7 +154,7 @@ async def test_an_emergency_stop_that_comes_while_a_delivery_is_noted_keeps_it_f
         await stop(line.yard)
         return is_due
 
-    monkeypatch.setattr(fleet, "hand_over", stopped_meanwhile)
+    monkeypatch.setattr(mailboxes, "hand_over", stopped_meanwhile)
     await line.yard.send("target")
     wire.delivery.begin()
     async with asyncio.timeout(60):

@@ -45,9 +45,9 @@ async def test_a_road_is_closed_here_too_if_its_closure_is_stored(roads, lose, d
     lose(roads, closures.add, done)
     with pytest.raises(UncertainError):
         await roads.close_road(*SOUTH)
-    assert roads.fleet.closures.report().closures == []
+    assert roads.fleet.roads.closures.report().closures == []
     await roads.fleet.watch_roads()
-    closed = [(one.closure, one.edges) for one in roads.fleet.closures.report().closures]
+    closed = [(one.closure, one.edges) for one in roads.fleet.roads.closures.report().closures]
     assert closed == ([("closure-1", 1)] if done else [])
     # The robot is led round, as when the road is closed at once.
     assert [one for one, _ in (await roads.states()).items()] != (["a"] if done else [])
@@ -68,9 +68,9 @@ async def test_a_road_is_open_here_too_if_that_is_stored(roads, lose, done):
     await roads.close_road(*SOUTH)
     lose(roads, closures.end, done)
     with pytest.raises(UncertainError):
-        await roads.fleet.closures.open(OpenRoad("closure-1"), "Bob")
+        await roads.fleet.roads.closures.open(OpenRoad("closure-1"), "Bob")
     await roads.fleet.watch_roads()
-    assert len(roads.fleet.closures.report().closures) == (not done)
+    assert len(roads.fleet.roads.closures.report().closures) == (not done)
     assert (await roads.open_road()).opened_by == "Bob"
     await roads.send("a", "SetPath", robot=await plugged(roads), points=[(50.0, 8.0), (70.0, 8.0)])
 
@@ -96,9 +96,9 @@ async def test_a_robot_waits_if_that_is_stored(roads, lose, done):
     await roads.drive("two", [(13.0, 22.0), (56.0, 22.0), (56.0, 40.0)], robot="r2")
     lose(roads, write_drafts, done)
     with pytest.raises(UncertainError):
-        await roads.fleet.traffic.resolve(ResolveConflict("r1", "r2", "waiting"), "Ada")
+        await roads.fleet.roads.traffic.resolve(ResolveConflict("r1", "r2", "waiting"), "Ada")
     await roads.fleet.watch_roads()
-    waiting = (await roads.fleet.traffic.conflicts()).waiting
+    waiting = (await roads.fleet.roads.traffic.conflicts()).waiting
     assert [one.robot for one in waiting] == (["r1"] if done else [])
 
 

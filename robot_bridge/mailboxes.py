@@ -1,0 +1,117 @@
+"""The robots' mailboxes in the database: what waits for each in SA, and what they have said into RR.
+
+A message stays in SA until its robot has read it, a request in RR until its answer is stored: what is lost on
+the way is sent again.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Iterable
+
+from . import exchange
+from .commanding.book import CommandBook
+from .emergency.stops import HELD_BACK, EmergencyStops
+from .exchange import Outcome
+from .robots import Robots
+from .store import answers, requests
+from .store.answers import AnswerRow
+from .store.database import Database
+from .trajectories.saving import Saving
+
+
+class Mailboxes:
+    """What links read and write for the robots at their other ends; coroutines raise StoreError."""
+
+    def __init__(
+        self,
+        database: Database,
+        robots: Robots,
+        commands: CommandBook,
+        emergency: EmergencyStops,
+        saving: Saving,
+    ) -> None:
+        self._database = database
+        self._robots = robots
+        self._commands = commands
+        self._emergency = emergency
+        self._saving = saving
+        self._events: dict[str, asyncio.Event] = {}
+
+    def event(self, robot: str) -> asyncio.Event:
+        """Return the event that is set whenever SA holds something new for the robot."""
+        return self._events.setdefault(robot, asyncio.Event())
+
+    def changed(self, robot: str) -> None:
+        """Note that SA holds something new for the robot."""
+        self.event(robot).set()
+
+    async def outbox(self, robot: str, after: int, after_urgent: int = 0) -> list[AnswerRow]:
+        """Return the robot's messages as :func:`.answers.read`, without those that must not be sent now."""
+        rows = await self._database.read(answers.read, robot, after, after_urgent)
+        return [row for row in rows if row.op not in HELD_BACK] if self._emergency.in_force else rows
+
+    async def hand_over(self, robot: str, id: int) -> bool:
+        """Note that message ``id`` of SA is about to be sent to its robot; false where it must not be."""
+        return await self._commands.hand_over(robot, id)
+
+    async def delivered(self, ids: Iterable[int]) -> None:
+        """Note that messages of SA have reached their robots."""
+        await self._commands.delivered(ids)
+
+    async def delivered_by_deletion(self, link: str) -> None:
+        """Note the messages that the robots of ``link`` have read and deleted from SA themselves."""
+        sent = self._undelivered(link)
+        if sent:
+            await self._commands.delivered(sent - await self._database.run(answers.waiting, sorted(sent)))
+
+    async def take_up(self) -> int:
+        """Take note of what waits in RR from before it was read; return the id of the newest of it.
+
+        Acknowledgements among that may have been dealt with already: their commands are judged by positions
+        that come after them alone.
+        """
+        newest, acks = await self._database.read(requests.backlog)
+        for robot, id in acks:
+            self._commands.await_again(robot, id)
+        return newest
+
+    async def look(self, link: str) -> list[requests.RequestRow]:
+        """Return the oldest requests in RR, which stay there until :meth:`finish`; note what was read."""
+        sent = self._undelivered(link)
+        rows, waiting = await self._database.read(exchange.look, sorted(sent))
+        if rows and (late := self._undelivered(link) - sent):
+            # Sent while the database looked; its acknowledgement may be among the rows already.
+            sent |= late
+            waiting |= await self._database.read(answers.waiting, sorted(late))
+        if sent - waiting:
+            await self._commands.delivered(sent - waiting)
+        return rows
+
+    async def finish(self, outcomes: list[Outcome], request_ids: list[int], *, acks: bool) -> None:
+        """Write the answers of requests into SA, with their OpAcks if ``acks``, and delete them from RR.
+
+        One transaction, with the positions that they told: a request is either answered and gone, or will be
+        dealt with again. A robot that said Ready is stored before.
+        """
+        if outcomes or request_ids:
+            rows = exchange.rows_of(outcomes, acks=acks)
+            if admitted := {outcome.robot for outcome in outcomes if outcome.admitted}:
+                # Together: one by one, the Readys of a whole fleet outlast a gateway that is killed soon.
+                await self._saving.save(*admitted)
+            if request_ids:
+                # A request whose answer a power cut undid is there again, and is dealt with again.
+                # It may have waited for long: where the robot was then must not be in memory alone.
+                await self._saving.jot_with(exchange.finish, outcomes, rows, request_ids)
+            else:
+                await self._database.run(exchange.finish, outcomes, rows, request_ids, [])
+        for outcome in outcomes:
+            if outcome.answer is not None:
+                self.changed(outcome.robot)
+
+    def _undelivered(self, link: str) -> set[int]:
+        return {
+            id
+            for id, robot in self._commands.undelivered().items()
+            if robot in self._robots and self._robots.get(robot).link == link
+        }
