@@ -143,7 +143,7 @@ class Actions(QObject):
     def _make_for_drafts(self) -> None:
         self.coordinates = self._made(
             "fleet_coordinates",
-            tr("Coordinates …"),
+            tr("Coordinates…"),
             "coordinates.svg",
             tr("Type or paste coordinates in any CRS in place of a click"),
         )
@@ -159,7 +159,7 @@ class Actions(QObject):
         tip = tr("Put what is drawn at the end of its robot's queue, instead of sending it")
         self.enqueue = self._made("fleet_enqueue", tr("Add to queue"), "enqueue.svg", tip)
         tip = tr("Let a draft be sent in spite of what the checks found; asks why")
-        self.override = self._made("fleet_override", tr("Override …"), "override.svg", tip)
+        self.override = self._made("fleet_override", tr("Override…"), "override.svg", tip)
         tip = tr("Take what is drawn off the map; nothing is sent")
         self.cancel = self._made("fleet_cancel", tr("Cancel"), "cancel.svg", tip)
         tip = tr("Send the selected robots the map of the whole site now")
@@ -187,7 +187,7 @@ class Actions(QObject):
         )
         self.way_wishes = self._made(
             "fleet_way_wishes",
-            tr("Ways on roads …"),
+            tr("Ways on roads…"),
             "route_on_roads.svg",
             tr(
                 "Say how Route on roads is to lead: shortest or fastest, on which surfaces, off the roads of "
@@ -228,7 +228,7 @@ class Actions(QObject):
         self.emergency.setAutoRepeat(False)
         tip = tr("Let robots be sent again; takes a supervisor, and asks first")
         self.clear_emergency = self._made(
-            "fleet_clear_emergency", tr("Clear emergency stop …"), "cancel.svg", tip
+            "fleet_clear_emergency", tr("Clear emergency stop…"), "cancel.svg", tip
         )
 
     def _made(self, name: str, text: str, icon: str, tip: str, *, checkable: bool = False) -> QAction:

@@ -428,8 +428,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/actions.py" />
-            <source>Clear emergency stop …</source>
-            <translation>Aixeca la parada d'emergència …</translation>
+            <source>Clear emergency stop…</source>
+            <translation>Aixeca la parada d'emergència…</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/actions.py" />
@@ -463,8 +463,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/actions.py" />
-            <source>Coordinates …</source>
-            <translation>Coordenades …</translation>
+            <source>Coordinates…</source>
+            <translation>Coordenades…</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/actions.py" />
@@ -558,8 +558,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/actions.py" />
-            <source>Override …</source>
-            <translation>Imposa …</translation>
+            <source>Override…</source>
+            <translation>Imposa…</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/actions.py" />
@@ -673,8 +673,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/actions.py" />
-            <source>Ways on roads …</source>
-            <translation>Camins per vies …</translation>
+            <source>Ways on roads…</source>
+            <translation>Camins per vies…</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/desk/alarms/alarm_bar.py" />
@@ -2774,8 +2774,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driven_plan.py" />
-            <source>The cone plan is not sent any further. {words}: {found} Override … in the panel Cone plan sends it all the same, where your role may.</source>
-            <translation>El pla de cons no es continua enviant. {words}: {found} Imposa … al tauler Pla de cons ho envia igualment, on el vostre paper ho permeti.</translation>
+            <source>The cone plan is not sent any further. {words}: {found} Override… in the panel Cone plan sends it all the same, where your role may.</source>
+            <translation>El pla de cons no es continua enviant. {words}: {found} Imposa… al tauler Pla de cons ho envia igualment, on el vostre paper ho permeti.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driven_plan.py" />

@@ -428,8 +428,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/actions.py" />
-            <source>Clear emergency stop …</source>
-            <translation>Levantar la parada de emergencia …</translation>
+            <source>Clear emergency stop…</source>
+            <translation>Levantar la parada de emergencia…</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/actions.py" />
@@ -463,8 +463,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/actions.py" />
-            <source>Coordinates …</source>
-            <translation>Coordenadas …</translation>
+            <source>Coordinates…</source>
+            <translation>Coordenadas…</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/actions.py" />
@@ -558,8 +558,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/actions.py" />
-            <source>Override …</source>
-            <translation>Imponer …</translation>
+            <source>Override…</source>
+            <translation>Imponer…</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/actions.py" />
@@ -673,8 +673,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/actions.py" />
-            <source>Ways on roads …</source>
-            <translation>Caminos por vías …</translation>
+            <source>Ways on roads…</source>
+            <translation>Caminos por vías…</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/desk/alarms/alarm_bar.py" />
@@ -2774,8 +2774,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driven_plan.py" />
-            <source>The cone plan is not sent any further. {words}: {found} Override … in the panel Cone plan sends it all the same, where your role may.</source>
-            <translation>El plan de conos no se sigue enviando. {words}: {found} Imponer … en el panel Plan de conos lo envía de todos modos, donde su papel lo permita.</translation>
+            <source>The cone plan is not sent any further. {words}: {found} Override… in the panel Cone plan sends it all the same, where your role may.</source>
+            <translation>El plan de conos no se sigue enviando. {words}: {found} Imponer… en el panel Plan de conos lo envía de todos modos, donde su papel lo permita.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driven_plan.py" />

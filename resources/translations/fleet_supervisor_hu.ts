@@ -427,8 +427,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/actions.py" />
-            <source>Clear emergency stop …</source>
-            <translation>Vészleállítás feloldása …</translation>
+            <source>Clear emergency stop…</source>
+            <translation>Vészleállítás feloldása…</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/actions.py" />
@@ -462,8 +462,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/actions.py" />
-            <source>Coordinates …</source>
-            <translation>Koordináták …</translation>
+            <source>Coordinates…</source>
+            <translation>Koordináták…</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/actions.py" />
@@ -557,8 +557,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/actions.py" />
-            <source>Override …</source>
-            <translation>Felülbírálás …</translation>
+            <source>Override…</source>
+            <translation>Felülbírálás…</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/actions.py" />
@@ -672,8 +672,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/actions.py" />
-            <source>Ways on roads …</source>
-            <translation>Útvonalak utakon …</translation>
+            <source>Ways on roads…</source>
+            <translation>Útvonalak utakon…</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/desk/alarms/alarm_bar.py" />
@@ -2759,8 +2759,8 @@
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driven_plan.py" />
-            <source>The cone plan is not sent any further. {words}: {found} Override … in the panel Cone plan sends it all the same, where your role may.</source>
-            <translation>A bójaterv küldése megállt. {words}: {found} A Bójaterv panelen a Felülbírálás … mégis elküldi, ha a szerepe engedi.</translation>
+            <source>The cone plan is not sent any further. {words}: {found} Override… in the panel Cone plan sends it all the same, where your role may.</source>
+            <translation>A bójaterv küldése megállt. {words}: {found} A Bójaterv panelen a Felülbírálás… mégis elküldi, ha a szerepe engedi.</translation>
         </message>
         <message>
             <location filename="../../plugin/desk/plans/driven_plan.py" />

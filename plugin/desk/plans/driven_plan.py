@@ -345,7 +345,7 @@ class DrivenPlan(QObject):
 
 def _in_words(refusal: Refusal) -> str:
     return tr(
-        "The cone plan is not sent any further. {words}: {found} Override … in the panel Cone plan sends it "
+        "The cone plan is not sent any further. {words}: {found} Override… in the panel Cone plan sends it "
         "all the same, where your role may.",
         words=refusal.words,
         found=in_brief(refusal.found),

@@ -32,11 +32,17 @@ class DrivingBar(QWidget):
         self._drafts, self._driven = drafts, driven
         self.text, self.trouble = _label("fleet_plan_text"), _label("fleet_plan_trouble")
         self.trouble.setStyleSheet(WRONG_STYLE)
+        self._make_sending_buttons()
+        self._make_new_plan_buttons()
+        self._make_choices()
+        self._lay_out()
+
+    def _make_sending_buttons(self) -> None:
         self.send = push_button("fleet_plan_send", tr("Send…"), pressed=self.send_wanted.emit)
         self.clear = push_button("fleet_plan_clear", tr("Clear"), pressed=self.clear_wanted.emit)
         self.override = push_button(
             "fleet_plan_override",
-            tr("Override …"),
+            tr("Override…"),
             tr("Send the plan on in spite of what was found; asks why"),
             self.override_wanted.emit,
         )
@@ -46,6 +52,8 @@ class DrivingBar(QWidget):
             tr("Leave it at what was sent: robots that have their cones by now go on with them"),
             self.leave_wanted.emit,
         )
+
+    def _make_new_plan_buttons(self) -> None:
         self.rest = push_button(
             "fleet_plan_rest",
             tr("Plan what is left"),
@@ -67,6 +75,8 @@ class DrivingBar(QWidget):
             tr("Resume the queues of the plan's robots that somebody paused"),
             self.resume_wanted.emit,
         )
+
+    def _make_choices(self) -> None:
         self.again = QCheckBox(tr("try failed cones again"))
         self.again.setObjectName("fleet_plan_again")
         self.by_itself = QCheckBox(tr("Send new plans without asking"))
@@ -75,6 +85,8 @@ class DrivingBar(QWidget):
         )
         self.by_itself.setObjectName("fleet_plan_by_itself")
         self.by_itself.toggled.connect(self.by_itself_changed)
+
+    def _lay_out(self) -> None:
         grid = QGridLayout(self)
         grid.setContentsMargins(0, 0, 0, 0)
         grid.setSpacing(4)

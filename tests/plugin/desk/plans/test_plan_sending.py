@@ -102,7 +102,7 @@ def test_what_can_be_overridden_waits_and_is_told_once_with_where_that_is_done(f
     wait(lambda: len(hung(iface, "Water basin")) == 1, what="one text of two")
     (text,) = hung(iface, "Water basin")
     assert "The cone plan is not sent any further" in text and QUEUE_OF_R2 in text
-    assert "Override … in the panel Cone plan" in text
+    assert "Override… in the panel Cone plan" in text
     assert QUEUE_OF_R2 in fenced.bar.trouble.text() and "where your role may" in fenced.bar.trouble.text()
     assert not fenced.bar.send.isVisible() and not fenced.bar.clear.isVisible()
     assert len(sent_to(gateway, "r2")) == 1
