@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from fleet_supervisor.plugin.desk import time_slices
 from inside_qgis.mouse import move_mouse
 from qgis.core import QgsFeature, QgsGeometry, QgsProject, QgsVectorLayer
 from qgis.gui import QgsRubberBand
@@ -19,6 +20,12 @@ def key(iface, which):
 
 def drawn(at_desk):
     return at_desk.dock.findChild(QLabel, "fleet_draft_text").text()
+
+
+@pytest.fixture(autouse=True)
+def time_enough(monkeypatch):
+    """Have small drafts looked at before their click has ended, as on a machine with nothing else to do."""
+    monkeypatch.setattr(time_slices, "SLICE_SECONDS", 60.0)
 
 
 @pytest.fixture
@@ -191,14 +198,26 @@ def test_only_what_the_filter_of_a_layer_keeps_is_a_keepout(cone, iface, text, r
     assert ("Not to be sent" in drawn(cone)) is refused
 
 
+WRONG_FILTER = "The filter expression '1 +' for the layer the keepouts is not one"
+
+
 def test_a_filter_that_is_none_is_told_with_its_layer_and_nothing_is_drafted(cone, iface):
     layer = layer_with_role("keepout", 60, 50, 80, 60)
     layer.setCustomProperty("fleet/filter", "1 +")
     iface.click(70, 55)
-    assert any(
-        "The filter expression '1 +' for the layer the keepouts is not one" in t for t in iface.texts()
-    )
+    assert any(WRONG_FILTER in text for text in iface.texts())
     assert cone.desk.drafts.draft is None
+
+
+def test_a_filter_that_is_none_refuses_the_draft_where_the_layer_is_come_to_later(
+    cone, iface, wait, monkeypatch
+):
+    monkeypatch.setattr(time_slices, "SLICE_SECONDS", time_slices.ONE_STEP)
+    layer = layer_with_role("keepout", 60, 50, 80, 60)
+    layer.setCustomProperty("fleet/filter", "1 +")
+    iface.click(70, 55)
+    wait(lambda: not cone.desk.checks.is_under_way)
+    assert any(WRONG_FILTER in text for text in cone.desk.drafts.draft.findings.refused)
 
 
 def test_a_target_beside_the_road_is_warned_of_and_can_be_sent(cone, iface, gateway, wait):
