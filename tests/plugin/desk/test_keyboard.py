@@ -174,10 +174,10 @@ def test_an_emergency_stop_that_is_not_in_force_cannot_be_cleared_and_that_is_sa
 def dialogs(plugin, iface):
     """Every dialog of the plugin by its name, open one after the other."""
     sys.path.insert(0, str(LANGUAGE))
-    import desk_in_words
+    import every_dialog
 
     def opened():
-        for name, dialog in desk_in_words.dialogs(iface, plugin.window):
+        for name, dialog in every_dialog.dialogs(iface, plugin.window):
             dialog.open()
             QApplication.processEvents()
             yield name, dialog
